@@ -12,6 +12,7 @@ from idealgas.analysis.core.tables import escape
 from idealgas.errors import UserError
 from idealgas.examples import SCENE, load_example, path_of
 from idealgas.files import check_output, written
+from idealgas.report.page import description_html, text_of
 
 PAGE = Template("""<!doctype html>
 <html lang="en">
@@ -43,10 +44,10 @@ $scenes
 """)
 
 
-def description(name: str) -> tuple[str, list[str]]:
-    """Title of an example scene, and the paragraphs of its description."""
+def described(name: str) -> tuple[str, str]:
+    """Title of an example scene, and its description as HTML."""
     about = tomllib.loads(path_of(name + SCENE).read_text(encoding="utf-8"))["scene"]
-    return about["title"], about.get("description", "").strip().split("\n\n")
+    return about["title"], description_html(about.get("description", ""))
 
 
 def commands(name: str) -> tuple[str, ...]:
@@ -75,7 +76,7 @@ def draw(name: str, path: Path) -> None:
         simulate(load_example(name), log_path)
         with open_log(log_path) as log:
             if log.has_positions and log.has_events:
-                paint_frame(log, path, log.end_time, force=True)
+                paint_frame(log, path, log.end_time, panel="none", force=True)
             else:
                 save(analyse(log, "histogram").plot(), path, force=True)
 
@@ -99,8 +100,6 @@ def write_gallery(
         UserError: for another ending.
         OutputError: if the page cannot be written.
     """
-    from idealgas.report.page import text_of
-
     path, kind = Path(output), Path(output).suffix.lower()
     if kind not in (".html", ".htm"):
         raise UserError(f"{output}: unknown kind of page (allowed: .html)")
@@ -121,11 +120,10 @@ def write_gallery(
 
 def _scene(name: str, picture: bytes) -> str:
     """HTML of one scene."""
-    title, paragraphs = description(name)
+    title, description = described(name)
     data = base64.b64encode(picture).decode()
-    text = "".join(f"<p>{escape(' '.join(paragraph.split()))}</p>" for paragraph in paragraphs)
     return (
         f'<section id="{name}"><h2>{escape(title)}</h2>'
         f'<img src="data:image/png;base64,{data}" alt="{escape(title)}, at the end of the run">'
-        f"{text}<pre>{escape(chr(10).join(commands(name)))}</pre></section>"
+        f"{description}<pre>{escape(chr(10).join(commands(name)))}</pre></section>"
     )

@@ -73,12 +73,12 @@ def _linked(source: str, repository: str) -> str:
 
 def _gallery() -> str:
     """Page with every example scene: its picture, its description and its commands."""
-    from idealgas.gallery import commands, description
+    from idealgas.gallery import commands, described
 
     parts = ["# Gallery", "The example scenes, with the discs at the end of the run, coloured by speed."]
     for path in SCENES:
-        title, paragraphs = description(path.stem)
-        parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", *paragraphs]
+        title, description = described(path.stem)
+        parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", description]
         parts.append("\n".join(("```bash", *commands(path.stem), "```")))
     return "\n\n".join(parts) + "\n"
 

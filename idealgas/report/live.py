@@ -74,7 +74,7 @@ class Live:
             title=escape(scene.title or Path(log.path).name),
             style=text_of("report.css"),
             script="\n".join(map(text_of, (*SCRIPTS, "live.js"))),
-            description=description_html(log),
+            description=description_html(log.scene.scene.description),
             state=log.run_state,
             newest="" if log.complete else " checked",
             player=player_html(log, heading, shown),

@@ -104,7 +104,7 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
         script="\n".join(map(text_of, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
-        description=description_html(log),
+        description=description_html(log.scene.scene.description),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
         sections="\n".join(shown[:folded]),
         more="\n".join(shown[folded:]),
@@ -113,10 +113,16 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     )
 
 
-def description_html(log: Log) -> str:
-    """HTML of the description of a scene, a paragraph for each of its own."""
-    paragraphs = log.scene.scene.description.split("\n\n")
-    return "".join(f"<p>{escape(' '.join(text.split()))}</p>" for text in paragraphs if text)
+def description_html(description: str) -> str:
+    """HTML of the description of a scene: its paragraphs; indented ones, tables and commands, keep their lines."""
+    html = ""
+    for text in filter(None, description.strip("\n").split("\n\n")):
+        lines = text.splitlines()
+        if all(line.startswith("  ") for line in lines):
+            html += f"<pre>{chr(10).join(map(escape, lines))}</pre>"
+        else:
+            html += f"<p>{escape(' '.join(text.split()))}</p>"
+    return html
 
 
 def _summary(log: Log, found: dict) -> str:

@@ -59,7 +59,8 @@ def test_the_gallery_of_a_scene_is_one_page_with_its_picture(tmp_path):
     scene = tomllib.loads((CONFIGS / "corner.toml").read_text(encoding="utf-8"))["scene"]
     text = html.unescape(page)
     assert f"<h2>{scene['title']}</h2>" in text
-    assert " ".join(scene["description"].split("\n\n")[0].split()) in text
+    prose, table, *_ = scene["description"].split("\n\n")
+    assert f"<p>{' '.join(prose.split())}</p><pre>{table}</pre>" in text
     assert "idealgas run corner.toml -o corner.h5" in text
     (picture,) = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
     with Image.open(io.BytesIO(base64.b64decode(picture))) as image:

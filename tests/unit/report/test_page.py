@@ -1,0 +1,8 @@
+from idealgas.report.page import description_html
+
+
+def test_a_description_keeps_the_lines_of_its_tables():
+    text = "Two\nlines.\n\n  time   event\n  1      v < 2\n\n  a command\n"
+    shown = "<p>Two lines.</p><pre>  time   event\n  1      v &lt; 2</pre><pre>  a command</pre>"
+    assert description_html(text) == shown
+    assert description_html("") == ""
