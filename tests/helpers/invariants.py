@@ -231,7 +231,14 @@ class InvariantChecker:
         """Normal of the closed face of a wall that a disc passes in one direction."""
         return self.left[k] * (-1.0 if self.passage[k, disc] == FROM_LEFT else 1.0)
 
-    def at_one_way(self, kind, disc: int, k: int, place: np.ndarray) -> tuple[np.ndarray, float]:
+    def at_points(self, away: np.ndarray, reach: float, before, after, rebounds) -> tuple[np.ndarray, float]:
+        """Normal of the point that a disc touches, of several at `away` (M, 2), and by how much it misses contact."""
+        distances = np.hypot(*away.T)
+        misses = np.abs(distances - reach)
+        touching = (misses <= self.touches) | (misses == misses.min())
+        return self.fitting((away / distances[:, None])[touching], before, after, rebounds), float(misses.min())
+
+    def at_one_way(self, kind, disc: int, k: int, place, before, after, rebounds) -> tuple[np.ndarray, float]:
         """Normal of such a wall for a disc that bounces off it, and by how much the disc misses its place there."""
         (start, end), radius = self.walls[k], self.gas.radius[disc]
         images = place + self.shifts
@@ -242,10 +249,7 @@ class InvariantChecker:
             margin = self.known / np.hypot(*(end - start))
             misses = np.where((share > -margin) & (share < 1 + margin), 0.0, np.inf)
             return normal, float((misses + np.minimum(np.abs(height - radius), np.abs(height))).min())
-        away = np.concatenate((images - start, images - end))
-        distances = np.hypot(*away.T)
-        nearest = np.abs(distances - radius).argmin()
-        return away[nearest] / distances[nearest], float(np.abs(distances - radius).min())
+        return self.at_points(np.concatenate((images - start, images - end)), radius, before, after, rebounds)
 
     def clear_of_arcs(self, disc: int, path: np.ndarray, time: float) -> None:
         """The way of a disc until a time keeps clear of the arcs that have been there since the start."""
@@ -362,13 +366,12 @@ class InvariantChecker:
         elif wall - 4 >= len(self.gates):
             fixed = self.fixed[wall - 4 - len(self.gates)]
             away = place + self.shifts - np.array(fixed.start)
-            distances = np.hypot(*away.T)
-            nearest = np.abs(distances - fixed.radius - radius).argmin()
-            normal, distance = away[nearest] / distances[nearest], distances[nearest] - fixed.radius
+            normal, miss = self.at_points(away, fixed.radius + radius, before, after, rebounds)
+            distance = radius + miss
             assert kind == Kind.WALL_END
         elif self.passage[wall - 4, disc] != SOLID:
             assert self.passage[wall - 4, disc] != OPEN
-            normal, miss = self.at_one_way(kind, disc, wall - 4, place)
+            normal, miss = self.at_one_way(kind, disc, wall - 4, place, before, after, rebounds)
             distance = radius + miss
         else:
             gate = self.gates[wall - 4]
