@@ -255,8 +255,8 @@ class InvariantChecker:
         """The way of a disc until a time keeps clear of the arcs that have been there since the start."""
         inside = self.wrapped(path - self.size / 2) + self.size / 2
         images = (inside[:, None] + self.shifts).reshape(-1, 2)
-        for wall in self.gates:
-            if wall.arc and all(opens >= time for opens, _ in wall.absences):
+        for wall, passage in zip(self.gates, self.passage[:, disc], strict=False):
+            if wall.arc and passage == SOLID and all(opens >= time for opens, _ in wall.absences):
                 away = images - nearest_points(images, wall.start, wall.end, wall.arc)
                 assert np.hypot(*away.T).min() >= self.gas.radius[disc] - self.known - self.sunk[disc], "in an arc"
 

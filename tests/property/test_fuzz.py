@@ -26,6 +26,7 @@ from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
+from idealgas.physics.arc import ARC
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import Periodic
@@ -75,6 +76,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     neutral = Effects(
         periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         segments=aligned(0, SEGMENT),
+        arcs=aligned(walls, ARC),
         permeable=Permeable(np.zeros(n, np.uint16), np.zeros((walls, 1), np.uint8)),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),
