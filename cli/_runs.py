@@ -15,7 +15,7 @@ from ._terminal import data, echo
 
 if TYPE_CHECKING:
     from idealgas.log.summary import Summary
-    from idealgas.run.simulate import Progress
+    from idealgas.run.logged_run import Progress
 
     from .events import EventStream
 
@@ -79,6 +79,8 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     }
     if summary.thermostat_collisions:
         rows["  thermostat collisions"] = f"{summary.thermostat_collisions:,}"
+    if summary.steered:
+        rows["  discs steered"] = f"{summary.steered:,}"
     if summary.trials:
         rows |= {"trials": f"{summary.trials:,}", "  accepted": f"{summary.disc_collisions / summary.trials:.4f}"}
     rows["simulated time"] = f"{summary.end_time:.6g}"

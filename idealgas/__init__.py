@@ -12,12 +12,13 @@
         print(log.to_pandas("events", disc=0))
 
 `load_scene`, `load_example` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a
-run; both return a `Summary`. `open_log` opens a `Log` for reading. `analyse`, or an analysis by its name, measures
-something in it, or in a log at a path, and `combine` takes its results of several logs; `write_report`, `animate` and
-`export` take both as well. `run_sweep` runs what `load_sweep` has read. Results are dataclasses with `as_dict()`, which
-gives plain values for JSON, `tables()` and `plot()`, which gives a figure of matplotlib; notebooks show their tables. A
-measured number is an `Estimate`, a value with its standard error. An error that a user can mend is a `UserError`, in
-one plain line; `SceneError`, `LogError` and `OutputError` are kinds of it.
+run; both return a `Summary`. `open_run` begins a run that a program advances and steers. `open_log` opens a `Log` for
+reading. `analyse`, or an analysis by its name, measures something in it, or in a log at a path, and `combine` takes its
+results of several logs; `write_report`, `animate` and `export` take both as well. `run_sweep` runs what `load_sweep`
+has read. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which
+gives a figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard
+error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are
+kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
 used, so that `import idealgas` itself is quick.
@@ -43,7 +44,8 @@ _HOMES = {
     "idealgas.report.page": ("write_report",),
     "idealgas.run.resume": ("resume",),
     "idealgas.log.summary": ("Summary",),
-    "idealgas.run.simulate": ("Progress", "simulate"),
+    "idealgas.run.logged_run": ("Progress",),
+    "idealgas.run.simulate": ("open_run", "simulate"),
     "idealgas.scene": ("Scene", "SceneError", "load_scene", "parse_scene"),
     "idealgas.sweep.plan": ("load_sweep",),
     "idealgas.sweep.run": ("run_sweep",),
@@ -72,6 +74,7 @@ __all__ = [  # and the names of all analyses
     "load_scene",
     "load_sweep",
     "open_log",
+    "open_run",
     "parse_scene",
     "resume",
     "run_sweep",

@@ -26,6 +26,9 @@ HEAT_BATH = 1 << 30
 BATH = -1 - HEAT_BATH
 """Partner of a disc in an event of kind THERMOSTAT."""
 
+OUTSIDE = BATH - 1
+"""Partner of a disc in an event of kind STEERED."""
+
 OUTWARD = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 """Unit normals (x, y) of the sides, pointing out of the box."""
 
@@ -45,6 +48,8 @@ class Kind(IntEnum):
     PISTON = 3
     THERMOSTAT = 4
     """The heat bath of a thermostat."""
+    STEERED = 5
+    """Nothing: its velocity changed from outside."""
 
 
 class Column(NamedTuple):
@@ -101,7 +106,7 @@ class EventBatch(NamedTuple):
     Attributes:
         time: (n,) f8, time.
         disc: (n,) u4, id of the disc.
-        partner: (n,) i4, id of the other disc, -1 - k for wall k, or BATH.
+        partner: (n,) i4, id of the other disc, -1 - k for wall k, BATH or OUTSIDE.
         kind: (n,) u1, a `Kind`.
         position: (n, 2) f8, length, after the event; None where the method has no positions.
         velocity: (n, 2) f8, length/time, after the event.

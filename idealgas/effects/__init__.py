@@ -22,6 +22,7 @@ NAMES = (
     "vibration",
     "piston",
     "thermostat",
+    "steering",
 )
 """The files of the effects."""
 

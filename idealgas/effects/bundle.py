@@ -50,11 +50,15 @@ else:
         dissipated: (1 + walls,) SUM, energy lost in collisions of two discs, then in hits of each wall that is not
             thermal, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by this.
         bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without one.
-        step_energy: (1,) SUM, energy given where a potential changes in time, mass length²/time²; None if none does.
+        step_energy: (1,) SUM, energy given where a potential or velocities change, mass length²/time²; None if none do.
         flow: momentum that the gas carries and passes on; None if it is not recorded.
-        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without any. The
-            kernels do without it.
+        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without any.
     """
+
+
+def for_kernels(effects: Effects) -> Effects:
+    """The effects without the fields that no kernel needs."""
+    return effects._replace(schedule=None, steering=None, step_energy=None)
 
 
 def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:

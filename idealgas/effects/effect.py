@@ -39,9 +39,10 @@ class Start(NamedTuple):
     Attributes:
         gas: the discs.
         seed: seed of the scene.
-        acceleration: constant acceleration of the discs, summed over the effects, length/time².
+        acceleration: of the discs at time 0, summed over the effects, length/time².
         angular_velocity: (N,) as the scene gives it, 1/time; 0 where it does not.
         spin_temperature: (N,) energy; 0 where spins are not drawn at random.
+        later_accelerations: from later times on.
     """
 
     gas: Gas
@@ -49,6 +50,7 @@ class Start(NamedTuple):
     acceleration: tuple[float, float]
     angular_velocity: np.ndarray
     spin_temperature: np.ndarray
+    later_accelerations: tuple[tuple[float, float], ...] = ()
 
 
 class EnergyPart(NamedTuple, Generic[State]):
@@ -111,6 +113,7 @@ class EffectSpec(Generic[State]):
         own_wall: number of a wall whose energy is part of the energy account, so that it gives none from outside.
         counted: total number of its own events.
         begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
+        reverse: turn the velocities of the state around, at the start of an epoch.
         end_epoch: count local times from the end of an epoch of some length (time).
         schedule: changes in time of values of the state, after time 0.
         change: the state with another value of an item.
@@ -142,6 +145,7 @@ class EffectSpec(Generic[State]):
     counted: Column | None = None
     begin_epoch: Callable[[State, float], None] = lambda state, time: None
     end_epoch: Callable[[State, float], None] = lambda state, length: None
+    reverse: Callable[[State], None] = lambda state: None
     schedule: Callable[[Tables, Start], Iterable[Change]] = lambda tables, start: ()
     change: Callable[[State, int, float], State] = lambda state, item, value: state
 

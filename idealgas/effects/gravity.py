@@ -1,4 +1,4 @@
-"""Gravity: a constant acceleration."""
+"""Gravity: the same acceleration of all discs, which may change in steps."""
 
 from collections.abc import Iterator
 
@@ -8,35 +8,47 @@ from pydantic import Field
 from idealgas.columns import SIDES, Column, sides_across
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import Properties
+from idealgas.effects.schedule import Change, SteppedTable, VectorInSteps, steps_of
 from idealgas.physics import gravity as law
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
-from idealgas.toml.table import Table, Vector
 
 
-class Gravity(Table):
+class Gravity(SteppedTable):
     """`[gravity]`: the same acceleration everywhere."""
 
-    acceleration: Vector = Field(description="[gx, gy], length/time²")
+    in_steps = ("acceleration",)
+
+    acceleration: VectorInSteps = Field(description="[gx, gy], length/time², or steps [[0, [gx, gy]], [t, …], …]")
+
+    @property
+    def steps(self) -> tuple[tuple[float, tuple[float, float]], ...]:
+        """Times from which accelerations hold, and these."""
+        return steps_of(self.acceleration)
 
 
 def _properties(tables: Tables) -> Properties:
+    (_, first), *later = steps_of(tables.own.acceleration)
     return Properties(
         uniform=False,
         straight_flight=False,
         allows_monte_carlo=False,
         drives_discs=True,
-        acceleration=tables.own.acceleration,
+        allows_time_steps=not later,
+        acceleration=first,
+        later_accelerations=tuple(acceleration for _, acceleration in later),
+        changes=tuple(time for time, _ in later),
+        varies=bool(later),
     )
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
     """Gravity without acceleration, or along periodic sides, where discs would accelerate indefinitely."""
     key: Key = ("gravity", "acceleration")
-    acceleration = tables.own.acceleration
-    if not any(acceleration):
-        yield Issue((key,), "no acceleration", str(list(acceleration)), "no [gravity], or one that pulls")
-    for axis, component in enumerate(acceleration):
+    steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
+    if not any(map(any, steps)):
+        yield Issue((key,), "no acceleration", str(list(steps[0])), "no [gravity], or one that pulls")
+    for axis, component in enumerate(max(each, key=abs) for each in zip(*steps, strict=True)):
         low, high = (SIDES[side] for side in sides_across(axis))
         if component and tables.sides[2 * axis] == "periodic":
             keys = (key, ("box", low), ("box", high))
@@ -46,7 +58,17 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 def _make(_: Tables, start: Start) -> law.Gravity | None:
     """The acceleration of all effects: discs follow their sum."""
-    return law.Gravity(*start.acceleration) if any(start.acceleration) else None
+    return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
+
+
+def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
+    """Changes of the acceleration along x, item 0, and along y, item 1."""
+    for time, acceleration in steps_of(tables.own.acceleration)[1:]:
+        yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))
+
+
+def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
+    return gravity._replace(**{"xy"[axis]: component})
 
 
 def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
@@ -63,6 +85,8 @@ EFFECT = EffectSpec(
     check=_check,
     make=_make,
     make_always=True,
+    schedule=_schedule,
+    change=_change,
     energy=EnergyPart("potential", _energy, Column("potential_energy", "f8", (), "energy")),
     samples=(Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),),
 )

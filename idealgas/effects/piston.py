@@ -21,6 +21,7 @@ from idealgas.effects.schedule import (
 )
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
+from idealgas.physics.steering import reversed_velocity
 from idealgas.state import Gas
 from idealgas.toml.issues import Key
 from idealgas.toml.table import Number, Positive, Rectangle
@@ -219,6 +220,12 @@ def _own_wall(piston: np.ndarray) -> int | None:
     return int(piston[0].wall) if piston[0].m > 0 else None
 
 
+def _reverse(piston: np.ndarray) -> None:
+    """Turn a piston with a mass around; a given velocity stays."""
+    if piston[0].m > 0:
+        piston[0].v = reversed_velocity(piston[0].v)
+
+
 def _sample(side: float) -> str:
     pressure = 1.2 * SAMPLE_DISCS / side**2
     return f'[piston]\nside = "top"\nposition = {0.95 * side!r}\nmass = 100\npressure = {pressure!r}\n'
@@ -243,6 +250,7 @@ EFFECT = EffectSpec(
     energy=EnergyPart("piston", _energy),
     gives_energy=lambda piston: True,
     own_wall=_own_wall,
+    reverse=_reverse,
     end_epoch=law.end_epoch,
     samples=(Sample(tables=_sample), Sample("inner", tables=_inner_sample)),
 )

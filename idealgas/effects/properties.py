@@ -47,11 +47,12 @@ class Properties:
 
     driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
     with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
-    motion. varies: a temperature, a pressure or a velocity changes in time. vibrates: a side does. one_way: discs pass
-    a wall in one direction only.
+    motion. varies: a temperature, pressure, velocity or acceleration changes in time. vibrates: a side does. one_way:
+    discs pass a wall in one direction only.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
-    are. acceleration: of all discs between events, length/time². emits: temperature of each thermal wall at the start,
+    are. acceleration: of all discs between events at the start, length/time². later_accelerations: the same from
+    later times on. emits: temperature of each thermal wall at the start,
     by number; None for those that reflect. bath: temperature at the start of a heat bath that gives discs new
     velocities wherever they are; None without one. later_temperatures: of walls and heat bath. thermostat_rate: per
     disc, 1/time. last_wall_removed_at: time from which on no wall is inside the box; infinite if one always is.
@@ -76,6 +77,7 @@ class Properties:
     inertia: float | None = _plain(None, _first_not_none)
     periodic: tuple[bool, bool] = _plain((False, False), _merge)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
+    later_accelerations: tuple[tuple[float, float], ...] = _plain((), operator.add)
     emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
     bath: float | None = _plain(None, _first_not_none)
     thermostat_rate: float = _plain(0.0, max)
@@ -120,10 +122,16 @@ class Properties:
         return self.last_wall_removed_at == 0
 
     @property
+    def strongest_pull(self) -> tuple[float, float]:
+        """Acceleration of all discs along x and y, each when it is strongest, length/time²."""
+        x, y = (max(each, key=abs) for each in zip(self.acceleration, *self.later_accelerations, strict=True))
+        return x, y
+
+    @property
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
         free = self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
-        x, y = (free and on and g == 0 for on, g in zip(self.periodic, self.acceleration, strict=True))
+        x, y = (free and on and g == 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
         return x, y
 
     def __and__(self, other: "Properties") -> "Properties":

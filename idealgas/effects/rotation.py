@@ -7,6 +7,7 @@ from idealgas.columns import ANGULAR_VELOCITY, Arrays, Column
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import rotation as law
+from idealgas.physics.steering import reversed_velocity
 from idealgas.state import Gas, rng
 from idealgas.toml.table import Real, Table
 
@@ -57,6 +58,10 @@ def _energy(rotation: law.Rotation, _: Gas, __: float) -> float:
     return float((0.5 * rotation.inertia * rotation.omega**2).sum())
 
 
+def _reverse(rotation: law.Rotation) -> None:
+    rotation.omega[:] = reversed_velocity(rotation.omega)
+
+
 EFFECT = EffectSpec(
     name="rotation",
     field="rotation",
@@ -68,6 +73,7 @@ EFFECT = EffectSpec(
     disc_state=lambda rotation: {ANGULAR_VELOCITY: rotation.omega},
     constants=_constants,
     energy=EnergyPart("rotational", _energy, Column("rotational_energy", "f8", (), "energy"), inner=True),
+    reverse=_reverse,
     gives_energy=lambda rotation: abs(rotation.wall_roughness) < 1,
     samples=(Sample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),),
 )

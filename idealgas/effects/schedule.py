@@ -1,10 +1,10 @@
-"""Values that change in time: a number, or steps [[t, value], …] that begin at time 0.
+"""Values that change in time: a number or vector, or steps [[t, value], …] that begin at time 0.
 
 All changes of a scene are one list, the schedule. An epoch ends at each of them, so they are exact for every method.
 """
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
 
@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
-from idealgas.toml.table import NotNegative, Number, Positive, Table
+from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector
 
 REFLECTING = "reflecting"
 """Step of a thermal wall that reflects for a time."""
@@ -46,13 +46,17 @@ def _is_list(value: Any) -> str:
     return "(steps)" if isinstance(value, (list, tuple)) else "(number)"
 
 
-def _in_steps(number: Any, value: Any = None) -> Any:
-    """Type of a number that may change in time. value: type of the value of a step, if it is another."""
+def _is_list_of_lists(value: Any) -> str:
+    return _is_list(value[0] if isinstance(value, (list, tuple)) and value else None)
+
+
+def _in_steps(number: Any, value: Any = None, kind: Callable[[Any], str] = _is_list) -> Any:
+    """Type of a value that may change in time. value: type of that of a step, if it is another. kind: finds steps."""
     value = value or number
     step: Any = Annotated[tuple[NotNegative, value], Field(strict=False)]
     kinds: Any = Annotated[tuple[step, ...], Field(strict=False), AfterValidator(_in_order), Tag("(steps)")]
     kinds |= Annotated[number, Tag("(number)")]
-    return Annotated[kinds, Discriminator(_is_list)]
+    return Annotated[kinds, Discriminator(kind)]
 
 
 _POSITIVE_OR_WORD = Annotated[
@@ -60,19 +64,44 @@ _POSITIVE_OR_WORD = Annotated[
     Discriminator(lambda value: "(word)" if isinstance(value, str) else "(number)"),
 ]
 
+Times = Annotated[
+    Annotated[Positive, Tag("(number)")]
+    | Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=1), Tag("(times)")],
+    Discriminator(lambda value: "(times)" if isinstance(value, (list, tuple)) else "(number)"),
+]
+"""One time > 0, or a list of times."""
+
+
+def as_times(times: Any) -> tuple[float, ...]:
+    """Times as a tuple, from the value of a key; empty for None."""
+    return () if times is None else tuple(times) if isinstance(times, (list, tuple)) else (times,)
+
+
+def times_key(times: Sequence[float]) -> Any:
+    """Value of a key, from times; None without any."""
+    return tuple(times) if len(times) > 1 else next(iter(times), None)
+
+
+def without_past(times: Any, time: float) -> Any:
+    """The value of a key of times in a scene whose clock starts at a later time; None if all are past."""
+    return times_key([t - time for t in as_times(times) if t > time])
+
+
 if TYPE_CHECKING:
     NumberInSteps: TypeAlias = Any
+    VectorInSteps: TypeAlias = Any
     PositiveInSteps: TypeAlias = Any
     NotNegativeInSteps: TypeAlias = Any
     WallTemperature: TypeAlias = Any
 else:
     NumberInSteps, PositiveInSteps, NotNegativeInSteps = map(_in_steps, (Number, Positive, NotNegative))
+    VectorInSteps = _in_steps(Vector, kind=_is_list_of_lists)
     WallTemperature = _in_steps(Positive, _POSITIVE_OR_WORD)
 
 
 def steps_of(value: Any) -> tuple[tuple[float, Any], ...]:
-    """Times from which values hold, and the values; a number holds from time 0 on."""
-    return value if isinstance(value, tuple) else ((0.0, value),)
+    """Times from which values hold, and the values; a number or a vector holds from time 0 on."""
+    return value if _is_list_of_lists(value) == "(steps)" else ((0.0, value),)
 
 
 def value_at(value: Any, time: Any) -> Any:

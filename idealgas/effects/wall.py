@@ -4,31 +4,24 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from idealgas.columns import SIDES
 from idealgas.effects.arc import FLATTEST
 from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
 from idealgas.effects.properties import Properties
-from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, description
+from idealgas.effects.schedule import Change, SteppedTable, Times, WallTemperature, as_times, description, times_key
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
 from idealgas.physics.arc_geometry import Arc, arc_through, bounds
 from idealgas.toml.issues import Issue, Key
-from idealgas.toml.table import NotNegative, Positive, Vector, Word
+from idealgas.toml.table import Vector, Word
 
 SHORTEST = 1e-9
 """Length of a wall in units of the box's longer side: below, a double cannot tell its ends apart."""
-
-
-Times = Annotated[
-    Annotated[Positive, Tag("(number)")]
-    | Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=1), Tag("(times)")],
-    Discriminator(lambda value: "(times)" if isinstance(value, (list, tuple)) else "(number)"),
-]
 
 
 class Wall(SteppedTable):
@@ -76,7 +69,7 @@ class Wall(SteppedTable):
     @property
     def absences(self) -> tuple[tuple[float, float], ...]:
         """Times from and until which it is absent, in order; the last may be infinite."""
-        opens, closes = (_as_tuple(times) for times in (self.opens_at or 0.0, self.closes_at))
+        opens, closes = (as_times(times) for times in (self.opens_at or 0.0, self.closes_at))
         if self.opens_at is None and self.closes_at is None:
             return ()
         return tuple(zip_longest(opens, closes, fillvalue=math.inf))
@@ -108,7 +101,7 @@ class Wall(SteppedTable):
         if absences and absences[0] == (0.0, math.inf):
             return None
         opens, closes = ([t[k] for t in absences if t[k] < math.inf] for k in range(2))
-        update = {"opens_at": _times([] if opens == [0.0] else opens), "closes_at": _times(closes)}
+        update = {"opens_at": times_key([] if opens == [0.0] else opens), "closes_at": times_key(closes)}
         return self.after(time).model_copy(update=update)
 
     def is_there(self, time: float) -> bool:
@@ -155,15 +148,6 @@ class FixedDisc:
     def lets_pass(self, _: str) -> bool:
         """Whether it lets discs of a species pass."""
         return False
-
-
-def _as_tuple(times: Any) -> tuple[float, ...]:
-    return () if times is None else times if isinstance(times, tuple) else (times,)
-
-
-def _times(times: list[float]) -> Any:
-    """Value of a key, from a list of times."""
-    return tuple(times) if len(times) > 1 else next(iter(times), None)
 
 
 def _properties(tables: Tables) -> Properties:
@@ -232,7 +216,7 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
         yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "one of them")
     if any(later <= earlier for earlier, later in pairwise(times)):
         keys = (("wall", i, "closes_at"), ("wall", i, "opens_at"))
-        opens, closes = _as_tuple(wall.opens_at), _as_tuple(wall.closes_at)
+        opens, closes = as_times(wall.opens_at), as_times(wall.closes_at)
         single = len(opens) == len(closes) == 1
         allowed = f"> {wall.opens_at}" if single else "times in order, each opening before its closing"
         wrong = "closes before it opens" if single else "opens and closes not in turn"

@@ -8,7 +8,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas.columns import EventBatch
-from idealgas.effects.bundle import Effects, begin_epoch, changed, end_epoch, energy_parts, next_change
+from idealgas.effects.bundle import (
+    Effects,
+    begin_epoch,
+    changed,
+    end_epoch,
+    energy_parts,
+    for_kernels,
+    next_change,
+    present,
+)
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length
 from idealgas.engine.method import Limits, Method
@@ -17,6 +26,7 @@ from idealgas.errors import UserError
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import SumRangeError, add_term
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
+from idealgas.physics.steering import reversed_velocity
 from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
@@ -51,6 +61,7 @@ class Totals(NamedTuple):
         disc_collisions: collisions of two discs.
         wall_hits: hits of walls, piston included.
         thermostat_collisions: of discs with a heat bath.
+        steered: velocities that were changed from outside.
         trials: pairs tried by Monte Carlo.
     """
 
@@ -58,7 +69,12 @@ class Totals(NamedTuple):
     disc_collisions: int = 0
     wall_hits: int = 0
     thermostat_collisions: int = 0
+    steered: int = 0
     trials: int = 0
+
+
+def _nobody() -> np.ndarray:
+    return np.empty(0, int)
 
 
 @dataclass
@@ -72,6 +88,7 @@ class Simulation:
         time: time of the start of the epoch.
         epoch: number of the epoch, from 0.
         totals: numbers of events up to the start of the epoch.
+        steered: ids of the discs whose velocities or acceleration were changed from outside at the start of the epoch.
     """
 
     gas: Gas
@@ -80,6 +97,7 @@ class Simulation:
     time: float = 0.0
     epoch: int = 0
     totals: Totals = field(default_factory=Totals)
+    steered: np.ndarray = field(default_factory=_nobody)
 
     def __post_init__(self) -> None:
         """Begin the first epoch."""
@@ -89,6 +107,8 @@ class Simulation:
 
     def _begin(self) -> None:
         """Begin an epoch with the present gas, effects and time."""
+        done, steered = self.totals, len(self.steered)
+        self.totals = done._replace(events=done.events + steered, steered=done.steered + steered)
         begin_epoch(self.effects, self.time)
         until_change = next_change(self.effects, self.time) - self.time
         self.length = until_change
@@ -98,7 +118,7 @@ class Simulation:
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
             length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions)
             self.length = min(length, until_change)
-        self.method.start(self.gas, self.effects._replace(schedule=None))
+        self.method.start(self.gas, for_kernels(self.effects))
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials
         self.epoch_over = self.paused = False
@@ -165,6 +185,7 @@ class Simulation:
             self.totals.disc_collisions + counted["disc_collisions"],
             self.totals.wall_hits + counted["wall_hits"],
             self.totals.thermostat_collisions + counted["thermostat_collisions"],
+            self.totals.steered,
             counted["trials"],
         )
 
@@ -210,22 +231,65 @@ class Simulation:
 
     def next_epoch(self) -> None:
         """Move all discs to the end of the epoch and begin the next one there."""
+        self._end_epoch()
+        self._begin()
+
+    def reverse(self) -> None:
+        """End the epoch at the time reached, where `epoch_over` is set, and reverse all velocities."""
+        self._end_epoch()
+        self._reverse()
+        self._begin()
+
+    def set_velocities(self, discs: np.ndarray, velocity: np.ndarray) -> None:
+        """End the epoch at the time reached, where `epoch_over` is set, and give discs (n,) new velocities (n, 2)."""
+        self._end_epoch()
+        changed = self.gas.velocity.copy()
+        changed[discs] = velocity
+        before, after = self.gas.velocity.T, changed.T
+        given = 0.5 * self.gas.mass * ((after - before) * (after + before)).sum(axis=0)
+        add_term(self.effects.step_energy, float(given.sum()))
+        self._steer(np.flatnonzero((before != after).any(axis=0)), changed)
+        self._begin()
+
+    def reschedule(self, schedule: Any) -> None:
+        """End the epoch at the time reached, where `epoch_over` is set, with other changes in time from there on."""
+        self.effects = self.effects._replace(schedule=schedule)
+        self._end_epoch()
+        self._begin()
+
+    def _end_epoch(self) -> None:
+        """Move all discs to the time reached, and make the changes up to there."""
+        self.length = self._local_now
         self.gas = self._synchronised(self.method.discs.record, self.length, self.effects.periodic, self.effects.flow)
         self.totals = self.counters
+        self.steered = _nobody()
         end_epoch(self.effects, self.length)
         self._change(self.time + self.length)
         self.time += self.length
         self.epoch += 1
-        self._begin()
 
     def _change(self, time: float) -> None:
         """Make the changes up to a time, and record the energy that they give."""
         if next_change(self.effects, self.time) > time:
             return
-        before = sum(energy_parts(self.effects, self.gas).values())
+        before, gravity = sum(energy_parts(self.effects, self.gas).values()), self.effects.gravity
         self.effects = changed(self.effects, self.time, time)
         if self.effects.step_energy is not None:
             add_term(self.effects.step_energy, sum(energy_parts(self.effects, self.gas).values()) - before)
+        if self.effects.gravity is not gravity:
+            self._steer(np.arange(len(self.gas)), self.gas.velocity)
+        if any(self.time < reversal <= time for reversal in self.effects.steering or ()):
+            self._reverse()
+
+    def _reverse(self) -> None:
+        """Reverse all velocities, between two epochs."""
+        for effect, state in present(self.effects):
+            effect.reverse(state)
+        self._steer(np.arange(len(self.gas)), reversed_velocity(self.gas.velocity))
+
+    def _steer(self, discs: np.ndarray, velocity: np.ndarray) -> None:
+        """Change the velocities to (N, 2), those of some discs (n,), between two epochs."""
+        self.gas, self.steered = replace(self.gas, velocity=velocity), np.union1d(self.steered, discs)
 
     def check_invariants(self) -> Diagnostics:
         """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
@@ -234,5 +298,5 @@ class Simulation:
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
-        method.start(gas, self.effects._replace(periodic=copy_of(self.effects.periodic), schedule=None))
+        method.start(gas, for_kernels(self.effects)._replace(periodic=copy_of(self.effects.periodic)))
         return check_invariants(gas, method.deepest_overlap())

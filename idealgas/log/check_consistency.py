@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from idealgas.columns import IMAGES, POSITIONS, SPINS, TRIALS, event_columns
+from idealgas.columns import IMAGES, POSITIONS, SPINS, TRIALS, Kind, event_columns
 from idealgas.initial.build import disc_constants
 from idealgas.log.schema import Wall
 from idealgas.scene import Scene
@@ -21,7 +21,7 @@ def check_scene(
     walls: Sequence[Wall],
     periodic: tuple[bool, ...],
     gravity: tuple[float, float],
-    has_thermostat: bool,
+    kinds: Collection[Kind],
     columns: Collection[str],
 ) -> None:
     """Check that a scene has the discs, walls and effects of a log.
@@ -32,7 +32,7 @@ def check_scene(
         walls: walls of the log.
         periodic: whether the box is periodic along x and along y.
         gravity: acceleration, length/time².
-        has_thermostat: whether the gas has a heat bath.
+        kinds: kinds of events of the log, of those that only some logs have.
         columns: names of the columns of events and checkpoints.
 
     Raises:
@@ -55,12 +55,13 @@ def check_scene(
         raise ValueError(f"gravity {scene.properties.acceleration} (gravity: {gravity})")
     if scene.properties.periodic != periodic:
         raise ValueError(f"periodic sides {scene.properties.periodic} (box: {periodic})")
-    if (scene.properties.bath is not None) != has_thermostat:
-        raise ValueError(
-            "no heat bath (got thermostat collisions)"
-            if has_thermostat
-            else "a heat bath (got no thermostat collisions)"
-        )
+    steered = scene.steering is not None or bool(scene.properties.later_accelerations)
+    for kind, cause, events, wanted in (
+        (Kind.THERMOSTAT, "heat bath", "thermostat collisions", scene.thermostat is not None),
+        (Kind.STEERED, "steering", "steered discs", steered),
+    ):
+        if wanted != (kind in kinds):
+            raise ValueError(f"{'a' if wanted else 'no'} {cause} (got {'no ' * wanted}{events})")
     has = {
         POSITIONS: scene.run.method != "monte_carlo",
         TRIALS: scene.run.method == "monte_carlo",

@@ -87,7 +87,7 @@ class Flights(NamedTuple):
         start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
         end: (n,) f8, time of the event or edge at the end.
         kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
-        partner: (n,) i4, id of the other disc in it, -1 - k for wall k, BATH, or NOBODY.
+        partner: (n,) i4, id of the other disc in it, -1 - k for wall k, BATH, OUTSIDE, or NOBODY.
         velocity: (n, 2) f8, length/time, at the start.
         end_velocity: (n, 2) f8, length/time, at the end, before the event. It is `velocity` without gravity.
         new_velocity: (n, 2) f8, length/time, after the event; `end_velocity` if no event ends the flight.
@@ -170,7 +170,7 @@ class FlightReader:
         self._columns = set(known if columns is None else columns)
         self._made = _made_for(self._columns)
         self._read = ("time", "disc", *sorted(_read_for(self._made)))
-        self._gravity = np.array(log.gravity) if any(log.gravity) else None
+        self._falls = log.has_gravity
 
     def batches(self) -> Iterator[Flights]:
         """Yield flights, cut at the edges, in batches."""
@@ -218,11 +218,11 @@ class FlightReader:
     def batch(self, flights: Arrays) -> Flights:
         """Flights with the requested columns."""
         found = dict(flights)
-        if self._gravity is None and "end_velocity" in self._made:
+        if not self._falls and "end_velocity" in self._made:
             found["end_velocity"] = flights["velocity"]
         if "displacement" in self._made:
             delay = (flights["end"] - flights["start"])[:, None]
-            found["displacement"] = position_after(0.0, flights["velocity"], self._gravity, delay)
+            found["displacement"] = position_after(0.0, flights["velocity"], self._gravity(flights["start"]), delay)
         return Flights(*(cast(Any, found[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
@@ -230,14 +230,14 @@ class FlightReader:
         start, made = state["time"], self._made
         found = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
         found |= {name: state[name] for name in _STATE & made}
-        if self._gravity is not None and "end_velocity" in made:
-            found["end_velocity"] = self._velocity(state["velocity"], end - start)
+        if self._falls and "end_velocity" in made:
+            found["end_velocity"] = self._velocity(state["velocity"], start, end)
         if rows is not None:
             return found | {name: rows[source] for name, source in _READ.items() if name in made - _STATE}
         if "end_position" in made:
-            found["end_position"], _ = self._position(state["position"], state["velocity"], end - start)
+            found["end_position"], _ = self._position(state["position"], state["velocity"], start, end)
         if "new_velocity" in made:
-            found["new_velocity"] = self._velocity(state["velocity"], end - start)
+            found["new_velocity"] = self._velocity(state["velocity"], start, end)
         if "new_angular_velocity" in made:
             found["new_angular_velocity"] = state["angular_velocity"]
         none = {"kind": np.full(len(end), NO_EVENT, "u1"), "partner": np.full(len(end), NOBODY, "i4")}
@@ -253,14 +253,14 @@ class FlightReader:
         inner[opening] = False
         later = np.flatnonzero(inner)  # pieces that begin at an edge; each ends the one before it
         earlier, edge = later - 1, self._edges[found["block"][later]]
-        delay = edge - found["start"][later]
+        start = found["start"][later]
         now = {name: found[name][later] for name in _STATE & found.keys()}
         if "position" in now:
-            now["position"], boxes = self._position(now["position"], now["velocity"], delay)
+            now["position"], boxes = self._position(now["position"], now["velocity"], start, edge)
             if "image" in now:
                 now["image"] += boxes.astype(np.int32)
         if "velocity" in now:
-            now["velocity"] = self._velocity(now["velocity"], delay)
+            now["velocity"] = self._velocity(now["velocity"], start, edge)
         for name, values in {"start": edge, **now}.items():
             found[name][later] = values
         ends: dict[str, Any] = {"end": edge, "kind": NO_EVENT, "partner": NOBODY}
@@ -275,13 +275,20 @@ class FlightReader:
         low, high = inner.searchsorted(times[[0, -1]]) if len(times) else (0, 0)
         return np.asarray(low + inner[low:high].searchsorted(times))
 
-    def _velocity(self, velocity: np.ndarray, delay: np.ndarray) -> np.ndarray:
-        """Velocities (n, 2) after delays (n,) in free flight."""
-        return velocity if self._gravity is None else velocity_after(velocity, self._gravity, delay[:, None])
+    def _gravity(self, start: np.ndarray) -> np.ndarray | None:
+        """Accelerations of flights that start at times (n,), (n, 2) or (2,); None without gravity."""
+        return self._log.gravity_at(start) if self._falls else None
 
-    def _position(self, position: np.ndarray, velocity: np.ndarray, delay: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Positions (n, 2) after delays (n,) in free flight, inside the box, and numbers (n, 2) of box lengths."""
-        place = position_after(position, velocity, self._gravity, delay[:, None])
+    def _velocity(self, velocity: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Velocities (n, 2) at times (n,) of flights that start with others."""
+        gravity = self._gravity(start)
+        return velocity if gravity is None else velocity_after(velocity, gravity, (end - start)[:, None])
+
+    def _position(
+        self, position: np.ndarray, velocity: np.ndarray, start: np.ndarray, end: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (n, 2), inside the box, at times (n,) of flights, and numbers (n, 2) of box lengths."""
+        place = position_after(position, velocity, self._gravity(start), (end - start)[:, None])
         boxes = np.zeros_like(place)
         for axis in np.flatnonzero(self._log.periodic):
             place[:, axis], boxes[:, axis] = wrapped(place[:, axis], self._log.box[axis])

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.columns import FIRST_SEGMENT, Column
+from idealgas.columns import FIRST_SEGMENT, Column, Kind
+from idealgas.errors import NotApplicableError
 from idealgas.log.errors import LogError
 from idealgas.log.log_file import LogFile
 from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
@@ -15,6 +16,7 @@ from idealgas.state import Gas
 
 if TYPE_CHECKING:
     from idealgas.scene import Scene
+    from idealgas.scene.changes import SceneChange
     from idealgas.scene.discs import Discs
 
 
@@ -27,7 +29,7 @@ class LogHeader:
         self.path = file.path
         self.unclosed = file.unclosed
         self.box: tuple[float, float] = tuple(file.fixed("box").tolist())
-        self.gravity: tuple[float, float] = tuple(file.fixed("gravity").tolist())
+        self._first_gravity: tuple[float, float] = tuple(file.fixed("gravity").tolist())
         words = np.asarray(file.attribute("box", "boundary")).tolist()
         file.checked(lambda: check_boundary(words), "box")
         self.periodic = tuple(word == b"periodic" for word in words)
@@ -47,19 +49,57 @@ class LogHeader:
         return self.runs[-1][0]
 
     @cached_property
+    def changes(self) -> list["SceneChange"]:
+        """Changes that a program made to the scene, up to the last checkpoint."""
+        from idealgas.scene.changes import SceneChange
+
+        if not self._file.rows("changes"):
+            return []
+        last = self._file.column("checkpoints/time")[-1:].max(initial=0.0)
+        both = zip(self._file.column("changes/time").tolist(), self._file.texts("changes/setting"), strict=True)
+        return [SceneChange(*change) for change in both if change[0] <= last]
+
+    @cached_property
     def scene(self) -> "Scene":
-        """Scene of the last run, with all defaults."""
+        """Scene of the last run, with all defaults and the changes that a program made during the run."""
         from idealgas.log.check_consistency import check_scene
         from idealgas.scene import Scene, parse_scene
 
         def read() -> Scene:
-            scene = parse_scene(self.scene_text, "scene", discs=self.given)
+            scene = parse_scene(self.scene_text, "scene", discs=self.given, changes=self.changes)
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
-            discs = self._stored_discs
-            check_scene(scene, discs, self.walls, self.periodic, self.gravity, self._file.has_thermostat, columns)
+            discs, kinds = self._stored_discs, self._file.kinds
+            check_scene(scene, discs, self.walls, self.periodic, self._first_gravity, kinds, columns)
             return scene
 
         return self._file.checked(read, "runs/scene")
+
+    @property
+    def gravity(self) -> tuple[float, float]:
+        """Acceleration (gx, gy) between events, length/time². Raises NotApplicableError if it changes in time."""
+        if self._steps_of_gravity is not None:
+            raise NotApplicableError(f"{self.path}: not applicable to a gas whose gravity changes in time")
+        return self._first_gravity
+
+    def gravity_at(self, time: np.ndarray) -> np.ndarray:
+        """Acceleration, length/time², at times (n,): (n, 2), or (2,) if it does not change. No flight has two."""
+        if self._steps_of_gravity is None:
+            return np.array(self._first_gravity)
+        times, values = self._steps_of_gravity
+        return values[times.searchsorted(time, "right") - 1]
+
+    @property
+    def has_gravity(self) -> bool:
+        """Whether discs are accelerated between events, at any time."""
+        return any(self._first_gravity) or self._steps_of_gravity is not None
+
+    @cached_property
+    def _steps_of_gravity(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times (n,) from which accelerations (n, 2) hold; None if there is one only."""
+        if Kind.STEERED not in self._file.kinds or not self.scene.properties.later_accelerations:
+            return None
+        times, values = zip(*self.scene.gravity.steps, strict=True)
+        return np.array(times), np.array(values)
 
     def _has_time_steps(self) -> bool:
         """Whether discs move in time steps; False if the scene is damaged."""

@@ -61,8 +61,11 @@ class LogHistory(LogHeader):
             if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair whose second is not committed
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
-        for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time"):
+        for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time", "changes"):
             self.__dict__.pop(name, None)
+        if self._file.rows("changes"):
+            for name in ("scene", "_steps_of_gravity"):
+                self.__dict__.pop(name, None)
 
     def close(self) -> None:
         """Close the file."""
@@ -225,7 +228,7 @@ class LogHistory(LogHeader):
             start = self.checkpoints[checkpoint]
         else:
             start = Checkpoint(self.start_time, 0, 0, self._start_arrays(), {})
-        return Replay(start, self.columns, self.box, self.periodic, self.gravity)
+        return Replay(start, self.columns, self.box, self.periodic, self.gravity_at if self.has_gravity else None)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
         """Discs at the start, as in a checkpoint."""

@@ -53,7 +53,7 @@ class LogFile:
         path: path of the file.
         unclosed: whether the file consistency flags are set: it is being written, or its writer was killed.
         commit: newest commit record.
-        has_thermostat: whether the gas has a heat bath.
+        kinds: kinds of events, of those that only some logs have.
         rules: rules for the values of this log.
     """
 
@@ -176,7 +176,7 @@ class LogFile:
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
-        self.has_thermostat = schema.THERMOSTAT_COLLISIONS in self.names("checkpoints")
+        self.kinds = {kind for name, kind in schema.COUNTED.items() if name in self.names("checkpoints")}
         self.rules = self._rules(size)
 
     def _check_size(self, size: int, expected: int) -> None:
@@ -190,7 +190,7 @@ class LogFile:
         check_sizes(*counts, size)
         box = self._column_at("box")
         size_of_box = box_of(box.whole(0) if box.chunk == (2,) else np.empty(0))
-        rules = Rules(size_of_box, *counts, self.has_thermostat)
+        rules = Rules(size_of_box, *counts, self.kinds)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

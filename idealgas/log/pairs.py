@@ -1,15 +1,16 @@
 """The rule of pairs: a collision of two discs is two event rows at the same time, that of the smaller id first.
 
-The kind of a row agrees with its partner: a disc, the heat bath or a wall.
+The kind of a row agrees with its partner: a disc, the heat bath, the outside or a wall.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from idealgas.columns import BATH, Kind
+from idealgas.columns import BATH, OUTSIDE, Kind
 
-DISC, THERMOSTAT = int(Kind.DISC), int(Kind.THERMOSTAT)
+PARTNERS = {Kind.THERMOSTAT: BATH, Kind.STEERED: OUTSIDE}
+"""Partner in all events of a kind, and in no others."""
 
 
 def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
@@ -39,6 +40,8 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
         raise ValueError(f"events/partner: no pair in row {start + int(lonely.argmax())}")
     if "kind" in columns:
         kind = columns["kind"]
-        other = ((kind == DISC) != (partner >= 0)) | ((kind == THERMOSTAT) != (partner == BATH))
+        other = (kind == Kind.DISC) != (partner >= 0)
+        for own, only in PARTNERS.items():
+            other |= (kind == own) != (partner == only)
         if other.any():
             raise ValueError(f"events/kind: not that of its partner in row {start + int(other.argmax())}")

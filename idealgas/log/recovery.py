@@ -72,6 +72,7 @@ def reopen(
             time, row = log.checkpoints.times[index], log.checkpoints.rows[index]
             rows |= {"events": int(row), "checkpoints": index + 1}
             rows["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
+            rows["changes"] = sum(change.time <= time for change in log.changes)
             times = log.observables.times  # of two samples at one time the second is that of an end
             rows["observables"] = int(min(times.searchsorted(time) + 1, times.searchsorted(time, "right")))
         keep = {table: rows.get(table, 0) for table in log.commit.rows}

@@ -117,14 +117,14 @@ class Replay:
         columns: Sequence[str],
         box: tuple[float, float],
         periodic: Sequence[bool],
-        gravity: tuple[float, float],
+        gravity_at: Callable[[np.ndarray], np.ndarray] | None,
     ) -> None:
         self.row = start.row
         self._record = {name: start.arrays[name].copy() for name in LogState._fields[1:] if name in start.arrays}
         self._record.setdefault("position", np.full_like(start.velocity, np.nan))
         self.state = tuple(name for name in self._record if name in columns)
         self._time = np.full(len(start.velocity), start.time)
-        self._box, self._periodic, self._gravity = box, periodic, gravity
+        self._box, self._periodic, self._gravity_at = box, periodic, gravity_at
 
     def follow(self, block: Any) -> None:
         """Advance through a block of event rows."""
@@ -141,10 +141,11 @@ class Replay:
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
         delay = time - self._time
-        for axis, acceleration in enumerate(self._gravity):
-            falls = any(self._gravity)
-            coordinate = position_after(position[:, axis], velocity[:, axis], acceleration if falls else None, delay)
-            if falls:
+        gravity = None if self._gravity_at is None else self._gravity_at(self._time)
+        for axis in range(2):
+            acceleration = None if gravity is None else gravity[..., axis]
+            coordinate = position_after(position[:, axis], velocity[:, axis], acceleration, delay)
+            if acceleration is not None:
                 velocity[:, axis] = velocity_after(velocity[:, axis], acceleration, delay)
             if self._periodic[axis]:
                 coordinate, boxes = wrapped(coordinate, self._box[axis])

@@ -6,12 +6,11 @@ Every column is checked as it is read, before any of its numbers is used. A brok
 import math
 import sys
 from bisect import bisect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 import numpy as np
 
 from idealgas.columns import (
-    BATH,
     EVENT_COLUMNS,
     IMAGE,
     MOST_SPECIES,
@@ -24,8 +23,10 @@ from idealgas.columns import (
     side_ends,
 )
 from idealgas.log.hdf5.column import StoredColumn
+from idealgas.log.pairs import PARTNERS
 from idealgas.log.schema import (
     BOX,
+    CHANGE_COLUMNS,
     CHECKPOINT_COLUMNS,
     DISC_COLUMNS,
     ENDPOINTS,
@@ -45,8 +46,9 @@ NEEDED: dict[str, Sequence[Column]] = {
     "events": [column for column in EVENT_COLUMNS if not column.when],
     "checkpoints": (*CHECKPOINT_COLUMNS, VELOCITY),
     "summary": SUMMARY_COLUMNS,
+    "changes": CHANGE_COLUMNS,
 }
-"""Columns that every table of this name has; a log may lack the table of events."""
+"""Columns that every table of this name has; a log may lack those of events and changes."""
 
 ORDERED = ("time", "row", "epoch", "step", "trial")
 """Columns that never decrease and are never negative."""
@@ -71,7 +73,7 @@ class Rules:
     """
 
     def __init__(
-        self, box: tuple[float, float], discs: int, species: int, walls: int, has_thermostat: bool = False
+        self, box: tuple[float, float], discs: int, species: int, walls: int, kinds: Collection[Kind] = ()
     ) -> None:
         """Declare the columns and ranges of a log.
 
@@ -80,9 +82,9 @@ class Rules:
             discs: number of discs.
             species: number of species.
             walls: number of walls.
-            has_thermostat: whether the gas has a heat bath.
+            kinds: kinds of events of this log, of those that only some logs have.
         """
-        self._has_thermostat = has_thermostat
+        self._others = [PARTNERS[kind] for kind in kinds]
         self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {
@@ -90,7 +92,7 @@ class Rules:
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(kind for kind in Kind if has_thermostat or kind != Kind.THERMOSTAT)),
+            "kind": (0, max(kind for kind in Kind if kind not in PARTNERS or kind in kinds)),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -112,6 +114,7 @@ class Rules:
             "walls/endpoints": ENDPOINTS._replace(shape=(walls, *ENDPOINTS.shape)),
             **{f"runs/{column.name}": column for column in RUN_COLUMNS},
             **{f"summary/{column.name}": column for column in SUMMARY_COLUMNS},
+            **{f"changes/{column.name}": column for column in CHANGE_COLUMNS},
             **{f"events/{column.name}": column for column in EVENT_COLUMNS},
             **{f"checkpoints/{column.name}": each(column) for column in EVENT_COLUMNS},
             **{f"checkpoints/{column.name}": column for column in CHECKPOINT_COLUMNS},
@@ -177,8 +180,8 @@ class Rules:
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
-        if name == "partner" and self._has_thermostat:
-            data = np.where(data == BATH, 0, data)
+        if name == "partner" and self._others:
+            data = np.where(np.isin(data, self._others), 0, data)
         low, high = self._ranges.get(name, self._range_of_others(path))
         in_order = name in ORDERED and bool((data[1:] >= data[:-1]).all())
         if name == "position":
@@ -249,7 +252,7 @@ def box_of(data: np.ndarray) -> tuple[float, float]:
 def check_names(names: Mapping[str, Sequence[str]]) -> None:
     """Check that each table has the columns that it needs. names: names of the columns, by table."""
     for table, columns in NEEDED.items():
-        if table == "events" and table not in names:
+        if table in ("events", "changes") and table not in names:
             continue
         if missing := [column.name for column in columns if column.name not in names.get(table, ())]:
             raise ValueError(f"{table}/{missing[0]}: missing")

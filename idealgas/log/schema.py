@@ -60,10 +60,12 @@ CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
 """Default columns of a checkpoint with an entry for each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
 """Columns that all observables share, with the number of epochs as step, and all elements of snapshots."""
+CHANGE_COLUMNS = (Column("time", "f8", (), "time"), Column("setting", "S256"))
+"""Changes that a program made to the scene during the run."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
 """Texts of the run, and of each run that resumed it."""
-THERMOSTAT_COLLISIONS = "thermostat_collisions"
-"""Column of checkpoints in logs with a heat bath; other logs have no events of that kind."""
+COUNTED = {"thermostat_collisions": Kind.THERMOSTAT, "steered": Kind.STEERED}
+"""Kinds of events that only logs have whose checkpoints have these columns."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """Columns of the summary, with a row for each field; the values are JSON."""
 DISC_COLUMNS = (
@@ -140,6 +142,7 @@ class LogLayout:
         checkpoint_values: other columns of checkpoints.
         observables: columns of samples.
         snapshot_arrays: columns of snapshots with an entry for each disc; without any the log has no snapshots.
+        steered: whether a program may change the scene during the run.
         most_rows: largest number of event rows of the run, if that is less than a full chunk.
         compression: "gzip" or "none".
     """
@@ -153,6 +156,7 @@ class LogLayout:
     checkpoint_values: Sequence[Column] = ()
     observables: Sequence[Column] = ()
     snapshot_arrays: Sequence[Column] = ()
+    steered: bool = False
     most_rows: int = BLOCK
     compression: str = "gzip"
 
@@ -233,6 +237,8 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
         box["edges"] = file["box"]
         for name in ("id", "species", "mass", "radius"):
             file[f"particles/discs/{name}"] = file[f"discs/{name}"]
+    for column in CHANGE_COLUMNS if layout.steered else ():
+        add(f"changes/{column.name}", column, SAMPLES)
     for column in SUMMARY_COLUMNS:
         add(f"summary/{column.name}", column, SUMMARY_ROWS)
     Commit.create(file, paths)

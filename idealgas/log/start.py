@@ -67,6 +67,10 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
         "species": tuple(s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species),
         "wall": tuple(later for wall in scene.wall if (later := wall.later(time)) is not None),
     }
+    if scene.gravity is not None:
+        update["gravity"] = scene.gravity.after(time)
+    if scene.steering is not None:
+        update["steering"] = scene.steering.after(time)
     if scene.thermostat is not None:
         update["thermostat"] = scene.thermostat.after(time)
     if scene.piston is not None:

@@ -8,7 +8,8 @@ from typing import Any, Self
 from idealgas.log.rules import LONGEST
 
 KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
-"""Fields whose sum is the number of events."""
+STEERED = "steered"
+"""Fields whose sum is the number of events; the last is absent where it is 0."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Summary:
     Attributes:
         completed: whether the run reached the end of its scene.
         end_time: time at the end, time.
-        events: number of events, the sum of the next three.
+        events: number of events, the sum of the next three, and `steered`.
         disc_collisions: number of collisions of two discs.
         wall_hits: number of collisions with walls and the piston.
         thermostat_collisions: number of thermostat collisions.
@@ -37,6 +38,7 @@ class Summary:
         threads_reason: reason for this number of threads.
         shared_slices: number of slices of time that several threads shared.
         aborted_slices: number of these that one thread had to repeat.
+        steered: number of events in which a velocity, or gravity, was changed from outside.
     """
 
     completed: bool
@@ -58,15 +60,18 @@ class Summary:
     threads_reason: str
     shared_slices: int
     aborted_slices: int
+    steered: int = 0
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:
-        """Make a summary from the fields of a log; a missing one raises the error of `found`."""
-        return cls(**{field.name: found[field.name] for field in fields(cls)})
+        """Make a summary from the fields of a log; a missing one raises the error of `found`, except `steered`."""
+        return cls(
+            **{field.name: found[field.name] for field in fields(cls) if field.name in found or field.name != STEERED}
+        )
 
     def as_dict(self) -> dict[str, Any]:
-        """Fields by name, ready for JSON."""
-        return asdict(self)
+        """Fields by name, ready for JSON; without `steered` where no event is of this kind."""
+        return {name: value for name, value in asdict(self).items() if value or name != STEERED}
 
 
 def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, Any]:
@@ -83,7 +88,7 @@ def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, 
     if found.get("threads") == 0:
         raise ValueError("threads: 0")
     if {"rows", "events", *KINDS} <= found.keys():
-        events, rows = sum(found[kind] for kind in KINDS), found["rows"]
+        events, rows = sum(found[kind] for kind in KINDS) + found.get(STEERED, 0), found["rows"]
         if found["events"] != events or rows not in (0, events + found["disc_collisions"]):
             raise ValueError(f"{found['events']:,} events in {rows:,} rows ({' + '.join(KINDS)}: {events:,})")
     return found

@@ -213,6 +213,10 @@ class LogWriter:
         """Store a sample of all observables, by declared name. epoch: number of epochs before it."""
         self._put_row("observables", {"time": time, "step": epoch, **values})
 
+    def change(self, time: float, setting: str) -> None:
+        """Store a change of the scene from a time on; it holds once a checkpoint follows."""
+        self._put_row("changes", {"time": time, "setting": setting.encode()})
+
     def snapshot(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Store a snapshot of all discs, by declared name. step: its number. The arrays are copied."""
         self._put_row("particles", {"time": time, "step": step, **arrays})

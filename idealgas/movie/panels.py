@@ -75,7 +75,7 @@ class DensityPanel:
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, some: Sequence[LogState]) -> None:
         """Draw the axes. line: colour of the mean density. some: states of the film, which decide how high they are."""
-        falls = np.array(scene.gravity.acceleration if scene.gravity else (0.0, 0.0)) != 0
+        falls = np.array(scene.properties.strongest_pull) != 0
         self._axis = int(falls[1] if falls.any() else gas.box[1] > gas.box[0])
         length = gas.box[self._axis]
         self._edges = np.linspace(0, length, BINS + 1)

@@ -33,6 +33,7 @@ SUMMARY = {
     "disc_collisions": "disc collisions",
     "wall_hits": "wall hits",
     "thermostat_collisions": "thermostat collisions",
+    "steered": "velocities changed from outside",
     "trials": "trials of pairs",
     "rows": "event rows",
     "epochs": "epochs",

@@ -57,7 +57,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
     log has no events or more than MOST_DISCS discs.
     """
     gas = log.discs
-    if not log.has_events or len(gas) > MOST_DISCS:
+    if not log.has_events or len(gas) > MOST_DISCS or log.scene.properties.later_accelerations:
         return None
     first, last = span(log, start, None)
     row, rows = log.row_at(first, "right"), rows or MOST_ROWS

@@ -25,20 +25,33 @@ LEAST_SHARE = 2.0**-40
 def make_effects(scene: Scene, gas: Gas) -> Effects:
     """Effects of a scene at time 0, with all sums; gas: its discs at time 0."""
     scene = scene.resolved()
-    start = Start(gas, scene.scene.seed, scene.properties.acceleration, *_spins(scene, gas))
+    start = _start(scene, gas)
     tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
     states = {e.field: e.make(own, start) for e, own in tables if e.make_always or e.find(own) is not None}
-    effects = Effects(**states, schedule=_schedule(scene, start) or None)
+    effects = Effects(**states, schedule=_schedule(scene, start))
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
     loses, inner = scene.properties.dissipative, inner_energy(effects, gas)
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 
-def _schedule(scene: Scene, start: Start) -> tuple[tuple[float, int, int, float], ...]:
+Schedule = tuple[tuple[float, int, int, float], ...]
+
+
+def make_schedule(scene: Scene, gas: Gas) -> Schedule | None:
     """Changes in time of all effects, in order: time, index of the effect, item of its state, value."""
+    return _schedule(scene, _start(scene, gas))
+
+
+def _start(scene: Scene, gas: Gas) -> Start:
+    first, later = scene.properties.acceleration, scene.properties.later_accelerations
+    return Start(gas, scene.scene.seed, first, *_spins(scene, gas), later)
+
+
+def _schedule(scene: Scene, start: Start) -> Schedule | None:
     tables = ((k, effect, scene.tables_of(effect)) for k, effect in enumerate(EFFECTS))
     own = ((k, effect.schedule(table, start)) for k, effect, table in tables if effect.find(table) is not None)
-    return tuple(sorted((change.time, k, change.item, change.value) for k, changes in own for change in changes))
+    found = ((change.time, k, change.item, change.value) for k, changes in own for change in changes)
+    return tuple(sorted(found)) or None
 
 
 def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
@@ -60,6 +73,7 @@ def with_sums(
     gives_energy: whether walls give energy to discs, or take some. loses_energy: whether collisions lose energy.
     inner_energy: energy of the discs that collisions may turn into kinetic energy.
     """
+    potentials_change = any(EFFECTS[k].energy for _, k, *_ in effects.schedule or ())
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
     largest = max(0.5 * float(gas.mass.mean()) * speed**2, driving_energy(gas, effects), inner_energy)
     energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
@@ -67,7 +81,7 @@ def with_sums(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
         bath_energy=None if scene.properties.bath is None else make_sums([energy]),
-        step_energy=make_sums([energy]) if any(EFFECTS[k].energy for _, k, *_ in effects.schedule or ()) else None,
+        step_energy=make_sums([energy]) if potentials_change or effects.steering is not None else None,
         flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
     )
 

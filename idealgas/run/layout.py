@@ -4,9 +4,25 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from idealgas.columns import BLOCK, EVENT_COLUMNS, POSITION, TRIALS, VELOCITY, Arrays, Column, Values, event_columns
+import numpy as np
+
+from idealgas.columns import (
+    BLOCK,
+    EVENT_COLUMNS,
+    OUTSIDE,
+    POSITION,
+    TRIALS,
+    VELOCITY,
+    Arrays,
+    Column,
+    EventBatch,
+    Kind,
+    Values,
+    event_columns,
+)
 from idealgas.effects import bundle
 from idealgas.effects.bundle import Effects
+from idealgas.engine.simulation import Simulation
 from idealgas.log import Checkpoint, LogLayout, Wall
 from idealgas.run.effects import exact_sums, observed_sums, restore_sums
 from idealgas.run.energy import Energy, energy_of
@@ -43,6 +59,7 @@ def layout_of(
         checkpoint_values=(*totals(effects), *extra_state, *whole_state(effects)),
         observables=(*DIAGNOSTICS, *totals(effects), *extra_state, *observed(gas, effects)),
         snapshot_arrays=tuple(snapshot_state(gas, effects, has_positions)) if scene.log.snapshot_every else (),
+        steered=scene.steering is not None,
         most_rows=2 * (scene.run.events or BLOCK),
         compression=scene.log.compression,
     )
@@ -69,6 +86,14 @@ def snapshot_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
     """Arrays per disc that a snapshot stores: those that are columns of events."""
     state = disc_state(gas, effects, has_positions)
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
+
+
+def write_steered(batch: EventBatch, discs: np.ndarray, simulation: Simulation) -> None:
+    """Write a row for each of these discs, whose velocity was changed at the start of the epoch."""
+    rows = batch.rows(0, len(discs))
+    rows.time[:], rows.disc[:], rows.partner[:], rows.kind[:] = simulation.time, discs, OUTSIDE, Kind.STEERED
+    for column, values in snapshot_state(simulation.gas, simulation.effects, True).items():
+        getattr(rows, column.name)[:] = values[discs]
 
 
 def whole_state(effects: Effects) -> Values:

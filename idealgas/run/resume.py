@@ -16,7 +16,8 @@ from idealgas.physics.exact_sum import SumRangeError
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
 from idealgas.run.layout import layout_of, restore, row_columns, totals
-from idealgas.run.simulate import LoggedRun, Progress, RunHistory, method_of, stop_of
+from idealgas.run.logged_run import LoggedRun, Progress, RunHistory, stop_of
+from idealgas.run.simulate import method_of
 from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
@@ -57,7 +58,7 @@ def resume(
     with open_log(path) as log:
         if log.live:
             raise LogError(f"{log.path}: {IN_USE}")
-        scene = _scene_to_resume(log, overrides)
+        text, scene = _scene_to_resume(log, overrides)
         if log.complete and dump_document(scene) == dump_document(log.scene):
             return Summary.of(log.summary)
         last = log.checkpoints[-1] if len(log.checkpoints) else None
@@ -69,26 +70,29 @@ def resume(
         path,
         None if last is None else -1,
         fsync=scene.log.fsync,
-        scene_text=dump_document(scene),
+        scene_text=text,
         command=command,
         commit=log.commit,
     ) as writer:
-        return LoggedRun(scene, simulation, writer, past, compiled_before).run(on_progress, interrupted)
+        return LoggedRun(scene, simulation, writer, past, compiled_before).finish(on_progress, interrupted)
 
 
-def _scene_to_resume(log: Log, overrides: Sequence[str]) -> Scene:
+def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
+    """Text of the scene with other ends, and that scene with the changes of a program."""
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     before = log.scene
-    scene = parse_scene(log.scene_text, f"{log.path}: scene", overrides, discs=log.given)
+    name = f"{log.path}: scene"
+    text = dump_document(parse_scene(log.scene_text, name, overrides, discs=log.given))
+    scene = parse_scene(text, name, discs=log.given, changes=log.changes)
     run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
     expected = before.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
     if changed:
         tables = " and ".join(f"[{name}]" for name in changed)
         raise LogError(f"{log.path}: cannot be resumed with another {tables}: only {', '.join(STOP_RULES)} may change")
-    return scene
+    return text, scene
 
 
 def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:

@@ -4,6 +4,7 @@ from idealgas.effects.gravity import Gravity
 from idealgas.effects.piston import Piston
 from idealgas.effects.restitution import Restitution
 from idealgas.effects.rotation import Rotation
+from idealgas.effects.steering import Steering
 from idealgas.effects.thermal import ThermalSide
 from idealgas.effects.thermostat import Thermostat
 from idealgas.effects.vibration import VibratingSide
@@ -28,6 +29,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Species",
+    "Steering",
     "ThermalSide",
     "Thermostat",
     "VibratingSide",

@@ -164,7 +164,7 @@ class Document(_DiscsAndEffects):
     @property
     def body_force(self) -> Vector:
         """Constant acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
-        gravity = self.properties.acceleration
+        gravity = self.properties.strongest_pull
         body_force = list(gravity)
         if self.piston:
             axis = self.piston.axis

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from os import PathLike
 
+from idealgas.scene.changes import SceneChange, apply_change
 from idealgas.scene.discs import Discs
 from idealgas.scene.scene import Scene, make_scene
 from idealgas.toml.issues import Key
@@ -25,11 +26,16 @@ def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scen
 
 
 def parse_scene(
-    text: str, name: str = "<scene>", overrides: Sequence[str] = (), *, discs: Discs | None = None
+    text: str,
+    name: str = "<scene>",
+    overrides: Sequence[str] = (),
+    *,
+    discs: Discs | None = None,
+    changes: Sequence[SceneChange] = (),
 ) -> Scene:
     """Make a scene from TOML text and check all of it, as `load_scene` does.
 
-    name: file name in messages. discs: discs from which the scene of a log starts.
+    name: file name in messages. discs: discs from which the scene of a log starts. changes: made during its run.
     """
     text = text.replace("\r\n", "\n")
     document = parse_document(text, name)
@@ -40,4 +46,9 @@ def parse_scene(
             overridden[apply(override, document)] = f"--set {override}"
         except OverrideError as error:
             errors.append(f"--set {override}: {error}")
+    for change in changes:
+        try:
+            apply_change(document, change)
+        except OverrideError as error:
+            errors.append(f"{change.setting}: {error}")
     return make_scene(document, Origin(text, name, overridden), errors, discs=discs)

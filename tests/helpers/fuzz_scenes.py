@@ -35,6 +35,7 @@ EFFECTS = (
     "fixed",
     "permeable",
     "arcs",
+    "steering",
 )
 LENGTHS = (1.0, 1e-9, 1e9, 2.0**-10, 1e-3, 1e4)
 SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
@@ -252,7 +253,10 @@ def tables_of(draw) -> dict[str, Any]:
     if "gravity" in called and not periodic.all():
         pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
         direction = np.where(periodic, 0.0, pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0)))
-        tables["gravity"] = {"acceleration": (pull * direction).tolist()}
+        gravity = (pull * direction).tolist()
+        if not (piston and "mass" in piston) and draw(st.booleans()):
+            gravity = [[0.0, gravity], [pick(draw, 0.02, 0.5), [-share * component for component in gravity]]]
+        tables["gravity"] = {"acceleration": gravity}
     if spins:
         tables["rotation"] = {"inertia": pick(draw, 0.5, 1.0, 1e-6), "roughness": pick(draw, 1.0, 0.0, -0.5, 0.99)}
         tables["rotation"]["wall_roughness"] = pick(draw, -1.0, 1.0, 0.5)
@@ -261,6 +265,8 @@ def tables_of(draw) -> dict[str, Any]:
         tables["restitution"]["contact_duration"] = pick(draw, 1e-6, 1e-3)
     if piston:
         tables["piston"] = piston
+    if "steering" in called:
+        tables["steering"] = {"reversed_at": pick(draw, 0.3, 1.0, [0.01, 0.02], [0.1, 1.0])}
     if "thermostat" in called:
         tables["thermostat"] = {"temperature": in_steps(draw, *(masses[0] * x for x in (1.0, 1e-4, 100.0)))}
         tables["thermostat"]["rate"] = pick(draw, 0.1, 1e-3, 10.0)
@@ -279,7 +285,7 @@ def dimension(path: tuple[str, ...]) -> tuple[int, int, int]:
         "temperature": (0, 2, 1), "thermal": (0, 2, 1), "spin_temperature": (0, 2, 1), "acceleration": (-1, 2, 0),
         "pressure": (-2, 2, 1), "until": (1, -1, 0), "opens_at": (1, -1, 0), "closes_at": (1, -1, 0),
         "contact_duration": (1, -1, 0), "rate": (-1, 1, 0), "uniform": (1, 0, 0), "values": (1, 0, 0),
-        "density": (-2, 0, 1), "amplitude": (1, 0, 0), "frequency": (-1, 1, 0),
+        "reversed_at": (1, -1, 0), "density": (-2, 0, 1), "amplitude": (1, 0, 0), "frequency": (-1, 1, 0),
     }  # fmt: skip
     return powers.get(key, (0, 0, 0))
 
@@ -288,7 +294,7 @@ def in_units(value, units, path=()):
     """The tables in other units."""
     if isinstance(value, dict):
         return {key: in_units(item, units, (*path, key)) for key, item in value.items()}
-    stepped = path[-1:] in (("temperature",), ("thermal",), ("pressure",), ("velocity",))
+    stepped = path[-1:] in (("temperature",), ("thermal",), ("pressure",), ("velocity",), ("acceleration",))
     if stepped and isinstance(value, list) and isinstance(value[0], list):
         return [[in_units(time, units, ("until",)), in_units(x, units, path)] for time, x in value]
     if isinstance(value, list):

@@ -15,15 +15,15 @@ import numpy as np
 
 import idealgas.log.writer as log_writer
 from idealgas.columns import BLOCK, EventBatch, Kind
+from idealgas.effects.thermostat import THERMOSTAT_COLLISIONS
 from idealgas.log import Column, Log, LogError, LogLayout, LogWriter, box_walls, open_log
-from idealgas.log.schema import THERMOSTAT_COLLISIONS
 from idealgas.state import Gas
 
 DISCS = 25
 STEP = 2.0**-10
 OBSERVABLES = (Column("kinetic_energy", "f8", (), "energy"), Column("hits", "i8"))
 VALUES = (Column("hits", "i8"),)
-BATH_VALUES = (*VALUES, Column(THERMOSTAT_COLLISIONS, "i8"))
+BATH_VALUES = (*VALUES, THERMOSTAT_COLLISIONS)
 """Columns of checkpoints of a log with a heat bath."""
 
 
@@ -82,7 +82,7 @@ def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) 
 def write_checkpoint(writer: LogWriter) -> None:
     row = writer.rows
     writer.observe(row * STEP, row, {"kinetic_energy": row / 3, "hits": row})
-    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, THERMOSTAT_COLLISIONS: 0})
+    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, THERMOSTAT_COLLISIONS.name: 0})
 
 
 def checkpoint_arrays(row: int) -> dict[str, np.ndarray]:

@@ -31,7 +31,8 @@ from idealgas_cli.main import main
 import idealgas.log.writer as log_writer
 from idealgas import load_scene, open_log, parse_scene
 from idealgas.log.schema import VERSION
-from idealgas.run.simulate import Progress, simulate
+from idealgas.run.logged_run import Progress
+from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 
 FOLDER = ROOT / "tests" / "cases" / "logs"

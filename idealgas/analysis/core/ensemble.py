@@ -55,7 +55,9 @@ def ensemble(log: Log) -> Ensemble:
     found = known_ensemble(log)
     if found is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        given = f"under {', '.join(causes)}" if causes else "for a single disc, which shares it with no other"
+        alone = "for a single disc, which shares it with no other"
+        changing = "where values change in time" if log.scene.properties.varies else ""
+        given = f"under {', '.join(causes)}" if causes else changing or alone
         raise NotApplicableError(f"{log.path}: no temperature is known beforehand {given}")
     return found
 

@@ -124,7 +124,10 @@ def track(scene: Document, piston: Piston) -> list[tuple[float, str]]:
 
 
 def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check that a piston with a mass is pressed on the gas."""
+    """Check that a piston with a mass is pressed on the gas, under one gravity."""
+    if scene.properties.later_accelerations:
+        both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", "mass"))
+        yield Issue(both, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
     times = [time for time, _ in steps_of(piston.pressure)]
     accelerations = (piston.acceleration(scene.box.size, scene.properties.acceleration, time) for time in times)
     acceleration = max(accelerations, key=lambda a: a * piston.outward)

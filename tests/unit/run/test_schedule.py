@@ -10,28 +10,36 @@ from helpers.support import ROOT
 from idealgas import load_scene, open_log, parse_scene, resume, simulate
 from idealgas.columns import Kind
 from idealgas.effects.schedule import description, steps_of, value_at
+from idealgas.errors import NotApplicableError
+from idealgas.log.flights import Flights
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "steps.toml"
+FALLS = GOLDEN.with_name("gravity-in-steps.toml")
 DRIVEN = "piston={ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8, -0.125]] }"
 DISC = "[[disc]]\nposition = {}\nvelocity = {}\nradius = 0.5\n"
 
 
 @pytest.mark.parametrize(
-    "piston", [pytest.param((), id="pressed"), pytest.param((DRIVEN,), marks=pytest.mark.slow, id="driven")]
+    ("scene", "overrides", "changes"),
+    [
+        pytest.param(GOLDEN, (), {3, 4, 5, 6, 8}, id="pressed"),
+        pytest.param(GOLDEN, (DRIVEN,), {3, 4, 5, 6, 8}, marks=pytest.mark.slow, id="driven"),
+        pytest.param(FALLS, (), {1.5, 4, 7}, id="falls"),
+    ],
 )
-def test_the_same_by_brute_force_and_resumed(tmp_path, piston):
+def test_the_same_by_brute_force_and_resumed(tmp_path, scene, overrides, changes):
     whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
-    summary = simulate(load_scene(GOLDEN, piston), whole)
-    simulate(load_scene(GOLDEN, [*piston, "run.method=brute_force"]), oracle)
-    simulate(load_scene(GOLDEN, [*piston, "run.until=2"]), resumed)
-    for until in (4, 7.5, 12):
+    summary = simulate(load_scene(scene, overrides), whole)
+    simulate(load_scene(scene, [*overrides, "run.method=brute_force"]), oracle)
+    simulate(load_scene(scene, [*overrides, "run.until=1"]), resumed)
+    for until in (4, 7.5, summary.end_time):
         resume(resumed, [f"run.until={until}"])
     assert differences(resumed, whole) == []
     with open_log(whole) as log, open_log(oracle) as other:
         assert len(log) > 300
         columns = list(zip(log.chunks(), other.chunks(), strict=True))
         assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
-        assert {3, 4, 5, 6, 8} <= set(log.observables["energy"][0].tolist())
+        assert changes <= set(log.observables["energy"][0].tolist())
     assert abs(summary.energy_drift) < 1e-12
 
 
@@ -81,6 +89,31 @@ def test_a_piston_falls_on_the_parabolas_of_its_pressures(tmp_path):
         place, given = log.observables["piston_position"], log.observables["step_energy"][1]
     assert dict(zip(*(values.tolist() for values in place), strict=True)) == {0: 9, 2: 8, 3: 6.5, 4: 4.375}
     assert given[-1] == (2 * 8) + (-3 * 6.5)  # ΔP L X
+    assert summary.energy_drift == 0
+
+
+def test_a_disc_falls_on_the_parabolas_of_its_gravities(tmp_path):
+    """Up at 1 from y = 2: 4 at t = 2, then y = 4 + s - s²/2 to 4 at t = 4, where v = -1 and g = (1/2, 0) takes over."""
+    gravity = "gravity = { acceleration = [[0, [0, 0]], [2, [0, -1]], [4, [0.5, 0]]] }\nbox.size = [20, 8]\n"
+    text = gravity + "run.until = 6\n" + DISC.format([2, 2], [0, 1])
+    summary = simulate(parse_scene(text), tmp_path / "run.h5")
+    y = {0: 2, 1: 3, 2: 4, 3: 4.5, 4: 4, 5: 3, 6: 2}
+    with open_log(tmp_path / "run.h5") as log:
+        states = list(log.frames(list(y)))
+        assert [state.position[0].tolist() for state in states] == [
+            [2 + max(t - 4, 0) ** 2 / 4, height] for t, height in y.items()
+        ]
+        assert [state.velocity[0].tolist() for state in states] == [
+            [0, 1], [0, 1], [0, 1], [0, 0], [0, -1], [0.5, -1], [1, -1]
+        ]  # fmt: skip
+        flights = Flights.joined(log.flights([0, 1, 3, 5, 6]))
+        assert flights.end.tolist() == [1, 2, 3, 4, 5, 6]
+        assert flights.end_position[:, 1].tolist() == [3, 4, 4.5, 4, 3, 2]
+        assert flights.displacement.tolist() == [[0, 1], [0, 1], [0, 0.5], [0, -0.5], [0.25, -1], [0.75, -1]]
+        assert flights.end_velocity.tolist() == [[0, 1], [0, 1], [0, 0], [0, -1], [0.5, -1], [1, -1]]
+        assert log.observables["step_energy"][1][-1] == 4 - 5  # -m Δg·r
+        with pytest.raises(NotApplicableError, match="not applicable to a gas whose gravity changes in time"):
+            assert log.gravity
     assert summary.energy_drift == 0
 
 

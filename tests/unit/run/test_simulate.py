@@ -10,7 +10,8 @@ from helpers.support import ROOT
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.log import LogWriter, open_log
 from idealgas.run.energy import Energy
-from idealgas.run.simulate import ONE_WAS_FASTER, simulate
+from idealgas.run.logged_run import ONE_WAS_FASTER
+from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
 
 CONFIGS = ROOT / "configs"

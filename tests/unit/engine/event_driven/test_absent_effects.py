@@ -24,7 +24,8 @@ MARKERS = {
     "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
     "thermostat": {"thermostat.uniform", "thermostat.andersen_collision"},
 }
-"""Functions that only make sense with an effect. Restitution has none: its numbers would be read in those of others."""
+"""Functions that only make sense with an effect. Restitution has none, as its numbers would be
+read in those of others, and steering none, as it happens between epochs."""
 
 PROGRAM = """
 import functools, json, sys
@@ -91,4 +92,4 @@ def test_with_the_effects_the_same_functions_run(tmp_path):
     """What the names above are worth: each is called where its effect is."""
     called, _ = run(tmp_path, "all", NUMBA_DISABLE_JIT="1")
     assert set().union(*MARKERS.values()) <= called
-    assert set(MARKERS) | {"restitution"} == set(EFFECT_NAMES)
+    assert set(MARKERS) | {"restitution", "steering"} == set(EFFECT_NAMES)

@@ -1,0 +1,64 @@
+"""Velocities that change from outside: reversed at given times, or set by a program."""
+
+from collections.abc import Iterator
+
+from pydantic import Field
+
+from idealgas.columns import Column
+from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.properties import Properties
+from idealgas.effects.schedule import Change, Times, as_times, without_past
+from idealgas.toml.issues import Issue
+from idealgas.toml.table import Table
+
+STEERED = Column("steered", "i8")
+
+
+class Steering(Table):
+    """`[steering]`: velocities change from outside, at given times or by a Python program (`idealgas.open_run`).
+
+    Where all velocities and spins are reversed, an elastic gas runs back.
+    """
+
+    reversed_at: Times | None = Field(
+        default=None, description="time > 0, or times, at which all velocities and spins are reversed"
+    )
+
+    def after(self, time: float) -> "Steering":
+        """The table in a scene whose clock starts at a later time."""
+        return self.model_copy(update={"reversed_at": without_past(self.reversed_at, time)})
+
+
+def _check(tables: Tables) -> Iterator[Issue]:
+    times = as_times(tables.own.reversed_at)
+    if sorted(set(times)) != list(times) or 0 in times:
+        yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
+
+
+def _make(tables: Tables, start: Start) -> tuple[float, ...] | None:
+    """Times of the reversals; discs are steered by changes of gravity, too."""
+    if tables.own is None:
+        return () if start.later_accelerations else None
+    return as_times(tables.own.reversed_at)
+
+
+EFFECT = EffectSpec(
+    name="steering",
+    field="steering",
+    key="steering",
+    table=Steering,
+    description="[steering]: reversed_at",
+    properties=lambda tables: Properties(
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        varies=True,
+        changes=as_times(tables.own.reversed_at),
+    ),
+    check=_check,
+    make=_make,
+    make_always=True,
+    schedule=lambda tables, start: (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at)),
+    counted=STEERED,
+    sample_together=Sample(),
+    samples=(Sample(tables=lambda side: "[steering]\nreversed_at = 1\n"),),
+)

@@ -1,0 +1,12 @@
+"""Time reversal: the state from which a gas runs back along its way, if its motion is reversible."""
+
+from typing import TypeVar
+
+import numpy as np
+
+Velocity = TypeVar("Velocity", float, np.ndarray)
+
+
+def reversed_velocity(velocity: Velocity) -> Velocity:
+    """Velocity, or angular velocity, of the reversed motion; 0 stays without a sign."""
+    return 0.0 - velocity

@@ -1,0 +1,131 @@
+"""A run that a Python program advances, looks at and steers."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from idealgas.engine.records import UNLIMITED
+from idealgas.engine.simulation import Stop
+from idealgas.errors import UserError
+from idealgas.log import LogState
+from idealgas.run.effects import make_schedule
+from idealgas.run.layout import by_name, snapshot_state
+from idealgas.run.logged_run import LoggedRun
+from idealgas.scene.changes import SceneChange, changed_scene
+from idealgas.toml.table import LARGEST
+
+
+class SteeredRun(LoggedRun):
+    """A run on the way to the end of its scene, which `open_run` begins.
+
+    Each change ends an epoch, is written into the log, and is followed by a checkpoint.
+
+    Attributes:
+        time: time that it has reached.
+        events: number of events so far.
+        ended: whether it has reached the end of its scene.
+        summary: summary of the run; None until it is finished.
+    """
+
+    @property
+    def time(self) -> float:
+        """Time that the run has reached."""
+        return self._simulation.reached
+
+    @property
+    def events(self) -> int:
+        """Number of events so far."""
+        return self._simulation.counters.events
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run has reached the end of its scene."""
+        return self._slice_events > 0 and self._simulation.finished(self._stop)
+
+    def advance(self, *, until: float = math.inf, events: int = UNLIMITED) -> bool:
+        """Simulate to a time or by a number of events, at most to the end of the scene.
+
+        Args:
+            until: time.
+            events: number of events from now on.
+
+        Returns:
+            Whether the scene goes on: False once its end is reached.
+
+        Raises:
+            UserError: as `simulate` does.
+        """
+        stop = self._stop
+        if until > self.time:
+            until, events = min(until, stop.time), min(self.events + events, stop.events)
+            self._advance(stop._replace(time=until, events=events))
+        return not self.ended
+
+    def state(self) -> LogState:
+        """All discs at the time reached, in order of id."""
+        gas, effects = self._simulation.state()
+        arrays = by_name(snapshot_state(gas, effects, self._simulation.method.has_positions))
+        arrays.setdefault("position", np.full_like(gas.velocity, np.nan))
+        return LogState(self.time, **arrays)
+
+    def set_velocities(self, velocity: ArrayLike, discs: ArrayLike | None = None) -> None:
+        """Give discs new velocities, at the time reached. The log has a row of kind STEERED for each that changes.
+
+        Args:
+            velocity: (n, 2), length/time.
+            discs: (n,), their ids; all by default.
+
+        Raises:
+            UserError: if the scene has no table [steering], or for arrays of other shapes or values.
+        """
+        number = len(self._simulation.gas)
+        ids = np.arange(number) if discs is None else np.asarray(discs, int)
+        given = np.asarray(velocity, float)
+        if ids.ndim != 1 or not ((ids >= 0) & (ids < number)).all():
+            raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
+        if given.shape != (len(ids), 2) or not (np.abs(given) <= LARGEST).all():
+            raise UserError(f"velocity: not ({len(ids)}, 2) numbers up to {LARGEST:g} (got {given.shape})")
+        self._arrive()
+        self._stall.end_epoch()
+        self._simulation.set_velocities(ids, given)
+        self._begin_epoch(changed=True)
+
+    def reverse(self) -> None:
+        """Reverse all velocities and spins, and the velocity of a piston with a mass, at the time reached.
+
+        Raises:
+            UserError: if the scene has no table [steering].
+        """
+        self._arrive()
+        self._stall.end_epoch()
+        self._simulation.reverse()
+        self._begin_epoch(changed=True)
+
+    def change(self, setting: str) -> None:
+        """Change a value of the scene, from the time reached on; later steps of it in the scene are dropped.
+
+        Args:
+            setting: "table.key=value" for a value that may be in steps, such as "thermostat.temperature=2", or
+                "wall.NAME.open=true" or "false" for a gate.
+
+        Raises:
+            UserError: if the scene has no table [steering], or SceneError if the setting does not fit it.
+        """
+        self._arrive()
+        if self.time == 0:
+            raise UserError("nothing has happened yet: change the scene itself")
+        simulation, change = self._simulation, SceneChange(self.time, setting)
+        self._scene = changed_scene(self._scene, change)
+        self._stall.end_epoch()
+        simulation.reschedule(make_schedule(self._scene, simulation.gas))
+        self._log.change(*change)
+        self._begin_epoch(changed=True)
+
+    def _arrive(self) -> None:
+        """Make sure that everything up to the time reached has happened, so that the epoch can end there."""
+        simulation = self._simulation
+        if self._scene.steering is None:
+            raise UserError("only a scene with a table [steering] can be changed in its run")
+        if not simulation.epoch_over:
+            self._advance(Stop(time=math.nextafter(self.time, math.inf) if self.time else 0.0))

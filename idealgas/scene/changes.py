@@ -1,0 +1,63 @@
+"""Changes that a program makes to a scene while it runs: the past stays, and the rest of the steps is replaced."""
+
+import copy
+from typing import Any, NamedTuple
+
+from idealgas.effects.schedule import SteppedTable, as_times, steps_of
+from idealgas.scene.scene import Scene, make_scene
+from idealgas.toml.issues import SceneError
+from idealgas.toml.overrides import OverrideError, apply
+from idealgas.toml.text import Origin
+
+OPEN = "open"
+"""Key of a wall that opens it, or closes it if false."""
+
+
+class SceneChange(NamedTuple):
+    """A change of a scene.
+
+    Attributes:
+        time: from which it holds, time.
+        setting: "table.key=value" for a value that may be in steps, or "wall.NAME.open=true" or "false".
+    """
+
+    time: float
+    setting: str
+
+
+def changed_scene(scene: Scene, change: SceneChange) -> Scene:
+    """The scene with a change. Raises SceneError if it is none of a scene, or the changed scene is invalid."""
+    document = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
+    try:
+        apply_change(document, change)
+    except OverrideError as error:
+        raise SceneError([f"{change.setting}: {error}"]) from None
+    return make_scene(document, Origin(name=change.setting), discs=scene.given)
+
+
+def apply_change(document: dict[str, Any], change: SceneChange) -> None:
+    """Make a change in a document. Raises OverrideError if the document has no such key."""
+    after = copy.deepcopy(document)
+    *tables, key = apply(change.setting, after)
+    before: Any = document
+    value: Any = after
+    for name in tables:
+        known = before.keys() if isinstance(before, dict) else range(len(before))
+        if name not in known:
+            raise OverrideError(f"no {name} in the scene")
+        before, value = before[name], value[name]
+    value = value[key]
+    if key == OPEN and tables[0] == "wall" and isinstance(value, bool):
+        past = {name: [t for t in as_times(before.pop(name, None)) if t <= change.time] for name in _GATE}
+        past[_GATE[not value]].append(change.time)
+        before.update({name: times for name, times in past.items() if times})
+    elif key in _STEPPED and key in before:
+        steps = steps_of(before[key])
+        before[key] = [*(step for step in steps if step[0] < change.time), (change.time, value)]
+    else:
+        allowed = ", ".join(sorted((*_STEPPED, OPEN)))
+        raise OverrideError(f"not a value that can change (allowed {allowed}, if the scene has it)")
+
+
+_GATE = ("opens_at", "closes_at")
+_STEPPED = {key for table in SteppedTable.__subclasses__() for key in table.in_steps}
