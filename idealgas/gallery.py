@@ -14,6 +14,8 @@ from idealgas.examples import SCENE, load_example, path_of
 from idealgas.files import check_output, written
 from idealgas.report.page import description_html, text_of
 
+ABOUT = "The example scenes, with the discs at the end of the run, coloured by speed or, in mixtures, by species."
+
 PAGE = Template("""<!doctype html>
 <html lang="en">
 <head>
@@ -33,7 +35,7 @@ main p { max-width: 42rem; }
 <body>
 <header>
 <h1>Gallery of idealgas</h1>
-<p>The example scenes, with the discs at the end of the run, coloured by speed.</p>
+<p>$about</p>
 <nav aria-label="Scenes"><ul>$contents</ul></nav>
 </header>
 <main>
@@ -69,6 +71,7 @@ def draw(name: str, path: Path) -> None:
     from idealgas.analysis.registry import analyse
     from idealgas.log import open_log
     from idealgas.movie.film import paint_frame
+    from idealgas.movie.painter import Colouring
     from idealgas.run.simulate import simulate
 
     with TemporaryDirectory(prefix="idealgas-gallery-") as folder:
@@ -76,7 +79,8 @@ def draw(name: str, path: Path) -> None:
         simulate(load_example(name), log_path)
         with open_log(log_path) as log:
             if log.has_positions and log.has_events:
-                paint_frame(log, path, log.end_time, panel="none", force=True)
+                colouring: Colouring = "species" if len(log.discs.species_names) > 1 else "speed"
+                paint_frame(log, path, log.end_time, colouring=colouring, panel="none", force=True)
             else:
                 save(analyse(log, "histogram").plot(), path, force=True)
 
@@ -112,7 +116,7 @@ def write_gallery(
             draw(name, picture)
             scenes.append(_scene(name, picture.read_bytes()))
     contents = "".join(f'<li><a href="#{name}">{escape(name)}</a></li>' for name in names)
-    page = PAGE.substitute(style=text_of("report.css"), contents=contents, scenes="\n".join(scenes))
+    page = PAGE.substitute(style=text_of("report.css"), about=ABOUT, contents=contents, scenes="\n".join(scenes))
     with written(path, kind, force) as part:
         part.write_text(page, encoding="utf-8")
     return path
@@ -125,5 +129,5 @@ def _scene(name: str, picture: bytes) -> str:
     return (
         f'<section id="{name}"><h2>{escape(title)}</h2>'
         f'<img src="data:image/png;base64,{data}" alt="{escape(title)}, at the end of the run">'
-        f"{description}<pre>{escape(chr(10).join(commands(name)))}</pre></section>"
+        f'{description}<pre tabindex="0">{escape(chr(10).join(commands(name)))}</pre></section>'
     )

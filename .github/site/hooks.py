@@ -73,9 +73,9 @@ def _linked(source: str, repository: str) -> str:
 
 def _gallery() -> str:
     """Page with every example scene: its picture, its description and its commands."""
-    from idealgas.gallery import commands, described
+    from idealgas.gallery import ABOUT, commands, described
 
-    parts = ["# Gallery", "The example scenes, with the discs at the end of the run, coloured by speed."]
+    parts = ["# Gallery", ABOUT]
     for path in SCENES:
         title, description = described(path.stem)
         parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", description]

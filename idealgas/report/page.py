@@ -120,7 +120,7 @@ def description_html(description: str) -> str:
     for text in filter(None, description.strip("\n").split("\n\n")):
         lines = text.splitlines()
         if all(line.startswith("  ") for line in lines):
-            html += f"<pre>{chr(10).join(map(escape, lines))}</pre>"
+            html += f'<pre tabindex="0">{chr(10).join(map(escape, lines))}</pre>'
         else:
             html += f"<p>{escape(' '.join(text.split()))}</p>"
     return html

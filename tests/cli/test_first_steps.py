@@ -60,7 +60,7 @@ def test_the_gallery_of_a_scene_is_one_page_with_its_picture(tmp_path):
     text = html.unescape(page)
     assert f"<h2>{scene['title']}</h2>" in text
     prose, table, *_ = scene["description"].split("\n\n")
-    assert f"<p>{' '.join(prose.split())}</p><pre>{table}</pre>" in text
+    assert f'<p>{" ".join(prose.split())}</p><pre tabindex="0">{table}</pre>' in text
     assert "idealgas run corner.toml -o corner.h5" in text
     (picture,) = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
     with Image.open(io.BytesIO(base64.b64decode(picture))) as image:

@@ -194,11 +194,11 @@ def test_relaxation(run, mass):
 
 @pytest.mark.slow
 def test_szilard(run):
-    """The work of a slow expansion is T ln (L - 2R)/(L/2 - 2R); in the mean of runs."""
+    """The work of a slow expansion is T ln (L - 2R)/(L/2 - 2R), in the mean of runs; their spread is 0.04."""
     works = []
-    for seed in range(1, 9):
-        log = run("szilard", f"scene.seed={seed}")
-        course = evolution(log)
-        assert np.abs(course.balance).max() < 1e-12
-        works.append(-course.given["piston"][-1])
-    agrees(of_runs(works, math.log((2 - 0.002) / (1 - 0.002))), 0.01)
+    for seed in range(100, 124):
+        faster = "piston.velocity=0.000244140625", "run.until=4096", "log.events=false"
+        log = run("szilard", f"scene.seed={seed}", *faster)
+        assert abs(log.summary["energy_drift"]) < 1e-12
+        works.append(-log.observables["wall_energy"][1][-1][4])
+    agrees(of_runs(works, math.log((2 - 0.002) / (1 - 0.002))), 0.02)
