@@ -12,6 +12,7 @@ from typing import get_args
 
 import click
 import h5py
+import numpy as np
 import pytest
 from helpers.readme_pages import (
     LINK,
@@ -31,13 +32,15 @@ from helpers.support import ROOT
 from idealgas_cli.main import main
 from pydantic import BaseModel
 
+from idealgas.log import open_log
 from idealgas.scene import Scene
 
-README, SCENES, ENGINE, LOG, ACCURACY, SWEEP, TESTS = (
+README, SCENES, ENGINE, LOG, RUN, ACCURACY, SWEEP, TESTS = (
     "README.md",
     "configs/README.md",
     "idealgas/engine/README.md",
     "idealgas/log/README.md",
+    "idealgas/run/README.md",
     "idealgas/accuracy/README.md",
     "idealgas/sweep/README.md",
     "tests/README.md",
@@ -226,6 +229,19 @@ def test_every_dataset_of_a_log_is_listed(folder):
             assert observable[1] in described
             name = f"observables/NAME/{observable[2]}"
         assert name in described
+
+
+@pytest.mark.slow
+def test_code_of_steering_runs(folder):
+    """The gas returns as far as the page says; the demon has sorted the discs by speed."""
+    run_blocks(RUN, blocks(RUN, "bash"))
+    with open_log("loschmidt.h5") as log:
+        out, back = log.state_at(1.0), log.state_at(21.0)
+    assert f"{np.sqrt(((out.position - back.position) ** 2).sum(axis=1).mean()):.3f}" == "0.013"
+    assert (back.position[:, 0] < 10).all()
+    (demon,) = blocks(RUN, "python")
+    assert demon.text.count("\n") <= 20
+    assert re.findall(r"temperature (\S+)", run_python(demon.text, RUN)) == ["0.285", "0.707"]
 
 
 # ── engine, analyses, accuracy, sweeps ──
