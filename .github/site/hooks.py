@@ -78,6 +78,7 @@ def _gallery() -> str:
     parts = ["# Gallery", ABOUT]
     for path in SCENES:
         title, description = described(path.stem)
+        description = description.replace("<pre ", '<pre style="overflow-x: auto" ')  # the theme has none for it
         parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", description]
         parts.append("\n".join(("```bash", *commands(path.stem), "```")))
     return "\n\n".join(parts) + "\n"
