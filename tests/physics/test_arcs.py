@@ -8,6 +8,8 @@ from helpers.log_compare import differences
 from helpers.support import ROOT
 
 from idealgas import load_scene, open_log, parse_scene, resume, simulate
+from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.walls import WallImpulses
 from idealgas.columns import Kind
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "arcs.toml"
@@ -53,6 +55,11 @@ def test_chords_of_a_round_box(tmp_path):
         assert np.diff(rows.time) == pytest.approx(2 * math.sqrt(4.5**2 - 1.6**2), abs=1e-11)
         assert (rows.kind == Kind.WALL).all()
         assert (rows.partner == -5).all()
+        impulses = WallImpulses(log)
+        stream(log, np.array([rows.time[0], rows.time[-1]]), [impulses])
+        push = impulses.faces[0, 4] / (rows.time[-1] - rows.time[0])
+        normal = 1 / 4.5  # v² less L²/S², over S: twice the normal velocity in the time of a chord
+        assert push == pytest.approx(np.array([[normal, 0], [0, 0]]), abs=1e-12)
 
 
 @pytest.fixture(scope="module")
