@@ -15,8 +15,8 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, cached_property, update_wrapper
 from pathlib import Path
 from typing import Any
@@ -104,6 +104,7 @@ def _remove_old(base: Path) -> None:
 _declared: list[Callable[[], object]] = []
 """What numba gets to know of inlined and other functions when the first entry point is compiled."""
 _lock = threading.RLock()
+_local = threading.local()
 
 
 class EntryPoint:
@@ -119,8 +120,8 @@ class EntryPoint:
         _declare(self, function, {"forceinline": False, **_PART})
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the machine code."""
-        return self.compiled(*arguments)
+        """Call the machine code, or the function itself in a block of `in_python`."""
+        return (self.py_func if getattr(_local, "in_python", False) else self.compiled)(*arguments)
 
     @cached_property
     def compiled(self) -> Any:
@@ -144,6 +145,19 @@ class EntryPoint:
 def njit(function: Callable) -> Any:
     """Make a function an entry point of compiled code, see `EntryPoint`."""
     return function if INTERPRETED else EntryPoint(function)
+
+
+@contextmanager
+def in_python(little: bool) -> Iterator[None]:
+    """Call entry points that have little to do as functions of Python, with the same results bit for bit.
+
+    Where numba is not loaded yet, that takes less time than to load it.
+    """
+    _local.in_python = little and "numba" not in sys.modules
+    try:
+        yield
+    finally:
+        _local.in_python = False
 
 
 def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:

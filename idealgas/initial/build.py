@@ -6,6 +6,7 @@ import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.initial.contacts import static_contact_issues
+from idealgas.jit import in_python
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.checks.piston import crushed_issues
@@ -13,6 +14,9 @@ from idealgas.scene.sizes import Values, mass_of
 from idealgas.scene.walls import number_walls
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
+
+FEW, SPARSE = 1000, 0.3
+"""Number of discs up to which, and packing fraction up to which, they are placed faster than numba is loaded."""
 
 
 def make_gas(scene: Scene) -> Gas:
@@ -115,6 +119,13 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
+    """Positions (N, 2), length, of all discs; of few that find room soon without compiled code."""
+    dense = math.pi * float(radius @ radius) > SPARSE * scene.box.size[0] * scene.box.size[1]
+    with in_python(len(radius) <= FEW and not dense and not walls_inside(scene)):
+        return _placed_in_order(scene, radius)
+
+
+def _placed_in_order(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
     from idealgas.initial import placement  # compiled code, which a reader of logs does not need
 

@@ -163,7 +163,7 @@ def test_help_imports_nothing_heavy():
     ("command", "unused"),
     [
         ("info run.h5", ("numba", "scipy", "matplotlib", "pandas")),
-        ("check scene.toml", ("scipy.stats", "matplotlib", "pandas")),
+        ("check scene.toml", ("numba", "scipy.stats", "matplotlib", "pandas")),
         ("histogram run.h5", ("scipy.stats", "scipy.optimize", "matplotlib", "pandas")),
     ],
 )

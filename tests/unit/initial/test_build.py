@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from idealgas.initial.build import make_gas
+from idealgas.jit import EntryPoint
 from idealgas.scene import parse_scene
 from idealgas.state import rng
 
@@ -22,6 +23,15 @@ def disc(x, y, radius=0.5, mass=1.0):
 
 A = species("a", count=50, radius=0.1, temperature=1.5, mass=2)
 B = species("b", count=30, radius=0.2, speed=3)
+
+
+@pytest.mark.parametrize("placement", ["random", "lattice"])
+def test_discs_are_placed_the_same_by_python_and_by_machine_code(placement, monkeypatch):
+    """Few are placed without numba: bit for bit, also where many positions are refused."""
+    tables = (disc(5, 5), species("gas", count=60, radius=0.45, temperature=1, placement=f'"{placement}"'))
+    compiled = gas_of(*tables)
+    monkeypatch.setattr(EntryPoint, "__call__", lambda self, *arguments: self.py_func(*arguments))
+    assert (gas_of(*tables).position == compiled.position).all()
 
 
 def test_explicit_discs_come_first_then_species_in_order():
