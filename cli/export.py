@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,7 +12,10 @@ from ._analysis import log_argument, open_log
 from ._options import FILE, force_option, quiet_option
 from ._terminal import echo
 
-KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
+if TYPE_CHECKING:
+    from idealgas.log.export.export import Kind
+
+KINDS: "tuple[Kind, ...]" = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
 
 @click.command(epilog="Example: idealgas export gas.h5 --frames 100 -o gas.extxyz")
@@ -32,7 +36,7 @@ KINDS = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 )
 @force_option
 @quiet_option
-def export(path: str, kind: str | None, events: bool, frames: str | None, output: str | None, force: bool) -> None:
+def export(path: str, kind: "Kind | None", events: bool, frames: str | None, output: str | None, force: bool) -> None:
     """Write the events of a log, or frames of all discs, to a file for other programs.
 
     gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
@@ -51,7 +55,7 @@ def export(path: str, kind: str | None, events: bool, frames: str | None, output
     echo(f"{target}: {number:,} {'event rows' if events else 'frames'}", err=target == "-")
 
 
-def _kind_of(output: str | None) -> str:
+def _kind_of(output: str | None) -> "Kind":
     """Format of a file by its ending."""
     from idealgas.log.export.export import FORMATS
 

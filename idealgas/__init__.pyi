@@ -11,14 +11,14 @@ from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
 from idealgas.analysis.lyapunov import LyapunovAnalysis
 from idealgas.analysis.order import OrderAnalysis
-from idealgas.analysis.pressure.measure import pressure as pressure
+from idealgas.analysis.pressure import PressureAnalysis
 from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.registry import combine as combine
 from idealgas.analysis.relaxation import RelaxationAnalysis
 from idealgas.analysis.sound import SoundAnalysis
-from idealgas.analysis.temperature import temperature as temperature
-from idealgas.analysis.transport.measure import transport as transport
+from idealgas.analysis.temperature import TemperatureAnalysis
+from idealgas.analysis.transport import TransportAnalysis
 from idealgas.columns import EventBatch as EventBatch
 from idealgas.columns import Kind as Kind
 from idealgas.errors import OutputError as OutputError
@@ -28,6 +28,7 @@ from idealgas.log import Log as Log
 from idealgas.log import LogError as LogError
 from idealgas.log import LogState as LogState
 from idealgas.log import open_log as open_log
+from idealgas.log import takes_path
 from idealgas.log.export.export import export as export
 from idealgas.log.summary import Summary as Summary
 from idealgas.movie.film import animate as animate
@@ -42,13 +43,16 @@ from idealgas.scene import parse_scene as parse_scene
 from idealgas.sweep.plan import load_sweep as load_sweep
 from idealgas.sweep.run import run_sweep as run_sweep
 
-cooling = CoolingAnalysis.measure
-effusion = EffusionAnalysis.measure
-evolution = EvolutionAnalysis.measure
-heat_capacity = HeatCapacityAnalysis.measure
-histogram = HistogramAnalysis.measure
-lyapunov = LyapunovAnalysis.measure
-order = OrderAnalysis.measure
-profile = ProfileAnalysis.measure
-relaxation = RelaxationAnalysis.measure
-sound = SoundAnalysis.measure
+cooling = takes_path(CoolingAnalysis.measure)
+effusion = takes_path(EffusionAnalysis.measure)
+evolution = takes_path(EvolutionAnalysis.measure)
+heat_capacity = takes_path(HeatCapacityAnalysis.measure)
+histogram = takes_path(HistogramAnalysis.measure)
+lyapunov = takes_path(LyapunovAnalysis.measure)
+order = takes_path(OrderAnalysis.measure)
+pressure = takes_path(PressureAnalysis.measure)
+profile = takes_path(ProfileAnalysis.measure)
+relaxation = takes_path(RelaxationAnalysis.measure)
+sound = takes_path(SoundAnalysis.measure)
+temperature = takes_path(TemperatureAnalysis.measure)
+transport = takes_path(TransportAnalysis.measure)

@@ -12,14 +12,12 @@ def stub() -> str:
     homes = {name: home for home, names in idealgas._HOMES.items() for name in names} | {
         "__version__": "idealgas._version"
     }
+    lines = [f"from {home} import {name} as {name}" for name, home in homes.items()]
+    lines.append("from idealgas.log import takes_path")
     functions = []
     for analysis in map(registry.find, registry.names()):
-        if analysis.measure.__name__ == analysis.name:
-            homes[analysis.name] = analysis.measure.__module__
-        else:
-            functions.append(f"{analysis.name} = {analysis.__name__}.measure")
-    lines = [f"from {home} import {name} as {name}" for name, home in homes.items()]
-    lines += [f"from {registry.find(line.split()[0]).__module__} import {line.split()[2][:-8]}" for line in functions]
+        lines.append(f"from {analysis.__module__} import {analysis.__name__}")
+        functions.append(f"{analysis.name} = takes_path({analysis.__name__}.measure)")
     head = '"""Names of the package; written by tests/helpers/write_stub.py."""'
     return "\n".join([head, "", *sorted(lines), "", *functions, ""])
 

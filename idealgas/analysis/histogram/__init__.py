@@ -6,7 +6,7 @@ events of the whole gas. The Kolmogorov-Smirnov tests use independent samples.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -36,7 +36,8 @@ from idealgas.log import Log
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-QUANTITIES = {
+Quantity = Literal["speed", "vx", "vy", "energy", "free-path", "free-time", "waiting-time"]
+QUANTITIES: dict[Quantity, str] = {
     "speed": "length/time",
     "vx": "length/time",
     "vy": "length/time",
@@ -98,7 +99,7 @@ class HistogramAnalysis(Analysis):
     @staticmethod
     def measure(
         log: Log,
-        quantity: str = "speed",
+        quantity: Quantity = "speed",
         start: float | None = None,
         end: float | None = None,
         progress: Progress | None = None,

@@ -4,10 +4,11 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 import numpy as np
 
+from idealgas.errors import unknown
 from idealgas.files import storage_error, written
 from idealgas.log.errors import LogError
 from idealgas.log.export import frames, tables
@@ -30,7 +31,8 @@ class Format(NamedTuple):
     streams: bool = False
 
 
-FORMATS = {
+Kind = Literal["csv", "parquet", "gsd", "extxyz", "h5md3d"]
+FORMATS: dict[Kind, Format] = {
     "csv": Format(".csv", tables.write_csv, has_events=True, streams=True),
     "parquet": Format(".parquet", tables.write_parquet, has_events=True),
     "gsd": Format(".gsd", frames.write_gsd),
@@ -42,7 +44,7 @@ FORMATS = {
 @takes_path
 def export(
     log: Log,
-    kind: str,
+    kind: Kind,
     output: str | os.PathLike[str] | BinaryIO,
     times: Sequence[float] | None = None,
     force: bool = False,
@@ -61,9 +63,12 @@ def export(
         Number of frames or event rows.
 
     Raises:
+        UserError: if there is no such format.
         LogError: if the format or the log lacks the requested data, or a package is missing.
         OutputError: if the file cannot be written.
     """
+    if kind not in FORMATS:
+        raise unknown("format", kind, tuple(FORMATS))
     made = FORMATS[kind]
     if times is None and not made.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
@@ -80,7 +85,7 @@ def export(
 
 @contextmanager
 def _target(
-    made: Format, kind: str, output: str | os.PathLike[str] | BinaryIO, force: bool, log: Log
+    made: Format, kind: Kind, output: str | os.PathLike[str] | BinaryIO, force: bool, log: Log
 ) -> Iterator[Path | BinaryIO]:
     """Path or file for a format to write to."""
     if isinstance(output, (str, os.PathLike)):
