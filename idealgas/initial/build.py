@@ -121,7 +121,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length, of all discs; of few that find room soon without compiled code."""
     dense = math.pi * float(radius @ radius) > SPARSE * scene.box.size[0] * scene.box.size[1]
-    with in_python(len(radius) <= FEW and not dense and not walls_inside(scene)):
+    with in_python(len(radius) <= FEW and not dense and len(number_walls(scene)) == FIRST_SEGMENT):
         return _placed_in_order(scene, radius)
 
 
