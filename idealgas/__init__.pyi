@@ -33,8 +33,9 @@ from idealgas.log.export.export import export as export
 from idealgas.log.summary import Summary as Summary
 from idealgas.movie.film import animate as animate
 from idealgas.report.page import write_report as write_report
+from idealgas.run.logged_run import Progress as Progress
 from idealgas.run.resume import resume as resume
-from idealgas.run.simulate import Progress as Progress
+from idealgas.run.simulate import open_run as open_run
 from idealgas.run.simulate import simulate as simulate
 from idealgas.scene import Scene as Scene
 from idealgas.scene import SceneError as SceneError
