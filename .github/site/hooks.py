@@ -19,6 +19,7 @@ PAGES = {
     "README.md": "index.md",
     "configs/README.md": "scenes.md",
     "idealgas/log/README.md": "log.md",
+    "idealgas/run/README.md": "run.md",
     "idealgas/engine/README.md": "engine.md",
     "idealgas/accuracy/README.md": "accuracy.md",
     "idealgas/sweep/README.md": "sweep.md",
