@@ -59,6 +59,5 @@ EFFECT = EffectSpec(
     make_always=True,
     schedule=lambda tables, start: (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at)),
     counted=STEERED,
-    sample_together=Sample(),
     samples=(Sample(tables=lambda side: "[steering]\nreversed_at = 1\n"),),
 )

@@ -86,6 +86,7 @@ def test_dir_shows_every_name():
         "simulate",
         "resume",
         "open_log",
+        "open_run",
         "analyse",
         "animate",
         "combine",
@@ -170,7 +171,7 @@ def test_run_resume_and_analyse(tmp_path):
     idealgas.resume(path)
     summary = idealgas.resume(path, "run.until=500")
     assert (summary.completed, summary.end_time) == (True, 500.0)
-    assert json.loads(json.dumps(summary.as_dict())) == dataclasses.asdict(summary)
+    assert idealgas.Summary.of(json.loads(json.dumps(summary.as_dict()))) == summary
     with idealgas.open_log(path) as log:
         assert log.summary == summary.as_dict()
         assert len(log) == summary.rows
