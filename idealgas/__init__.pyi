@@ -6,6 +6,7 @@ from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.deviations import sensitivity as sensitivity
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
+from idealgas.analysis.entropy import EntropyAnalysis
 from idealgas.analysis.evolution import EvolutionAnalysis
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
@@ -16,9 +17,11 @@ from idealgas.analysis.profile import ProfileAnalysis
 from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.registry import combine as combine
 from idealgas.analysis.relaxation import RelaxationAnalysis
+from idealgas.analysis.scattering import ScatteringAnalysis
 from idealgas.analysis.sound import SoundAnalysis
 from idealgas.analysis.temperature import TemperatureAnalysis
 from idealgas.analysis.transport import TransportAnalysis
+from idealgas.analysis.work import WorkAnalysis
 from idealgas.columns import EventBatch as EventBatch
 from idealgas.columns import Kind as Kind
 from idealgas.errors import OutputError as OutputError
@@ -46,6 +49,7 @@ from idealgas.sweep.run import run_sweep as run_sweep
 
 cooling = takes_path(CoolingAnalysis.measure)
 effusion = takes_path(EffusionAnalysis.measure)
+entropy = takes_path(EntropyAnalysis.measure)
 evolution = takes_path(EvolutionAnalysis.measure)
 heat_capacity = takes_path(HeatCapacityAnalysis.measure)
 histogram = takes_path(HistogramAnalysis.measure)
@@ -54,6 +58,8 @@ order = takes_path(OrderAnalysis.measure)
 pressure = takes_path(PressureAnalysis.measure)
 profile = takes_path(ProfileAnalysis.measure)
 relaxation = takes_path(RelaxationAnalysis.measure)
+scattering = takes_path(ScatteringAnalysis.measure)
 sound = takes_path(SoundAnalysis.measure)
 temperature = takes_path(TemperatureAnalysis.measure)
 transport = takes_path(TransportAnalysis.measure)
+work = takes_path(WorkAnalysis.measure)

@@ -96,6 +96,11 @@ class Piston(SteppedTable):
         """Velocity at time 0, length/time."""
         return value_at(self.velocity, 0.0) or 0.0
 
+    @property
+    def velocity_steps(self) -> tuple[tuple[float, float], ...]:
+        """Times from which it has its given velocities, and these, length/time."""
+        return steps_of(self.velocity)
+
     def room(self, size: tuple[float, float]) -> Rectangle:
         """What the gas has at the start: the box, up to a piston that is in it and not inner."""
         low, high = [0.0, 0.0], list(size)

@@ -87,6 +87,12 @@ EXACT = (
     "temperature gradient",
     "all walls, x",
     "all walls, y",
+    "Boltzmann's H",
+    "free energy, inwards",
+    *(f"kinetic energy before, {way}" for way in ("inwards", "outwards")),
+    "crossing",
+    "slope of the crossing",
+    *(f"⟨j²⟩ {way}, {size}" for way in ("along", "across") for size in ("long", "second", "third", "short")),
 )
 """Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""
 

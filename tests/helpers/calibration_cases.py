@@ -4,9 +4,23 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from idealgas import Log, cooling, effusion, heat_capacity, histogram, order, profile, relaxation, sound
+from idealgas import (
+    Log,
+    cooling,
+    effusion,
+    entropy,
+    heat_capacity,
+    histogram,
+    order,
+    profile,
+    relaxation,
+    scattering,
+    sound,
+    work,
+)
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.scattering.sums import SEGMENTS as PARTS
 from idealgas.analysis.temperature import temperature
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.diffusion import MOST_SEGMENTS as SEGMENTS
@@ -207,6 +221,48 @@ def steady_state(log: Log) -> Named:
     yield "mean temperature", temperature(log).species[-1].both
 
 
+def in_phase_space(log: Log) -> Named:
+    """Boltzmann's H, and the entropy of positions."""
+    (found,) = entropy(log).species
+    assert found.mean_h is not None
+    assert found.mean_positions is not None
+    yield from (("Boltzmann's H", found.mean_h), ("entropy of positions", found.mean_positions))
+
+
+def strokes(log: Log) -> Named:
+    """Free energy by the work of a piston; outwards few strokes decide, so that errors take 1000 of them."""
+    found = work(log)
+    inwards, outwards = found.processes
+    yield from (("free energy, inwards", inwards.free_energy), ("mean work, inwards", inwards.mean_work))
+    for name, one in (("inwards", inwards), ("outwards", outwards)):
+        yield f"kinetic energy before, {name}", one.kinetic_energy
+    (crossing,) = found.crossings
+    yield from (("crossing", crossing.free_energy), ("slope of the crossing", crossing.slope))
+
+
+def scattered(log: Log) -> Named:
+    """Density and current correlations of four wave numbers."""
+    found = scattering(log)
+    for name, one in zip(("long", "second", "third", "short"), found.waves, strict=True):
+        for title, estimate in (
+            ("S(k)", one.structure),
+            ("⟨j²⟩ along", one.second_moment),
+            ("⟨j²⟩ across", one.transverse_moment),
+            ("F_s, early", one.early),
+        ):
+            yield f"{title}, {name}", estimate
+        for title, curve, index in (
+            ("F", one.density, 8),
+            ("F_s", one.alone, 8),
+            ("current along", one.longitudinal, 4),
+            ("current across", one.transverse, 4),
+            ("S(k, ω)", one.spectrum, 3),
+        ):
+            yield f"{title}, {name}", Estimate(float(curve.value[index]), float(curve.error[index]), PARTS)
+    curve, late = found.non_gaussian, len(found.time) // 2
+    yield "α₂", Estimate(float(curve.value[late]), float(curve.error[late]), PARTS)
+
+
 FIFTY = f"count = 50\nradius = {math.sqrt(0.2 / (50 * math.pi))!r}\n"
 GAS = "[box]\nsize = [1, 1]\n{sides}\n[[species]]\nname = 'gas'\n" + FIFTY + "temperature = 1\n"
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
@@ -231,10 +287,23 @@ STRUCTURE = ("collisions_per_disc = 300", "collisions_per_disc = 2000")
 SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
 """Runs for the energy of a gas that only its walls change."""
 
+STROKES = [[0, 0]] + [[22 * k + at, v] for k in range(400) for at, v in ((20, (-0.5, 0.5)[k % 2]), (22, 0))]
+"""Velocities of a piston that rests for 20 and moves for 2, in and out."""
+
 CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), CURRENTS, periodic),
+    "closed box, entropy": Case(GAS.format(sides=""), SHORT_AND_LONG, in_phase_space),
+    "periodic box, scattering": Case(GAS.format(sides=PERIODIC), CURRENTS, scattered),
+    "work of a piston": Case(
+        "[box]\nsize = [5, 4]\n[thermostat]\ntemperature = 1\nrate = 0.5\n[[species]]\nname = 'gas'\ncount = 2\n"
+        f"radius = 0.5\ntemperature = 1\n[piston]\nvelocity = {STROKES}\n",
+        ("until = 2200", "until = 8800"),
+        strokes,
+        "events = false\n",
+        steady=False,
+    ),
     "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT, ordered),
     "periodic mixture": Case(
         f"[box]\nsize = [1, 1]\n{PERIODIC}[[species]]\nname = 'light'\ncount = 25\nradius = 0.03\ntemperature = 1\n"

@@ -84,6 +84,14 @@ def two_discs(
     return TwoDiscs(1 + (along_x + along_y) / 4, walls, sides)
 
 
+def configurations(
+    radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
+) -> float:
+    """Q, length⁴: volume of the configurations without overlap of two discs in a box; 0 where there are none."""
+    x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
+    return _outside(radius[0] + radius[1], x, y, x.shifts, y.shifts) if min(x.most, y.most) > 0 else 0.0
+
+
 def _axis(radius: Sequence[float], length: float, periodic: bool) -> _Axis:
     if periodic:
         return _Axis(length, True, length, length / 2, length / 2)

@@ -40,7 +40,19 @@ WAVES = (
     "species.0.radius=0.5",
     "run.collisions_per_disc=1500",
 )
-TAKES = {"effusion": SLIT, "sound": WAVES, "cooling": ("restitution.normal=0.9",)}
+STROKES = (
+    "thermostat={temperature=1, rate=1}",
+    "piston.velocity=[[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]]",
+    "run.collisions_per_disc=",
+    "run.until=20",
+)
+TAKES = {
+    "effusion": SLIT,
+    "sound": WAVES,
+    "scattering": WAVES,
+    "work": STROKES,
+    "cooling": ("restitution.normal=0.9",),
+}
 """Overrides for the gas of those analyses that have no answer for a closed box."""
 
 every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=lambda analysis: analysis.key)

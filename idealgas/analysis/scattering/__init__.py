@@ -1,0 +1,298 @@
+"""Measure density and current correlations in space and time: F(k, t), S(k, ω), self part and currents.
+
+In a periodic box, for wave vectors along its sides; with the non-Gaussian parameter of displacements.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.caveats import narrow
+from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.ensemble import ensemble
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
+from idealgas.analysis.scattering.sums import WAVES, Sums, powers_of_two, segments, wave_numbers
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.waves import sound_of_discs
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STEP = 0.25
+"""Time between two instants, in units of 1/(k √(T/m)), in which a disc flies 1/k."""
+
+LAGS, FEWEST_LAGS = 65, 17
+"""Number of lags of a wave, and least number of them."""
+
+FEWEST_DECAYS = 100.0
+"""Length of a window in decay times of sound from which on segments are independent."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A function of time or frequency, and its standard error, in the same unit."""
+
+    value: np.ndarray
+    error: np.ndarray
+
+
+@dataclass(frozen=True)
+class Wave:
+    """Correlations of the waves of one wave number.
+
+    name: k as text. k: wave number, 1/length. time: (L,). density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx) (no
+    unit). alone: its self part F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of
+    the currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,),
+    S(k, ω) = ∫ F exp(iωt) dt with the lags tapered by a cosine, time. structure: S(k) =
+    F(k, 0) (no unit). second_moment, transverse_moment: longitudinal and transverse at t = 0, (length/time)²; k² times
+    the first is the second moment of S(k, ω). early: F_s at the first lag.
+    """
+
+    name: str
+    k: float
+    time: np.ndarray
+    density: Curve
+    alone: Curve
+    longitudinal: Curve
+    transverse: Curve
+    frequency: np.ndarray
+    spectrum: Curve
+    structure: Estimate
+    second_moment: Estimate
+    transverse_moment: Estimate
+    early: Estimate
+
+
+@dataclass(frozen=True)
+class Scattering(Result):
+    """Density and current correlations of the gas of one log.
+
+    window: the time that was used. thermal_speed: √(T/m), length/time. waves: from the longest to the shortest. time:
+    (D,). non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
+    """
+
+    window: Window
+    thermal_speed: float
+    waves: tuple[Wave, ...]
+    time: np.ndarray
+    non_gaussian: Curve
+
+
+class ScatteringAnalysis(Analysis):
+    """Density and current correlations."""
+
+    position = 85
+    headline = "waves.*.structure"
+    takes_unlike_discs = False
+    results = (Scattering,)
+    sections = (
+        Section(
+            "Scattering", "F(k, t), its self part beside free flight, S(k, ω), currents and non-Gaussian parameter"
+        ),
+    )
+    reads = "wave numbers"
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Scattering:
+        """Measure how waves of density and of current decay, between two times of a log.
+
+        Errors are from the spread over 32 segments of the window. Exact for any density: the currents at t = 0, with
+        ⟨|j|²⟩/N = (1 - S(k)/N) T/m as the momentum of all discs is 0, and F_s for times shorter than those between
+        collisions, exp(-k²Tt²/2m).
+
+        Args:
+            log: log with events, of a gas of one species in a periodic box.
+            start: start of the window, time; by default detected equilibrium.
+            end: end of the window, time; by default the end of the log.
+            progress: called as progress(done, total) while waves are measured.
+
+        Raises:
+            UserError: unless the box is periodic, for several species, with effects other than periodic sides, or if
+                the window is too short.
+        """
+        if len(log.discs.species_names) > 1 or not all(log.periodic):
+            raise NotApplicableError(f"{log.path}: scattering requires a gas of one species in a periodic box")
+        window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
+        speed, side = math.sqrt(ensemble(log).temperature / float(log.discs.mass[0])), max(log.box)
+        waves, displacements = [], []
+        for k in (2 * math.pi / side * wave_numbers(log)).tolist():
+            lags = min(LAGS, int(window.duration / 8 / (STEP / (k * speed))) + 1)
+            if lags >= FEWEST_LAGS:
+                sums = list(segments(log, window, k, STEP / (k * speed), lags))
+                waves.append(_wave(log, k, STEP / (k * speed) * np.arange(lags), sums, speed))
+                displacements.append((waves[-1].time, np.array([one.displacements for one in sums])))
+            if progress is not None:
+                progress(len(displacements), WAVES)
+        if not waves:
+            least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
+            raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
+        caveats = (*narrow(log), *_too_short(log, window, waves[0].k))
+        return Scattering(window, speed, tuple(waves), *_non_gaussian(displacements), caveats=caveats)
+
+    @staticmethod
+    def tables(result: Scattering) -> list[Table]:
+        """Tables of S(k) and the currents, of the correlations of each wave, and of the non-Gaussian parameter."""
+        rows = [
+            (f"{name}, {one.name}", found)
+            for one in result.waves
+            for name, found in (
+                ("S(k) (no unit)", one.structure),
+                ("⟨|j|²⟩/N along k ((length/time)²)", one.second_moment),
+                ("⟨|j|²⟩/N across k ((length/time)²)", one.transverse_moment),
+                (f"F_s at t = {one.time[1]:.3g} (no unit)", one.early),
+            )
+        ]
+        notes = [describe(result.window), "theory: (1 − S/N) T/m; free flight and the first collision"]
+        tables = [estimates("Waves of density and current", rows, notes)]
+        for one in result.waves:
+            curves = {"F": one.density, "F_s": one.alone, "along": one.longitudinal, "across": one.transverse}
+            tables.append(_series(f"Correlations, {one.name}", {"t": one.time}, curves))
+            tables.append(_series(f"Spectrum, {one.name}", {"ω": one.frequency}, {"S(k, ω)": one.spectrum}))
+        title = "Non-Gaussian parameter of displacements (no unit)"
+        return [*tables, _series(title, {"t": result.time}, {"α₂": result.non_gaussian})]
+
+    @staticmethod
+    def summary(result: Scattering) -> str:
+        """S(k) of the longest wave, and whether the moments of all waves agree with theory."""
+        rows = [
+            (f"{name}, {one.name}", found)
+            for one in result.waves
+            for name, found in (("along", one.second_moment), ("across", one.transverse_moment), ("F_s", one.early))
+        ]
+        first = result.waves[0]
+        return f"S(k) is {format_estimate(first.structure)} at {first.name}; currents and F_s: {agreement(rows)}."
+
+    @staticmethod
+    def figure(result: Scattering) -> "Figure":
+        """Picture of F, F_s, S(k, ω), both currents and the non-Gaussian parameter; theory of free flight dashed."""
+        from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
+
+        figure, (density, alone, spectrum, along, across, gaussian) = panels(3, 2)
+        for index, one in enumerate(result.waves):
+            colour, line, _ = curve_style(index)
+            rate, square = one.k * result.thermal_speed, result.thermal_speed**2
+            for ax, x, curve, unit in (
+                (density, one.time * rate, one.density, 1.0),
+                (alone, one.time * rate, one.alone, 1.0),
+                (spectrum, one.frequency / rate, one.spectrum, 1 / rate),
+                (along, one.time * rate, one.longitudinal, square),
+                (across, one.time * rate, one.transverse, square),
+            ):
+                y, error = curve.value / unit, curve.error / unit
+                ax.plot(x, y, line, color=colour, label=one.name)
+                ax.fill_between(x, y - error, y + error, color=colour, alpha=0.25, linewidth=0)
+        free = np.linspace(0, 5, 100)
+        alone.plot(free, np.exp(-(free**2) / 2), "--", color=BLACK, label="free flight")
+        y, error = result.non_gaussian.value, result.non_gaussian.error
+        gaussian.errorbar(result.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
+        gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
+        density.set_ylabel("F(k, t) (no unit)")
+        alone.set_ylabel("self part F_s(k, t) (no unit)")
+        spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
+        along.set_ylabel("current along k, over T/m (no unit)")
+        across.set_ylabel("current across k, over T/m (no unit)")
+        for ax in (density, alone, along, across):
+            ax.set_xlabel("k √(T/m) t (no unit)")
+        for ax in (density, alone, spectrum, along, across):
+            ax.legend()
+        return figure
+
+
+def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> Wave:
+    """Wave from the sums of all segments; speed: √(T/m)."""
+    density, alone, along, across = (np.array(one) for one in list(zip(*sums, strict=True))[:4])
+    taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
+    frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
+    spectrum = density @ (taper[:, None] * np.cos(time[:, None] * frequency))
+    current = speed**2 * (1 - float(density[:, 0].mean()) / len(log.discs))
+    return Wave(
+        name=f"k = {k:.4g}",
+        k=k,
+        time=time,
+        density=_curve(density),
+        alone=_curve(alone),
+        longitudinal=_curve(along),
+        transverse=_curve(across),
+        frequency=frequency,
+        spectrum=_curve(spectrum),
+        structure=_first(density, 0),
+        second_moment=_first(along, 0, current),
+        transverse_moment=_first(across, 0, current),
+        early=_first(alone, 1, *_free_flight(log, k * float(time[1]), k)),
+    )
+
+
+def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve]) -> Table:
+    """Table of curves with their errors."""
+    columns: dict[str, np.ndarray | None] = {**argument}
+    for name, curve in curves.items():
+        columns |= {name: curve.value, f"± {name}": curve.error}
+    return time_series(title, columns)
+
+
+def _curve(parts: np.ndarray) -> Curve:
+    """Mean of the segments (S, L) and its standard error."""
+    return Curve(parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts)))
+
+
+def _first(parts: np.ndarray, lag: int, theory: float | None = None, theory_error: float = 0.0) -> Estimate:
+    """Estimate of a correlation at one lag, from segments (S, L)."""
+    curve = _curve(parts)
+    return Estimate(float(curve.value[lag]), float(curve.error[lag]), float(len(parts)), theory, theory_error)
+
+
+def _free_flight(log: Log, path: float, k: float) -> tuple[float | None, float]:
+    """F_s and its error after a time in which a disc of speed 1 flies path/k; none after more than a collision.
+
+    The mean square displacement is (1 - 1/N)(T/m) 2(ωt - 1 + exp(-ωt))/ω² with the rate ω = T/(mD) of Enskog's D: the
+    slope of the velocity correlation at 0 is exact, and its second derivative is the error.
+    """
+    gas, equilibrium = log.discs, ensemble(log)
+    temperature, mass, phi = equilibrium.temperature, float(gas.mass[0]), gas.packing_fraction
+    if phi > hard_discs.HIGHEST:
+        return None, 0.0
+    density, chi = len(gas) / gas.area, hard_discs.fluid_contact_value(phi)
+    diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), density, temperature, mass, chi)
+    collisions = path / k * temperature / (mass * diffusion)
+    half = path**2 * temperature / mass * (1 - 1 / len(gas)) / 2
+    value = math.exp(-half * 2 * (collisions + math.expm1(-collisions)) / collisions**2)
+    return (value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))) if collisions < 1 else (None, 0.0)
+
+
+def _non_gaussian(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, Curve]:
+    """Times and non-Gaussian parameter from times (L,) and moments (S, P, 2) of each wave number.
+
+    Long times are from the long waves, short ones from the short waves.
+    """
+    found: list[tuple[float, float, float]] = []
+    for time, moments in reversed(parts):
+        for lag, (square, fourth) in zip(powers_of_two(len(time)), np.moveaxis(moments, 0, 2), strict=True):
+            if not found or time[lag] > found[-1][0] * 1.01:
+                second = square.mean()
+                change = (fourth - fourth.mean()) - 2 * fourth.mean() / second * (square - second)
+                error = float(change.std(ddof=1)) / math.sqrt(len(change)) / (2 * second**2)
+                found.append((float(time[lag]), float(fourth.mean() / (2 * second**2) - 1), float(error)))
+    times, values, errors = np.array(found).T
+    return times, Curve(values, errors)
+
+
+def _too_short(log: Log, window: Window, k: float) -> Iterator[str]:
+    """Sentence on a window in which the longest wave decays a few times only."""
+    gas, temperature, phi = log.discs, ensemble(log).temperature, log.discs.packing_fraction
+    mass, diameter, density = float(gas.mass[0]), 2 * float(gas.radius[0]), len(gas) / gas.area
+    fluid, chi = sound_of_discs(phi, temperature, mass, diameter), hard_discs.fluid_contact_value(phi)
+    shear = hard_discs.enskog_viscosity(diameter, density, temperature, mass, chi) / (mass * density)
+    rate = min(min(fluid.damping, fluid.spreading, shear) * k**2, k * math.sqrt(temperature / mass))
+    if (number := window.duration * rate) < FEWEST_DECAYS:
+        yield (f"The window has {number:.2g} decay times of the longest wave; its error bars take {FEWEST_DECAYS:g}.")

@@ -1,0 +1,165 @@
+"""Work of a piston: free energy of few discs, works that obey Crooks by construction, and strokes of a log."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.support import ROOT
+
+import idealgas
+from idealgas import load_scene, open_log, simulate
+from idealgas.analysis.registry import find
+from idealgas.analysis.theory.free_energy import log_configurations
+from idealgas.analysis.theory.two_discs import configurations
+from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.work.processes import crossings, process
+from idealgas.columns import Kind
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.initial.build import make_gas
+from idealgas.scene import parse_scene
+
+SCENE = ROOT / "configs" / "work.toml"
+BOX = "box.size = [4, 3]\nrun.until = 1\nspecies = [{{ name = 'gas', count = {}, radius = {}, temperature = 1 }}]"
+
+
+def test_room_of_two_discs():
+    """Closed form of equal discs between walls, σ ≤ min(a, b), and A(A - πσ²) in a periodic box (theory.two_discs)."""
+    a, b, s = 3.2, 2.2, 0.8
+    walls = a**2 * b**2 - math.pi * s**2 * a * b + 4 / 3 * s**3 * (a + b) - s**4 / 2
+    assert configurations((s / 2, s / 2), (a + s, b + s)) == pytest.approx(walls, rel=1e-12)
+    assert configurations((0.4, 0.4), (4.0, 3.0), (True, True)) == pytest.approx(12 * (12 - math.pi * s**2), rel=1e-12)
+    assert configurations((0.4, 0.4), (0.7, 3.0)) == 0
+
+
+@pytest.mark.parametrize(("number", "radius"), [(1, 0.5), (2, 0.4), (3, 0.2), (5, 0.1)])
+def test_free_energy_against_random_configurations(number, radius):
+    """Fraction of 200 000 random configurations without overlap, k = 4."""
+    found = log_configurations(make_gas(parse_scene(BOX.format(number, radius))), (4.0, 3.0), (False, False))
+    places = np.random.default_rng(1).random((200_000, number, 2)) * (4 - 2 * radius, 3 - 2 * radius)
+    i, j = np.triu_indices(number, 1)
+    share = (((places[:, i] - places[:, j]) ** 2).sum(axis=2) > 4 * radius**2).all(axis=1).mean()
+    random = math.log(share) + number * math.log((4 - 2 * radius) * (3 - 2 * radius))
+    error = math.sqrt((1 - share) / share / 200_000)
+    assert (found.error > 0) == (number > 2)
+    assert abs(found.value - random) <= 4 * error + found.error
+
+
+def test_discs_that_do_not_fit():
+    gas = make_gas(parse_scene(BOX.format(2, 0.5)))
+    assert log_configurations(gas, (0.9, 3.0), (False, False)) is None
+    assert log_configurations(gas, (1.5, 1.5), (False, False)) is None
+
+
+def strokes(draw, number, spread=1.0, free=0.7, temperature=2.0):
+    """Works of a process and back: normal with the mean ΔF + σ²/2T obey Crooks' theorem exactly, with variance σ²."""
+    work = draw.normal(free + spread**2 / 2 / temperature, spread, number)
+    back = draw.normal(-free + spread**2 / 2 / temperature, spread, number)
+    energy, theory = np.full(number, 2.0), Theory(free, 0.0, "")
+    return (
+        process((5.0, 4.0), ((2.0, -0.5),), work, energy, temperature, 1, theory),
+        process((4.0, 5.0), ((2.0, 0.5),), back, energy, temperature, 1, theory),
+    )
+
+
+def test_errors_of_free_energy_crossing_and_slope():
+    """Rms of 400 deviations scatters by 1/√800 = 3.5 %; k = 3."""
+    draw, found = np.random.default_rng(3), []
+    for _ in range(400):
+        both = strokes(draw, 200)
+        (crossing,) = crossings(both, 2.0)
+        found.append([one.deviation for one in (both[0].free_energy, crossing.free_energy, crossing.slope)])
+    assert np.sqrt(np.square(found).mean(axis=0)) == pytest.approx(1, abs=0.1)
+    assert np.abs(np.mean(found, axis=0)).max() < 0.2  # bias in standard errors, of 1/√400 = 0.05 by chance
+
+
+def test_strokes_that_do_not_overlap_or_are_few():
+    draw = np.random.default_rng(4)
+    assert crossings(strokes(draw, 9), 2.0) == ()
+    assert crossings(strokes(draw, 50)[:1], 2.0) == ()
+    assert crossings(strokes(draw, 50, spread=0.01, free=0.7, temperature=1e-3), 1e-3) == ()
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    path = tmp_path_factory.mktemp("work") / "run.h5"
+    simulate(load_scene(SCENE), path)
+    with open_log(path) as log:
+        yield log
+
+
+def test_strokes_of_a_log(log):
+    """Ten strokes inwards and outwards; their works are those of all hits of the piston, from the events."""
+    found = idealgas.work(log)
+    assert [(one.ends, one.protocol, len(one.work)) for one in found.processes] == [
+        ((5.0, 4.0), ((2.0, -0.5),), 10),
+        ((4.0, 5.0), ((2.0, 0.5),), 10),
+    ]
+    (crossing,) = found.crossings
+    assert crossing.name == "5 to 4 in 2"
+    (rows,) = log.chunks()
+    hits = rows.kind == Kind.PISTON
+    for one, first, speed in zip(found.processes, (20, 42), (-0.5, 0.5), strict=True):
+        for work, begin in zip(one.work, first + 44 * np.arange(10), strict=True):
+            now = hits & (rows.time > begin) & (rows.time < begin + 2)
+            after = rows.velocity[now, 0]
+            assert work == pytest.approx(((after**2 - (2 * speed - after) ** 2) / 2).sum(), abs=1e-12)
+    for one in found.processes:
+        assert abs(one.kinetic_energy.value - 2) < 4 * math.sqrt(2 / 10)  # variance N T²
+        assert any(one.name in caveat for caveat in find("work").combined([found]).caveats)
+
+
+def test_results_of_a_sweep_are_those_of_its_logs(log):
+    analysis = find("work")
+    found = analysis.analyse(log)
+    again = analysis.restored(found.as_dict(), "point", found.origin)
+    assert again.as_dict() == found.as_dict()
+    both = analysis.combine([found, again])
+    assert [len(one.work) for one in both.processes] == [20, 20]
+    assert both.processes[0].free_energy.theory == found.processes[0].free_energy.theory
+
+
+def test_theory_of_the_shipped_scene(log):
+    """Q of two discs of σ = 1 in a closed form, between 4 by 3 and 3 by 3."""
+
+    def room(a, b):
+        return a**2 * b**2 - math.pi * a * b + 4 / 3 * (a + b) - 0.5
+
+    inwards, outwards = (one.free_energy for one in idealgas.work(log).processes)
+    assert inwards.theory == pytest.approx(math.log(room(4, 3) / room(3, 3)), rel=1e-12)
+    assert outwards.theory == -inwards.theory
+
+
+@pytest.mark.parametrize(
+    ("overrides", "error", "why"),
+    [
+        (("piston.velocity=[[0, -0.01], [25, 0]]",), UserError, "no stroke of the piston after a rest"),
+        pytest.param(
+            ("thermostat=",), NotApplicableError, "requires a piston of given velocities", marks=pytest.mark.slow
+        ),
+        pytest.param(
+            ("restitution.normal=0.9",), NotApplicableError, "has no answer for a gas", marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_other_gases_are_refused(overrides, error, why, tmp_path):
+    simulate(load_scene(SCENE, [*overrides, "run.until=30"]), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log, pytest.raises(error, match=why):
+        idealgas.work(log)
+
+
+@pytest.mark.long
+def test_ten_thousand_strokes(tmp_path):
+    """Jarzynski's equality and Crooks' theorem with 10 000 strokes in each direction, k = 3; about two minutes."""
+    results, analysis = [], find("work")
+    for seed in range(1000):
+        simulate(load_scene(SCENE, [f"scene.seed={seed}", "log.events=false"]), tmp_path / "run.h5", force=True)
+        results.append(analysis.analyse(tmp_path / "run.h5"))
+    found = analysis.combined(results)
+    (crossing,) = found.crossings
+    estimates = [one.free_energy for one in (*found.processes, crossing)] + [crossing.slope]
+    estimates += [one.kinetic_energy for one in found.processes]
+    print([(one.value, one.standard_error, one.theory, one.deviation) for one in estimates])
+    assert max(abs(one.deviation) for one in estimates) < 3
+    assert all(
+        one.mean_work.value > one.free_energy.theory + 10 * one.mean_work.standard_error for one in found.processes
+    )
