@@ -263,16 +263,18 @@ class CoolingAnalysis(Analysis):
         ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="kinetic energy per disc")
         if result.spin is not None:
             ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² per disc")
+        doubt = result.haff.theory_error / result.haff.theory if result.haff.theory else 0.0
         for law, label in ((result.law, "law of a uniform gas"), (result.spin_law, None)):
-            if law is not None:
-                ax.plot(result.time[shown], law[shown], "--", color=GREY, label=label)
+            if law is not None:  # dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ
+                error = 2 * (1 - np.sqrt(np.minimum(law / law[0], 1))) * doubt * law
+                ax.theory(result.time[shown], law[shown], error[shown], label, GREY)
         ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
         window = result.collisions[result.time.searchsorted([result.start, result.end])]
         for panel, (label, series, found) in zip(others, means, strict=True):
             panel.plot(result.collisions, series, color=COLOURS[5], linewidth=0.9, label="measured")
             panel.plot(window, [found.value] * 2, color=COLOURS[0], label="mean")
             if found.theory is not None:
-                panel.axhline(found.theory, color=GREY, linestyle="--", label="theory")
+                panel.theory(None, found.theory, found.theory_error, color=GREY)
             panel.set(xlabel="collisions per disc", ylabel=label)
         last.plot(result.collisions, result.scatter, color=COLOURS[0], label="numbers: variance over mean")
         last.plot(result.collisions, result.flow, color=COLOURS[1], label="momenta: square over that by chance")

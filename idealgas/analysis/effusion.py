@@ -212,7 +212,8 @@ class EffusionAnalysis(Analysis):
                 flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3)
         highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
         ends = np.array([0.0, 1.1 * highest])
-        flux.plot(ends, ends, "--", color=GREY, label="n⟨v⟩/π")
+        doubt = max((one.theory_error / one.theory for one in together.values() if one.theory), default=0.0)
+        flux.theory(ends, ends, doubt * ends, "n⟨v⟩/π", GREY)
         course.set(xlabel="t (time)", ylabel="discs beyond the slit (no unit)")
         flux.set(xlabel="n⟨v⟩/π (1/(length time))", ylabel="flux (1/(length time))")
         for ax in (course, flux):

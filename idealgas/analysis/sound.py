@@ -192,13 +192,23 @@ class SoundAnalysis(Analysis):
             fine = np.linspace(0, wave.lag[-1], 500)
             ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
             if wave.theory is not None:
-                ax.plot(fine, wave.theory.at(fine), "--", color=GREY, label="hydrodynamics by theory")
+                ax.theory(fine, wave.theory.at(fine), _doubt(fine, wave), "hydrodynamics by theory", GREY)
             ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
             ax.set_xlabel("t (time)")
             wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
             ax.set_ylabel(f"⟨ρ(t) ρ*(0)⟩/N (no unit), {wave_in_words}")
             ax.legend()
         return figure
+
+
+def _doubt(time: np.ndarray, wave: Wave) -> np.ndarray:
+    """Error of a wave's correlation (L,) by theory at times (L,), from those of its properties."""
+    assert wave.theory is not None
+    law, square = wave.theory, np.zeros_like(time)
+    for name in ("speed", "damping", "spreading"):
+        value = getattr(law.fluid, name) + getattr(wave, name).theory_error
+        square += (law._replace(fluid=law.fluid._replace(**{name: value})).at(time) - law.at(time)) ** 2
+    return np.sqrt(square)
 
 
 def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:

@@ -162,7 +162,7 @@ def temperature_summary(result: Temperature) -> str:
 
 def temperature_figure(result: Temperature) -> "Figure":
     """Picture of the temperature against time: of every species, or along x and y; before the window it is shaded."""
-    from idealgas.analysis.core.style import BLACK, GREY, curve_style, panels
+    from idealgas.analysis.core.style import GREY, curve_style, panels
 
     figure, (ax,) = panels(1)
     edges = result.window.edges
@@ -174,9 +174,9 @@ def temperature_figure(result: Temperature) -> "Figure":
     for k, (name, (values, _)) in enumerate(curves.items()):
         colour, line, _ = curve_style(k)
         ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
-    theories = sorted({found.theory for _, found in curves.values() if found.theory is not None})
-    for k, theory in enumerate(theories):
-        ax.axhline(theory, color=BLACK, linestyle="--", label="theory" if k == 0 else None)
+    theories = sorted({(found.theory, found.theory_error) for _, found in curves.values() if found.theory is not None})
+    for k, (theory, error) in enumerate(theories):
+        ax.theory(None, theory, error, "theory" if k == 0 else None)
     if result.window.first:
         ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
     ax.time_axis()

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,6 +19,9 @@ from matplotlib.transforms import ScaledTranslation
 from idealgas.errors import plain
 from idealgas.files import written
 
+if TYPE_CHECKING:
+    from idealgas.analysis.core.statistics import Estimate
+
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
 
@@ -27,6 +30,8 @@ LINES, MARKERS = ("-", "--", "-.", ":"), ("o", "s", "^", "D")
 
 BLACK, GREY = "#000000", "#767676"
 GRID = "#dddddd"
+BAND = 0.2
+"""Opacity of the band of an error."""
 
 WIDTH, HEIGHT = 5.2, 3.2
 """Size of a panel, inches."""
@@ -104,6 +109,27 @@ class Panel(Axes):
         for text in legend.get_texts():
             text.set_text(fill(text.get_text(), LABEL_CHARACTERS))
         return legend
+
+    def theory(
+        self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK, style: str = "--"
+    ) -> None:
+        """Draw a theory at places, None for all, as a dashed line in a band of its error (one standard deviation)."""
+        if x is None:
+            self.axhline(value, color=color, linestyle=style, linewidth=0.9, label=label, zorder=3)
+            if error > 0:
+                self.axhspan(value - error, value + error, color=color, alpha=BAND, linewidth=0)
+            return
+        self.plot(x, value, style, color=color, linewidth=0.9, label=label, zorder=3)
+        if np.any(np.asarray(error) > 0):
+            self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
+
+    def theory_of_row(self, row: int, found: "Estimate", label: str | None = "theory") -> None:
+        """Draw the theory of an estimate in its row of a list, if it has one, in a band of its error."""
+        if found.theory is None:
+            return
+        ends, error = [row - 0.35, row + 0.35], found.theory_error
+        self.plot([found.theory] * 2, ends, color=COLOURS[1], linewidth=2, label=label)
+        self.fill_betweenx(ends, found.theory - error, found.theory + error, color=COLOURS[1], alpha=BAND, linewidth=0)
 
     def time_axis(self) -> None:
         """Declare that the horizontal axis is the time of a run."""

@@ -258,7 +258,7 @@ class EvolutionAnalysis(Analysis):
             ax = next(rest)
             ax.plot(*result.track, color=COLOURS[0], label="piston")
             if law is not None and law.piston is not None:
-                ax.axhline(law.piston, color=BLACK, linestyle="--", label=f"theory: at rest at {law.piston:.4g}")
+                ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
             ax.set_ylabel("piston position (length)")
         if result.given:
             ax = next(rest)

@@ -237,8 +237,7 @@ class HeatCapacityAnalysis(Analysis):
         names = []
         for k, route in enumerate(result.routes[::-1]):
             ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
-            if route.value.theory is not None:
-                ax.plot([route.value.theory] * 2, [k - 0.35, k + 0.35], color=COLOURS[1])
+            ax.theory_of_row(k, route.value, None)
             gas = _listed(route.kind, route.gas)
             names.append((f"{gas}: {route.name}" if gas else route.name).replace(" of the kinetic energy", ""))
         name_rows(ax, names, fontsize="small")

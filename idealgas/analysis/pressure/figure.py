@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, LINES, name_rows, panels
+from idealgas.analysis.core.style import BAND, BLACK, COLOURS, GREY, LINES, name_rows, panels
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
 from idealgas.analysis.pressure.measure import IDEAL, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
@@ -26,9 +26,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
     values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
     ax.errorbar(values, range(len(walls)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     for k, wall in enumerate(walls):
-        if wall.pressure.theory is not None:
-            theory = [wall.pressure.theory] * 2
-            ax.plot(theory, [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label="external pressure")
+        ax.theory_of_row(k, wall.pressure, "external pressure")
     ideal = result.number * result.temperature / result.area
     ax.axvline(ideal, color=BLACK, linewidth=1, label=f"{IDEAL}, N T/A: {ideal:.5g}")
     name_rows(ax, [wall.name for wall in walls])
@@ -46,20 +44,17 @@ def _of_log(result: Pressure) -> Figure:
     routes = result.routes[::-1]
     values = [route.compressibility_factor.value for route in routes]
     errors = [route.compressibility_factor.standard_error for route in routes]
-    known = [
-        (route.compressibility_factor.theory, k)
-        for k, route in enumerate(routes)
-        if route.compressibility_factor.theory
-    ]
-    for z, k in known:
-        label = "theory of what is measured" if (z, k) == known[-1] else None
-        ax.plot([z, z], [k - 0.35, k + 0.35], color=COLOURS[1], linewidth=2.5, label=label)
+    known = [route.compressibility_factor.theory for route in routes]
+    last = max((k for k, z in enumerate(known) if z), default=None)
+    for k, route in enumerate(routes):
+        label = "theory of what is measured, ± its error" if k == last else None
+        ax.theory_of_row(k, route.compressibility_factor, label)
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     name_rows(ax, [route.name for route in routes])
     low, high = ax.get_xlim()
     for (name, theory), style in zip(result.known_theories.items(), cycle(LINES), strict=False):
         shown = name == IDEAL or low < theory.value < high
-        if shown and theory.value not in (z for z, _ in known):
+        if shown and theory.value not in known:
             colour = BLACK if name == IDEAL else GREY
             ax.axvline(theory.value, color=colour, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
     ax.set_xlabel("Z = PA/NT (no unit)")
@@ -75,6 +70,7 @@ def _of_states(result: EquationOfState) -> Figure:
     z = np.array([state.infinite.value for state in result.states])
     error = np.array([state.infinite.standard_error for state in result.states])
     best = np.array([state.infinite.theory or np.nan for state in result.states])
+    band = 1e3 * np.array([state.infinite.theory_error for state in result.states]) / best
     x = np.linspace(1e-9, min(1.05 * phi.max(), hard_discs.HIGHEST), 400)
     curves = (
         ("virial series, resummed", hard_discs.compressibility_factor, "-", COLOURS[1]),
@@ -88,6 +84,7 @@ def _of_states(result: EquationOfState) -> Figure:
     if phi.max() > hard_discs.HIGHEST:
         _draw_dense(above, float(phi.max()))
     above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
+    below.fill_between(phi, -band, band, color=COLOURS[1], alpha=BAND, linewidth=0)
     below.errorbar(phi, 1e3 * (z / best - 1), 1e3 * error / best, fmt="o", ms=4, color=COLOURS[0], capsize=3)
     if np.isfinite(best).any():
         low, high = (1e3 * (z / best - 1 + sign * 3 * error / best) for sign in (-1, 1))

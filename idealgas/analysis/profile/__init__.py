@@ -7,7 +7,7 @@ T^(3/2) linear in the position, with the temperature jumps at them, and n T Z co
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 
@@ -19,10 +19,10 @@ from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.stream import frames
-from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
+from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
+from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, gradient, strip_test
 from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
 from idealgas.analysis.theory.ensemble import composition
-from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 
 BINS = 20
 """Number of strips unless it is given."""
-
-FEWEST_FRAMES = 32
-"""Smallest number of frames with a disc in a strip for an estimate of its temperature."""
 
 DILUTE = 0.02
 """Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
@@ -53,7 +50,8 @@ class SpeciesProfile:
 
     species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
     disc, energy; None for discs without spin. gradient: slope of the straight line through the temperatures, each with
-    the weight of its discs, energy/length; None where fewer than two strips have a temperature.
+    the weight of its discs, energy/length; None where fewer than two strips have a temperature. density_test,
+    temperature_test: of all strips together; None without theory.
     """
 
     species: str
@@ -61,6 +59,8 @@ class SpeciesProfile:
     temperature: tuple[Estimate, ...]
     spin: Annotated[tuple[Estimate, ...] | None, OPTIONAL]
     gradient: Estimate | None
+    density_test: StripTest | None
+    temperature_test: StripTest | None
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class ProfileAnalysis(Analysis):
     @staticmethod
     def measure(
         log: Log,
-        along: str | None = None,
+        along: Literal["x", "y"] | None = None,
         bins: int = BINS,
         start: float | None = None,
         end: float | None = None,
@@ -165,6 +165,12 @@ class ProfileAnalysis(Analysis):
                 tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
         if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
             tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
+        tests = [
+            (name, Number(test.chi_squared, ".4g"), Number(test.waves, "d"), Number(test.p_value, ".3g"))
+            for name, test in _tests(result)
+        ]
+        if tests:
+            tables.append(Table("All strips together", ("", "χ²", "waves", "p"), tests))
         if result.heat:
             tables.append(estimates("Energy from each wall per time", result.heat.items()))
         notes = (f"{describe(result.window)}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
@@ -187,7 +193,8 @@ class ProfileAnalysis(Analysis):
                     found.append(f"The {name} of {entry.species} is {ends}.")
         same = "No density or temperature differs clearly between the first and the last strip."
         law = f"theory, {result.law}"
-        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}."
+        together = ", ".join(f"p = {test.p_value:.2g} ({name})" for name, test in _tests(result))
+        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}{together and f'; together: {together}'}."
 
     @staticmethod
     def figure(result: Profile) -> "Figure":
@@ -196,8 +203,8 @@ class ProfileAnalysis(Analysis):
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
             value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))
-            theory = np.array([np.nan if e.theory is None else e.theory for e in column])
-            ax.plot(result.middles, theory, "--", color=BLACK, linewidth=0.9, zorder=3)
+            theory, off = np.array([(np.nan if e.theory is None else e.theory, e.theory_error) for e in column]).T
+            ax.theory(result.middles, theory, off, None)
             ax.errorbar(result.middles, value, error, ms=4, capsize=2, **style)
 
         figure, (density, temperature) = panels(2)
@@ -220,6 +227,14 @@ class ProfileAnalysis(Analysis):
         density.set_ylabel("n (1/length²)")
         temperature.set_ylabel("temperature (energy, k_B = 1)")
         return figure
+
+
+def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:
+    """Name of each quantity of a species that has a theory, with the test of all of its strips."""
+    for entry in result.species:
+        for name, test in (("density", entry.density_test), ("temperature", entry.temperature_test)):
+            if test is not None:
+                yield f"{name} of {entry.species}", test
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
@@ -281,37 +296,22 @@ def _of_species(
             theory = expected.of_temperature(s, k) if column == 1 else expected.of_spin(s, k)
         return ratio(sums[:, k, column], sums[:, k, 0], theory)
 
+    density_test = temperature_test = None
+    if expected is not None:
+        number = strip * expected.density[s]
+        density, warmth = ([of(s, k) for k in strips] for of in (expected.of_density, expected.of_temperature))
+        excess = sums[..., 1] - [one.value for one in warmth] * sums[..., 0]
+        density_test = strip_test(sums[..., 0], number, strip * np.array([one.error for one in density]))
+        temperature_test = strip_test(excess, number, number * np.array([one.error for one in warmth]))
     return SpeciesProfile(
         name,
         tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None) for k in strips),
         tuple(per_disc(k, 1) for k in strips),
         tuple(per_disc(k, 2) for k in strips) if spinning else None,
-        _gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
+        gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
+        density_test,
+        temperature_test,
     )
-
-
-def _gradient(
-    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int
-) -> Estimate | None:
-    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T.
-
-    Theory may be too high at one end and too low at the other.
-    """
-    known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
-    if np.count_nonzero(known) < 2:
-        return None
-    counts, energies, place = counts[:, known], energies[:, known], middles[known]
-    weight = counts.mean(axis=0)
-    away = place - np.average(place, weights=weight)
-    lever = weight * away / (weight @ away**2)
-    temperature = energies.mean(axis=0) / weight
-    influence = (energies - temperature * counts) / weight
-    theory = None
-    if expected is not None:
-        along = expected.share[s] * expected.temperature[s, known]
-        slope = float(lever @ along) if np.ptp(along) > 0 else 0.0
-        theory = Theory(slope, 2 * expected.error / float(np.ptp(place)), expected.law)
-    return mean(lever @ temperature + influence @ lever, theory)
 
 
 def _heat(log: Log, window: Window) -> dict[str, Estimate]:

@@ -1,12 +1,13 @@
 """Picture of the transport in a gas."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, curve_style, panels
+from idealgas.analysis.core.style import BAND, COLOURS, GREY, Panel, curve_style, panels
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
@@ -35,7 +36,8 @@ def _of_states(result: States) -> Figure:
         values, errors = [one.value for one in ones], [one.standard_error for one in ones]
         if shown:
             ax.errorbar(places, values, errors, fmt="o-", ms=4, capsize=3, color=colour, label=symbol)
-    ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory")
+            _band(ax, places, np.ones(len(ones)), np.array([one.theory_error for one in ones]), colour)
+    ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory, bands: its errors")
     ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
     if by_number:
         numbers = [state.number for state in result.states]
@@ -64,31 +66,42 @@ def _of_log(result: Transport) -> Figure:
     return figure
 
 
-def _draw_diffusion(correlation: Axes, displacement: Axes, result: Transport) -> None:
-    """Draw velocity correlation and mean square displacement of each species."""
+def _draw_diffusion(correlation: Panel, displacement: Panel, result: Transport) -> None:
+    """Draw velocity correlation and mean square displacement of each species, with the laws of a memory exp(-t/τ).
+
+    The displacement is then 4D [t - τ(1 - exp(-t/τ))]: Fürth, Z. Phys. 2, 244 (1920).
+    """
     for k, entry in enumerate(result.diffusion):
-        _band(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
+        _curve(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
+        lag, memory = entry.lag, entry.velocity_correlation_time
+        if memory is not None and memory.theory:
+            decay = np.exp(-lag / memory.theory)
+            error = decay * lag / memory.theory * memory.theory_error / memory.theory
+            correlation.theory(lag, decay, error, "exp(-t/τ), τ = mD/T by Enskog", curve_style(k)[0])
         if entry.tail is not None:
-            rate = result.free_paths[0].time.value ** -1
-            correlation.plot(entry.lag, np.exp(-rate * entry.lag), "--", color=GREY, label="Enskog: exp(-Γt)")
-            late = rate * entry.lag > 5
-            correlation.plot(entry.lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
+            late = lag > 5 * result.free_paths[0].time.value
+            correlation.plot(lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
         name = f"{entry.species}, measured"
-        _band(displacement, entry.lag, entry.displacement, entry.displacement_error, k, name)
-        if entry.coefficient:
-            d = entry.coefficient.value
-            displacement.plot(entry.lag, 4 * d * entry.lag, "--", color=GREY, label=f"4Dt, D = {d:.4g}")
+        _curve(displacement, lag, entry.displacement, entry.displacement_error, k, name)
+        if entry.coefficient and memory:
+            d, tau = entry.coefficient.value, memory.value
+            law = 4 * d * (lag - tau * (1 - np.exp(-lag / tau)))
+            displacement.plot(lag, law, "--", color=GREY, label=f"4D[t - τ(1 - exp(-t/τ))], D = {d:.4g}")
     if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
         correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # without a number below zero that is resolved
     correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
     displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
 
 
-def _band(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
+def _curve(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
     """Draw curve k of several with its standard error on both sides."""
     colour, line, _ = curve_style(k)
     ax.plot(lag, value, line, color=colour, label=label)
-    ax.fill_between(lag, value - error, value + error, color=colour, alpha=0.2, linewidth=0)
+    _band(ax, lag, value, error, colour)
+
+
+def _band(ax: Axes, x: Sequence[float] | np.ndarray, value: np.ndarray, error: np.ndarray, colour: str) -> None:
+    ax.fill_between(x, value - error, value + error, color=colour, alpha=BAND, linewidth=0)
 
 
 def _draw_pairs(ax: Axes, result: Transport) -> None:
@@ -101,8 +114,9 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
         for contact in result.contacts:
             if (contact.species, contact.other) == (found.species, found.other):
                 ax.plot(found.contact, contact.value.value, "D", color=colour, label=f"{label}: by collisions")
-                if contact.value.theory is not None:
-                    ax.plot(found.contact, contact.value.theory, "+", ms=12, color=GREY, label="theory at contact")
+                if (theory := contact.value.theory) is not None:
+                    off, label = contact.value.theory_error, "theory at contact"
+                    ax.errorbar(found.contact, theory, off, fmt="+", ms=12, color=GREY, label=label)
         diameter = found.edges[0]
         if len(result.pair_distributions) == 1 and found.contact == diameter and result.packing_fraction <= THIN:
             density = 4 * result.packing_fraction / (math.pi * diameter**2)
@@ -112,7 +126,7 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
     ax.set(xlabel="r (length)", ylabel="g(r) (no unit)")
 
 
-def _draw_coefficients(ax: Axes, result: Transport) -> None:
+def _draw_coefficients(ax: Panel, result: Transport) -> None:
     """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or else over their own values."""
     whole = result.collective.coefficients if result.collective else {}
     curves = [
@@ -123,11 +137,13 @@ def _draw_coefficients(ax: Axes, result: Transport) -> None:
     by_theory = all(value.theory for value in values)
     for k, (name, times, running, error, value) in enumerate(curves):
         one = (by_theory and value.theory) or value.value if value else running.max()
-        _band(ax, times, running / one, error / one, k, name if value else f"{name}: no plateau")
+        _curve(ax, times, running / one, error / one, k, name if value else f"{name}: no plateau")
+        if by_theory and value:
+            ax.theory(None, 1.0, value.theory_error / one, None, curve_style(k)[0])
     plateaus = [result.collective.plateau] if result.collective else [one.plateau for one in result.diffusion]
     for first, last in filter(None, plateaus[:1]):
         ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
-    ax.axhline(1.0, color=GREY, linewidth=0.8)
+    ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's, bands: its errors" if by_theory and values else None)
     ax.set_ylim(0.0, 1.6)
     over = "its maximum" if not values else "Enskog's" if by_theory else "its mean in the plateau"
     ax.set(xlabel="t (time)", ylabel=f"coefficient at time t over {over}")

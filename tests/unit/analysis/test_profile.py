@@ -4,9 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
+from scipy.stats import kstest
 
 from idealgas import profile
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, column_temperature
+from idealgas.analysis.profile.strips import strip_test
 from idealgas.analysis.profile.theory import JUMP, conduct, expected_profile, natural_axis
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.analysis.theory.hard_discs import compressibility_factor, mean_free_path
@@ -75,6 +78,35 @@ def test_all_discs_are_in_a_uniform_gas(make):
     assert (expected.density * 11.8 / 7 * 8).sum(axis=1) == pytest.approx([40, 20])
     assert expected.density[1, 0] < expected.density[1, 1]  # the heavy ones do not reach as far
     assert expected.temperature == pytest.approx(1.0)
+
+
+def test_all_strips_together_tell_a_slope_that_no_strip_shows():
+    """Discs that remember their strip for some frames: p is uniform without a slope, and small with one."""
+    weight, draw, memory = np.linspace(2.0, 8.0, 10) * 6 / 5, np.random.default_rng(3), 0.6
+
+    def test(slope):
+        shares = weight / weight.sum() * (1 + slope * np.linspace(-1, 1, 10))
+        number = 60 * shares / shares.sum()
+        noise = draw.multinomial(60, number / 60, 300) - number
+        noise[1:] *= np.sqrt(1 - memory**2)
+        return strip_test(number + lfilter([1.0], [1.0, -memory], noise, axis=0), weight, np.zeros(10))
+
+    right = np.array([test(0.0).p_value for _ in range(200)])
+    assert kstest(right, "uniform").pvalue > 1e-3
+    assert test(0.0).waves == 9
+    assert np.median([test(0.15).p_value for _ in range(20)]) < 0.01
+    assert strip_test(np.zeros((40, 10)), np.full(10, 0.1), np.zeros(10)) is None
+
+
+@pytest.mark.parametrize(
+    "gas", [("run.collisions_per_disc=400",), ("box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }", EQUAL)]
+)
+def test_the_strips_of_a_right_gas_agree_together(make, gas):
+    found = profile(make(*gas), "y", bins=8, start=10.0)
+    for entry in found.species:
+        assert 1e-4 < entry.density_test.p_value <= 1
+        assert 1e-4 < entry.temperature_test.p_value <= 1
+    assert "together: p = " in found.summary()
 
 
 def test_a_column_falls_off_with_height(make):

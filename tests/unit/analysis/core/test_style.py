@@ -1,5 +1,10 @@
 """What curves of a picture look like."""
 
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import COLOURS, LEGEND_ROWS, LINES, curve_style, panels
 
 
@@ -26,3 +31,21 @@ def test_numbers_of_an_axis_are_whole():
     ax.plot([0, 1], [1.00001, 1.00002])
     figure.draw_without_rendering()
     assert ax.yaxis.get_offset_text().get_text() == ""
+
+
+def test_a_theory_is_a_line_in_a_band_of_its_error():
+    """For all places, along a curve, and in a row of a list."""
+    _, (everywhere, along, row) = panels(3)
+    everywhere.theory(None, 2.0, 0.5)
+    (band,) = everywhere.patches
+    assert (band.get_y(), band.get_height()) == (1.5, 1.0)
+    along.theory([0, 1], np.array([1.0, 3.0]), np.array([0.0, 0.5]))
+    (band,) = along.collections
+    assert band.get_paths()[0].vertices[:, 1].max() == 3.5
+    row.theory_of_row(4, Estimate(1.0, 0.1, 9.0, theory=2.0, theory_error=0.25))
+    row.theory_of_row(5, Estimate(1.0, 0.1, 9.0))
+    (band,) = row.collections
+    assert isinstance(band, PolyCollection)
+    assert band.get_paths()[0].get_extents().extents.tolist() == pytest.approx([1.75, 3.65, 2.25, 4.35])
+    along.theory([0, 1], [1.0, 1.0], 0.0)
+    assert (len(along.collections), len(row.lines)) == (1, 1)

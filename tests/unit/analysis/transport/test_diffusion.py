@@ -63,6 +63,19 @@ def test_the_longest_lag_fits_the_box(measured):
         assert gas.coefficient.standard_error < 0.05 * gas.coefficient.value
 
 
+def test_the_laws_in_the_figure_pass_through_the_data(measured):
+    """Displacement by Fürth (1920) and velocity correlation by Enskog, from the first free time on, not 4Dt from 0."""
+    (found,) = measured([30, 30], 60, 1500, 20.0, x="periodic", y="periodic")
+    (gas,) = found.diffusion
+    correlation, displacement, *_ = transport_figure(found).axes
+    (fuerth,) = (line.get_ydata() for line in displacement.lines if line.get_label().startswith("4D[t - τ"))
+    assert fuerth[1:] == pytest.approx(gas.displacement[1:], rel=0.06)
+    (enskog,) = (line.get_ydata() for line in correlation.lines if line.get_label().startswith("exp(-t/τ)"))
+    early = gas.lag < gas.velocity_correlation_time.value
+    assert enskog[early] == pytest.approx(gas.correlation[early], abs=0.03)
+    assert len(correlation.collections) == 2
+
+
 def test_a_channel_of_single_file_has_no_coefficient(measured):
     """1.8 diameters wide, discs cannot pass: ⟨Δx²⟩ grows like √t, Harris, J. Appl. Prob. 2, 323 (1965)."""
     found = measured([40, 1.8], 20, 2000, 20.0, 200.0, x="periodic")
