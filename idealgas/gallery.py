@@ -118,7 +118,7 @@ def write_gallery(
     contents = "".join(f'<li><a href="#{name}">{escape(name)}</a></li>' for name in names)
     page = PAGE.substitute(style=text_of("report.css"), about=ABOUT, contents=contents, scenes="\n".join(scenes))
     with written(path, kind, force) as part:
-        part.write_text(page, encoding="utf-8")
+        part.write_text(page, encoding="utf-8", newline="\n")
     return path
 
 

@@ -42,7 +42,8 @@ def test_a_scene_has_its_digest(name):
 def test_a_difference_gives_exit_code_1(tmp_path, monkeypatch):
     shutil.copy(ROOT / "configs" / "quickstart.toml", tmp_path)
     (tmp_path / "digests.json").write_text(json.dumps({"quickstart": "0" * 64}))
-    monkeypatch.setattr("idealgas_cli._scenes._folder", lambda: tmp_path)
+    for module in ("idealgas.examples", "idealgas_cli.digest"):
+        monkeypatch.setattr(f"{module}.path_of", tmp_path.joinpath)
     done = CliRunner().invoke(main, ["digest", "--check"])
     assert (done.exit_code, done.output) == (1, f"quickstart: differs {on_record()['quickstart']}\n")
     assert CliRunner().invoke(main, ["digest", "--check", "nothing"]).exit_code == 2

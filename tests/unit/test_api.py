@@ -62,9 +62,18 @@ run.until = 20
 """
 
 
+STROKES = """
+box.size = [8, 8]
+thermostat = { temperature = 1, rate = 1 }
+piston = { side = "right", velocity = [[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]] }
+species = [{ name = "gas", count = 2, radius = 0.2, temperature = 1 }]
+run.until = 20
+"""
+
+
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs by name: one of each kind, one of sound waves, one that cools, and one with a gate."""
+    """Paths of logs by name: of each kind, of sound waves, one that cools, with a gate, and with strokes of a piston."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         name = packed.name.removesuffix(".xz").partition("-")[2]  # without the version of the format
@@ -72,6 +81,7 @@ def logs(tmp_path_factory):
     idealgas.simulate(idealgas.parse_scene(WAVES), folder / "waves.h5")
     idealgas.simulate(idealgas.parse_scene(GRAINS), folder / "grains.h5")
     idealgas.simulate(idealgas.parse_scene(GATE), folder / "gate.h5")
+    idealgas.simulate(idealgas.parse_scene(STROKES), folder / "strokes.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 

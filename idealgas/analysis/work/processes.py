@@ -78,7 +78,7 @@ def process(
     weight = _independent(np.exp(-(work - least) / temperature))
     free, error = least - temperature * math.log(weight.value), temperature * weight.standard_error / weight.value
     return Process(
-        f"{ends[0]:g} to {ends[1]:g} in {sum(duration for duration, _ in protocol):g}",
+        f"from {ends[0]:g} to {ends[1]:g} in {sum(duration for duration, _ in protocol):g}",
         ends,
         protocol,
         work,
@@ -101,7 +101,7 @@ def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
     weight = np.exp(-(one.work - one.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ of {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
+            f"⟨exp(−W/T)⟩ {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
             "error is too small."
         )
 

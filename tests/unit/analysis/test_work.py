@@ -95,7 +95,7 @@ def test_strokes_of_a_log(log):
         ((4.0, 5.0), ((2.0, 0.5),), 10),
     ]
     (crossing,) = found.crossings
-    assert crossing.name == "5 to 4 in 2"
+    assert crossing.name == "from 5 to 4 in 2"
     (rows,) = log.chunks()
     hits = rows.kind == Kind.PISTON
     for one, first, speed in zip(found.processes, (20, 42), (-0.5, 0.5), strict=True):

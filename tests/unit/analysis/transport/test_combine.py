@@ -57,7 +57,9 @@ def test_tables_and_figures(results):
     (table,) = ANALYSIS.tables(combined)
     assert len(table.rows) == 8
     (ax,) = ANALYSIS.figure(combined).axes
-    assert {"D", "η", "λ", "ζ", "Enskog's theory"} == {text.get_text() for text in ax.get_legend().get_texts()}
+    assert {"D", "η", "λ", "ζ", "Enskog's theory, bands: its errors"} == {
+        text.get_text() for text in ax.get_legend().get_texts()
+    }
     assert ANALYSIS.figure(ANALYSIS.combined([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
     closer = [replace(found, packing_fraction=0.3 + 1e-15 * k) for k, found in enumerate(results)]
     assert ANALYSIS.figure(ANALYSIS.combined(closer)).axes[0].get_xlabel() == "number of discs"
