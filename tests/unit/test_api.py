@@ -73,7 +73,7 @@ run.until = 20
 
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs by name: of each kind, of sound waves, one that cools, with a gate, and with strokes of a piston."""
+    """Paths of logs by name: of each kind, with sound waves, cooling, a gate, and strokes of a piston."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         name = packed.name.removesuffix(".xz").partition("-")[2]  # without the version of the format
