@@ -20,7 +20,7 @@ def path_of(name: str) -> Path:
 
 def paths() -> list[Path]:
     """Files of all scenes, in alphabetical order of their names."""
-    return sorted(path_of("").glob(f"*{SCENE}"))
+    return sorted(path_of("").glob(f"*{SCENE}"), key=lambda path: path.stem)
 
 
 def names() -> list[str]:

@@ -85,7 +85,7 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
     before = log.scene
     name = f"{log.path}: scene"
     text = dump_document(parse_scene(log.scene_text, name, overrides, discs=log.given))
-    scene = parse_scene(text, name, discs=log.given, changes=log.changes)
+    scene = parse_scene(log.scene_text, name, overrides, discs=log.given, changes=log.changes)
     run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
     expected = before.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]

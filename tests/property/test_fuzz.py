@@ -104,12 +104,17 @@ def run_scene(text: str, max_errors: MaxErrors) -> None:
     simulation = Simulation(gas, EventDriven(), effects)
     invariants = InvariantChecker(scene, gas, effects, max_errors)
     seen: list[EventBatch] = []
-    epoch = 0
+    begin_next = simulation.next_epoch
+
+    def next_epoch() -> None:
+        """Show the checker the state between two epochs, which the next event changes."""
+        begin_next()
+        if len(simulation.steered):
+            invariants.steer(simulation)
+
+    simulation.next_epoch = next_epoch
     longest, path = MAX_DISPLACEMENT * gas.radius.min(), 0.0  # an epoch's, at least, unless there is much to do
     for rows in batches(simulation, stop, 4, events=1):
-        if simulation.epoch != epoch and len(simulation.steered):
-            invariants.steer(simulation)
-        epoch = simulation.epoch
         if len(rows.time):
             seen.append(rows)
             invariants.see(rows, simulation)

@@ -47,7 +47,7 @@ def _of_log(result: Pressure) -> Figure:
     known = [route.compressibility_factor.theory for route in routes]
     last = max((k for k, z in enumerate(known) if z), default=None)
     for k, route in enumerate(routes):
-        label = "theory of what is measured, ± its error" if k == last else None
+        label = "theory, ± its error" if k == last else None
         ax.theory_of_row(k, route.compressibility_factor, label)
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     name_rows(ax, [route.name for route in routes])

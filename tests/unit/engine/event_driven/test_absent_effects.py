@@ -51,7 +51,7 @@ from idealgas.run.simulate import simulate
 
 if sys.argv[2] == "all":
     sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
-simulate(effect_scene("all", 2000) if sys.argv[2] == "all" else effect_scene(None, 300), sys.argv[1])
+simulate(effect_scene("all", 4000) if sys.argv[2] == "all" else effect_scene(None, 300), sys.argv[1])
 sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
 signatures = advance_events.compiled.signatures if hasattr(advance_events, "compiled") else []
