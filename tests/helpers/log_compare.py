@@ -1,5 +1,6 @@
 """Whole logs compared, dataset by dataset; and scenes for them, shipped ones with snapshots and an end of their own."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import h5py
@@ -7,12 +8,15 @@ import numpy as np
 
 from helpers.support import ROOT
 from idealgas.log import open_log
+from idealgas.log.summary import Summary
+from idealgas.run.resume import STOP_RULES, resume
+from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, load_scene
 
 OWN = {"seconds", "compile_seconds", "threads", "threads_reason", "shared_slices", "aborted_slices"}
 """What a summary tells of the way a run was computed."""
 
-NO_END = ("run.until=", "run.events=", "run.collisions_per_disc=", "run.trials=")
+NO_END = tuple(f"run.{name}=" for name in STOP_RULES)
 
 
 def scene_of(name: str, *overrides: str) -> Scene:
@@ -41,3 +45,24 @@ def differences(one: Path, other: Path) -> list[str]:
     a, b = contents(one), contents(other)
     assert a.keys() == b.keys()
     return [name for name in a if not np.array_equal(a[name], b[name])]
+
+
+def same_by_brute_force_and_resumed(folder: Path, path: Path, overrides: Sequence[str], *ends: str) -> Summary:
+    """Run a scene to `whole.h5`, by brute force and in pieces: the same log, and no energy unaccounted for.
+
+    ends: overrides at which the run in pieces ends before its own end.
+    """
+    whole, oracle, resumed = (folder / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
+    scene = load_scene(path, overrides)
+    own_end = [f"run.{name}={'' if (end := getattr(scene.run, name)) is None else end}" for name in STOP_RULES]
+    summary = simulate(scene, whole)
+    simulate(load_scene(path, [*overrides, "run.method=brute_force"]), oracle)
+    simulate(load_scene(path, [*overrides, ends[0]]), resumed)
+    for end in (*([end] for end in ends[1:]), own_end):
+        resume(resumed, end)
+    assert differences(resumed, whole) == []
+    with open_log(whole) as log, open_log(oracle) as other:
+        columns = list(zip(log.chunks(), other.chunks(), strict=True))
+        assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
+    assert abs(summary.energy_drift) < 1e-12
+    return summary

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import differences
+from helpers.log_compare import same_by_brute_force_and_resumed
 from helpers.support import ROOT
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from idealgas import evolution, load_scene, open_log, parse_scene, pressure, resume, simulate
+from idealgas import evolution, load_scene, open_log, parse_scene, pressure, simulate
 from idealgas.analysis.theory.hard_discs import compressibility_factor, fluid_contact_value
 from idealgas.columns import Kind
 
@@ -25,18 +25,10 @@ OSMOSIS = ROOT / "configs" / "osmosis.toml"
     ],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
-    whole, oracle, resumed = (tmp_path / name for name in ("whole.h5", "oracle.h5", "resumed.h5"))
-    summary = simulate(load_scene(GOLDEN, gravity), whole)
-    simulate(load_scene(GOLDEN, [*gravity, "run.method=brute_force"]), oracle)
-    simulate(load_scene(GOLDEN, [*gravity, "run.until=11"]), resumed)
-    resume(resumed, ["run.until=25"])
-    assert differences(resumed, whole) == []
-    with open_log(whole) as log, open_log(oracle) as other:
-        columns = list(zip(log.chunks(), other.chunks(), strict=True))
-        assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
+    same_by_brute_force_and_resumed(tmp_path, GOLDEN, gravity, "run.until=11")
+    with open_log(tmp_path / "whole.h5") as log:
         partner = np.concatenate([block.partner for block in log.chunks()])
         assert min((partner == -1 - k).sum() for k in (4, 5, 6)) > 3
-    assert abs(summary.energy_drift) < 1e-12
 
 
 def rows_of(tmp_path, text):
