@@ -65,7 +65,8 @@ def run_with_progress(
         else:
             _print(summary, path, from_start)
         if stopped():
-            echo(f"interrupted; `idealgas resume {shlex.quote(path)}` continues it", err=True)
+            if not summary.completed:
+                echo(f"interrupted; `idealgas resume {shlex.quote(path)}` continues it", err=True)
             raise SystemExit(EXIT_CODE) if interrupted() else BrokenPipeError
 
 

@@ -12,9 +12,6 @@ from ._terminal import written
 
 NOTEBOOK = ".ipynb"
 
-TEMPLATE = "template"
-"""Name of the commented scene that `idealgas new` copies."""
-
 SCHEMA = "scene.schema.json"
 """Name of the JSON Schema of scenes; the first line of a scene refers to it, in the same folder."""
 

@@ -58,6 +58,8 @@ class EventStream:
 
     def __call__(self, batch: "EventBatch") -> None:
         """Print the rows of a batch; waits while the pipe is full."""
+        if self.closed:
+            return
         try:
             print_events(batch)
         except BrokenPipeError:

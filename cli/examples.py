@@ -7,7 +7,7 @@ from idealgas.examples import SCENE, names
 
 from ._options import FILE, force_option
 from ._progress import progress_bar
-from ._scenes import TEMPLATE, copy_example, notebooks, shown_by
+from ._scenes import copy_example, notebooks, shown_by
 from ._terminal import data, terminal, written
 
 
@@ -46,9 +46,9 @@ def examples(name: str | None, output: str | None, gallery: str | None, force: b
 
 def _write_gallery(path: str, name: str | None, force: bool) -> None:
     """Run all scenes, or one of them, and write the page of their pictures."""
-    from idealgas.gallery import write_gallery
+    from idealgas.gallery import SCENES, write_gallery
 
-    scenes = [each for each in names() if each != TEMPLATE] if name is None else [name.removesuffix(SCENE)]
+    scenes = SCENES if name is None else (name.removesuffix(SCENE),)
     with progress_bar("running scenes") as progress:
         write_gallery(path, scenes, force=force, on_scene=lambda k, name: progress(k, len(scenes), name))
     written(path)

@@ -2,10 +2,10 @@
 
 import click
 
-from idealgas.examples import SCENE, path_of
+from idealgas.examples import SCENE, TEMPLATE, path_of
 
 from ._options import force_option
-from ._scenes import TEMPLATE, copy_example
+from ._scenes import copy_example
 from ._terminal import data
 
 

@@ -49,7 +49,7 @@ class Kind(IntEnum):
     THERMOSTAT = 4
     """The heat bath of a thermostat."""
     STEERED = 5
-    """Nothing: its velocity changed from outside."""
+    """Nothing: its velocity or its acceleration changed from outside."""
 
 
 class Column(NamedTuple):

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 
 SCENE = ".toml"
 
+TEMPLATE = "template"
+"""Name of the commented scene that `idealgas new` copies, which shows no gas."""
+
 
 def path_of(name: str) -> Path:
     """Path of an installed file."""

@@ -9,10 +9,13 @@ from string import Template
 from tempfile import TemporaryDirectory
 
 from idealgas.analysis.core.tables import escape
-from idealgas.errors import UserError
-from idealgas.examples import SCENE, load_example, path_of
+from idealgas.errors import UserError, unknown
+from idealgas.examples import SCENE, TEMPLATE, load_example, names, path_of
 from idealgas.files import check_output, written
 from idealgas.report.page import description_html, text_of
+
+SCENES = tuple(name for name in names() if name != TEMPLATE)
+"""Names of the scenes in the gallery."""
 
 ABOUT = "The example scenes, with the discs at the end of the run, coloured by speed or, in mixtures, by species."
 
@@ -87,7 +90,7 @@ def draw(name: str, path: Path) -> None:
 
 def write_gallery(
     output: str | os.PathLike[str],
-    names: Sequence[str],
+    scenes: Sequence[str] = SCENES,
     *,
     force: bool = False,
     on_scene: Callable[[int, str], None] = lambda done, name: None,
@@ -96,27 +99,30 @@ def write_gallery(
 
     Args:
         output: path of the page, with the ending .html or .htm.
-        names: of the scenes.
+        scenes: their names.
         force: whether to replace an existing page.
         on_scene: called before each scene with the number of finished ones and its name.
 
     Raises:
-        UserError: for another ending.
+        UserError: for another ending or an unknown name.
         OutputError: if the page cannot be written.
     """
     path, kind = Path(output), Path(output).suffix.lower()
     if kind not in (".html", ".htm"):
         raise UserError(f"{output}: unknown kind of page (allowed: .html)")
+    for name in scenes:
+        if name not in SCENES:
+            raise unknown("example", name, list(SCENES))
     check_output(path, kind, force)
-    scenes = []
+    parts = []
     with TemporaryDirectory(prefix="idealgas-gallery-") as folder:
-        for k, name in enumerate(names):
+        for k, name in enumerate(scenes):
             on_scene(k, name)
             picture = Path(folder, f"{name}.png")
             draw(name, picture)
-            scenes.append(_scene(name, picture.read_bytes()))
-    contents = "".join(f'<li><a href="#{name}">{escape(name)}</a></li>' for name in names)
-    page = PAGE.substitute(style=text_of("report.css"), about=ABOUT, contents=contents, scenes="\n".join(scenes))
+            parts.append(_scene(name, picture.read_bytes()))
+    contents = "".join(f'<li><a href="#{name}">{escape(name)}</a></li>' for name in scenes)
+    page = PAGE.substitute(style=text_of("report.css"), about=ABOUT, contents=contents, scenes="\n".join(parts))
     with written(path, kind, force) as part:
         part.write_text(page, encoding="utf-8", newline="\n")
     return path

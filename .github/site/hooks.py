@@ -34,7 +34,6 @@ PAGES = {
 """Pages of the site, by files of the repository."""
 
 LINK = re.compile(r"(\[[^]]*\])\(([^):#]+)(#[^)]*)?\)")
-SCENES = [path for path in sorted((ROOT / "configs").glob("*.toml")) if path.stem != "template"]
 
 
 def on_files(files: Any, config: Any) -> Any:
@@ -74,14 +73,14 @@ def _linked(source: str, repository: str) -> str:
 
 def _gallery() -> str:
     """Page with every example scene: its picture, its description and its commands."""
-    from idealgas.gallery import ABOUT, commands, described
+    from idealgas.gallery import ABOUT, SCENES, commands, described
 
     parts = ["# Gallery", ABOUT]
-    for path in SCENES:
-        title, description = described(path.stem)
+    for name in SCENES:
+        title, description = described(name)
         description = description.replace("<pre ", '<pre style="overflow-x: auto" ')  # the theme has none for it
-        parts += [f"## {title}", f"![{title}](gallery/{path.stem}.png)", description]
-        parts.append("\n".join(("```bash", *commands(path.stem), "```")))
+        parts += [f"## {title}", f"![{title}](gallery/{name}.png)", description]
+        parts.append("\n".join(("```bash", *commands(name), "```")))
     return "\n\n".join(parts) + "\n"
 
 
@@ -109,13 +108,13 @@ def _keys(result: type) -> Iterator[str]:
 
 def make_pictures() -> None:
     """Run the example scenes of which there is no picture, and draw them."""
-    from idealgas.gallery import draw
+    from idealgas.gallery import SCENES, draw
 
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for path in SCENES:
-        picture = PICTURES / f"{path.stem}.png"
+    for name in SCENES:
+        picture = PICTURES / f"{name}.png"
         if not picture.exists():
-            draw(path.stem, picture)
+            draw(name, picture)
             print(picture)
 
 

@@ -171,7 +171,7 @@ class EntropyAnalysis(Analysis):
                     continue
                 ax.plot(result.time, values, line, color=colour, label=one.species)
                 if found is not None and found.theory is not None:
-                    ax.axhline(found.theory, color=colour, linestyle="--", linewidth=0.9, label="equilibrium, theory")
+                    ax.theory(None, found.theory, found.theory_error, "equilibrium, theory", colour)
         axes[0].set_ylabel("Boltzmann's H per disc, ⟨ln f⟩ (no unit)")
         if has_positions:
             axes[1].set_ylabel("entropy of positions per disc (no unit)")

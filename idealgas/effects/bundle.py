@@ -57,8 +57,9 @@ else:
 
 
 def for_kernels(effects: Effects) -> Effects:
-    """The effects without the fields that no kernel needs."""
-    return effects._replace(schedule=None, steering=None, step_energy=None)
+    """The effects without the fields that no kernel needs, and without a gravity that pulls nothing at present."""
+    gravity = effects.gravity if effects.gravity is not None and any(effects.gravity) else None
+    return effects._replace(gravity=gravity, schedule=None, steering=None, step_energy=None)
 
 
 def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:

@@ -19,6 +19,7 @@ from idealgas.effects.schedule import (
     steps_of,
     value_at,
 )
+from idealgas.effects.wall import LastingWall
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
 from idealgas.physics.steering import reversed_velocity
@@ -133,7 +134,7 @@ class Piston(SteppedTable):
 
 
 @dataclass(frozen=True)
-class InnerPiston:
+class InnerPiston(LastingWall):
     """An inner piston among the walls inside the box, where it is at the start. Its left is the lower side."""
 
     start: Point
@@ -142,17 +143,6 @@ class InnerPiston:
     name: str = NAME
     place: Key = ("piston", "position")
     radius = 0.0
-    temperature = permeable_from = arc = None
-    absences = ()
-    is_permeable = False
-
-    def is_there(self, _: float) -> bool:
-        """Whether it is present at a time."""
-        return True
-
-    def lets_pass(self, _: str) -> bool:
-        """Whether it lets discs of a species pass."""
-        return False
 
 
 def inner_piston(table: Piston | None, size: tuple[float, float]) -> tuple[InnerPiston, ...]:

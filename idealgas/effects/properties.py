@@ -51,12 +51,12 @@ class Properties:
     discs pass a wall in one direction only.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
-    are. acceleration: of all discs between events at the start, length/time². later_accelerations: the same from
-    later times on. emits: temperature of each thermal wall at the start,
-    by number; None for those that reflect. bath: temperature at the start of a heat bath that gives discs new
-    velocities wherever they are; None without one. later_temperatures: of walls and heat bath. thermostat_rate: per
-    disc, 1/time. last_wall_removed_at: time from which on no wall is inside the box; infinite if one always is.
-    changes: times at which a value changes in a step, or a gate opens or closes.
+    are. acceleration: of all discs between events at the start, length/time². later_accelerations: the same from later
+    times on. emits: temperature of each thermal wall at the start, by number; None for those that reflect. bath:
+    temperature at the start of a heat bath that gives discs new velocities wherever they are; None without one.
+    later_temperatures: of walls and heat bath. thermostat_rate: per disc, 1/time. last_wall_removed_at: time from which
+    on no wall is inside the box; infinite if one always is. changes: times at which a value changes in a step, or a
+    gate opens or closes.
     """
 
     uniform: bool = _plain(True, operator.and_)

@@ -109,17 +109,29 @@ class Wall(SteppedTable):
         return not any(opens <= time < closes for opens, closes in self.absences)
 
 
+class LastingWall:
+    """A wall that no table `[[wall]]` makes: always there, straight, not thermal, and no disc passes it."""
+
+    temperature = permeable_from = arc = None
+    absences = ()
+    is_permeable = False
+
+    def is_there(self, _: float) -> bool:
+        """Whether it is present at a time."""
+        return True
+
+    def lets_pass(self, _: str) -> bool:
+        """Whether it lets discs of a species pass."""
+        return False
+
+
 @dataclass(frozen=True)
-class FixedDisc:
+class FixedDisc(LastingWall):
     """A fixed disc: a wall around a point. number: of its table `[[disc]]`; start: its centre; radius: length."""
 
     number: int
     start: tuple[float, float]
     radius: float
-    temperature = permeable_from = None
-    absences = ()
-    is_permeable = False
-    arc = None
 
     @property
     def end(self) -> tuple[float, float]:
@@ -140,14 +152,6 @@ class FixedDisc:
     def action(self) -> str:
         """Short description for output."""
         return f"fixed disc, radius {self.radius:g}"
-
-    def is_there(self, _: float) -> bool:
-        """Whether it is present at a time."""
-        return True
-
-    def lets_pass(self, _: str) -> bool:
-        """Whether it lets discs of a species pass."""
-        return False
 
 
 def _properties(tables: Tables) -> Properties:

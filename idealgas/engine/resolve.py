@@ -132,6 +132,12 @@ def resolve_side(disc, own, side, time, effects):
 
 
 @inline
+def face_of(wall, left):
+    """Number of the left or the right face of a wall inside the box; the sides have one face each."""
+    return 2 * wall - FIRST_SEGMENT + (0 if left else 1)
+
+
+@inline
 def resolve_segment(disc, own, segment, time, images, segments, effects):
     """Collide a disc with a wall inside the box at a local time; return whether it touches an end of the wall."""
     if segments is not None:
@@ -141,7 +147,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
         )
         px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
-        face = FIRST_SEGMENT + 2 * segment + (0 if left > 0.0 else 1)
+        face = face_of(FIRST_SEGMENT + segment, left > 0.0)
         record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
         return at_end
     return False
@@ -166,7 +172,7 @@ def resolve_piston(disc, own, time, piston, effects):
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         face = np.int64(p.wall)
         if is_inner(piston):
-            face += face - FIRST_SEGMENT + (0 if nx + ny < 0.0 else 1)
+            face = face_of(face, nx + ny < 0.0)
         record_hit(effects.flow, disc, face, nx, ny, abs(ny), abs(nx), px, py)
         return p.wall
     return 0

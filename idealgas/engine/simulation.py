@@ -61,7 +61,7 @@ class Totals(NamedTuple):
         disc_collisions: collisions of two discs.
         wall_hits: hits of walls, piston included.
         thermostat_collisions: of discs with a heat bath.
-        steered: velocities that were changed from outside.
+        steered: discs whose velocities or acceleration were changed from outside.
         trials: pairs tried by Monte Carlo.
     """
 
@@ -97,7 +97,7 @@ class Simulation:
     time: float = 0.0
     epoch: int = 0
     totals: Totals = field(default_factory=Totals)
-    steered: np.ndarray = field(default_factory=_nobody)
+    steered: np.ndarray = field(default_factory=_nobody, init=False)
 
     def __post_init__(self) -> None:
         """Begin the first epoch."""
@@ -243,12 +243,12 @@ class Simulation:
     def set_velocities(self, discs: np.ndarray, velocity: np.ndarray) -> None:
         """End the epoch at the time reached, where `epoch_over` is set, and give discs (n,) new velocities (n, 2)."""
         self._end_epoch()
-        changed = self.gas.velocity.copy()
-        changed[discs] = velocity
-        before, after = self.gas.velocity.T, changed.T
+        velocities = self.gas.velocity.copy()
+        velocities[discs] = velocity
+        before, after = self.gas.velocity.T, velocities.T
         given = 0.5 * self.gas.mass * ((after - before) * (after + before)).sum(axis=0)
         add_term(self.effects.step_energy, float(given.sum()))
-        self._steer(np.flatnonzero((before != after).any(axis=0)), changed)
+        self._steer(np.flatnonzero((before != after).any(axis=0)), velocities)
         self._begin()
 
     def reschedule(self, schedule: Any) -> None:

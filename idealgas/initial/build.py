@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 
-from idealgas.columns import FIRST_SEGMENT
 from idealgas.initial.contacts import static_contact_issues
 from idealgas.jit import in_python
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.checks.piston import crushed_issues
 from idealgas.scene.sizes import Values, mass_of
-from idealgas.scene.walls import number_walls
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
 
@@ -120,8 +118,10 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length, of all discs; of few that find room soon without compiled code."""
-    dense = math.pi * float(radius @ radius) > SPARSE * scene.box.size[0] * scene.box.size[1]
-    with in_python(len(radius) <= FEW and not dense and len(number_walls(scene)) == FIRST_SEGMENT):
+    left, bottom, right, top = scene.room
+    sparse = math.pi * float(radius @ radius) <= SPARSE * (right - left) * (top - bottom)
+    anywhere = not scene.walls and not any(s.region for _, s in scene.placed)
+    with in_python(len(radius) <= FEW and sparse and anywhere):
         return _placed_in_order(scene, radius)
 
 
@@ -131,7 +131,7 @@ def _placed_in_order(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
-    walls = [wall for wall in number_walls(scene)[FIRST_SEGMENT:] if wall.is_there(0.0)]
+    walls = [wall for wall in scene.walls if wall.is_there(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     grid = placement.make_grid(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")

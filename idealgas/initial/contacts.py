@@ -40,9 +40,10 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     if acceleration.any():
         for k, wall in enumerate(scene.segments):
             if wall.is_there(0.0):
-                freely = [wall.lets_pass(name) and wall.permeable_from is None for name in gas.species_names]
                 normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
-                touches = ((normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2) & ~np.array(freely)[gas.species]
+                touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
+                if wall.is_permeable and wall.permeable_from is None:
+                    touches &= ~np.array([wall.lets_pass(name) for name in gas.species_names])[gas.species]
                 yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston

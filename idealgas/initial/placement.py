@@ -16,6 +16,7 @@ from idealgas.physics.arc import ARC, faces_arc, toggles
 from idealgas.physics.arc_geometry import NO_ARC, Arc, bounds, nearest_points
 from idealgas.physics.periodic import nearest_image
 from idealgas.scene.lattice import TriangularLattice
+from idealgas.scene.solids import NO_SOLIDS
 
 REFUSALS_PER_DISC = 3_000
 """Mean number of refused positions per disc after which random placement fails."""
@@ -28,8 +29,6 @@ WALL = np.dtype(
     [("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8"), ("arc", ARC)], align=True
 )
 """Start of a wall, the way from there to its end, and the radius of a fixed disc, length; and the arc, if it is one."""
-
-NO_SOLIDS: Mapping[str, Sequence[Any]] = {"inside": (), "outside": ()}
 
 
 class Grid(NamedTuple):
@@ -67,7 +66,7 @@ def make_grid(
     radius: np.ndarray,
     periodic: tuple[bool, bool] = (False, False),
     walls: Sequence[Any] = (),
-    solids: Mapping[str, Sequence[Any]] = NO_SOLIDS,
+    solids: Mapping[str, Sequence[Any]] = NO_SOLIDS.walls,
 ) -> Grid:
     """Empty grid with about one disc per cell.
 

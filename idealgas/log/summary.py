@@ -27,8 +27,8 @@ class Summary:
         rows: number of event rows, two for a collision of two discs.
         epochs: number of epochs.
         energy_change: change of the energy of the discs since the start, energy.
-        energy_drift: change of the energy of discs and piston, plus losses in collisions, minus the energy from walls
-            and a heat bath, relative to the largest of these: rounding errors only.
+        energy_drift: change of the energy of discs and piston, plus losses in collisions, minus the energy from
+            walls, a heat bath and changes, relative to the largest of these: rounding errors only.
         deepest_overlap: deepest overlap of two discs at epoch starts and the end, relative to the sum of their radii;
             with time steps that of all collisions.
         max_wall_penetration: largest distance by which a disc reached out of the box at these times, in diameters.

@@ -178,6 +178,7 @@ class LogWriter:
 
         It has room for the rest of the chunk in the file, and one row more for the second row of a pair.
         """
+        self._check_open()
         self._lent = self._free.get()
         self._raise()
         return self._lent.rows(self.rows % BLOCK, BLOCK + 1)
@@ -188,7 +189,7 @@ class LogWriter:
         return self._events is not None and self._free.qsize() < BUFFERS - 1
 
     def write(self, rows: int) -> None:
-        """Store the first `rows` rows of the buffer from `batch`, which may not be used afterwards."""
+        """Store the first `rows` rows of the buffer from `batch`, which may be read until the next call of `batch`."""
         assert self._events is not None, "this log has no events"
         start = self.rows % BLOCK
         self.rows += rows
@@ -270,8 +271,14 @@ class LogWriter:
         self._put(_Rows(table, 0, 1, data))
 
     def _put(self, item: _Rows) -> None:
-        self._raise()
+        self._check_open()
         self._queue.put(item)
+
+    def _check_open(self) -> None:
+        """Raise OutputError if nothing can be stored any more."""
+        self._raise()
+        if not self._thread.is_alive():
+            raise OutputError(f"{self.path}: this log is closed")
 
     def _raise(self) -> None:
         if self._error is not None:

@@ -233,9 +233,9 @@ def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, pe
 
     passage: from where the wall lets the disc pass, see `permeable`: an arc from both sides or from none.
     """
+    if passage is not None and passage == OPEN:
+        return NEVER
     if arcs is not None and arcs[U(k)].radius > 0.0:
-        if passage is not None and passage == OPEN:
-            return NEVER
         return arc_contact(disc, own, segments[U(k)], arcs[U(k)], gravity, restitution, periodic, images)
     return segment_contact(disc, own, segments[U(k)], passage, gravity, restitution, periodic, images)
 

@@ -1,4 +1,4 @@
-"""Gravity: the same constant acceleration everywhere, so that discs fly along parabolas."""
+"""Gravity: the same acceleration everywhere, constant between its steps, so that discs fly along parabolas."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from idealgas.jit import inline
 
 
 class Gravity(NamedTuple):
-    """Constant acceleration of the discs.
+    """Acceleration of the discs at present.
 
     Attributes:
         x: component along x, length/time².

@@ -16,7 +16,6 @@ from idealgas.physics.disc_wall import reflected_velocity
 from idealgas.physics.motion import NEVER, position_after, velocity_after
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.permeable import (
-    OPEN,
     SOLID,
     closed_face_delay,
     closed_side,
@@ -219,12 +218,9 @@ def one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
 
 @inline
 def segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
-    """Time until a disc touches a segment, unless that lets it pass; NEVER if it does not."""
-    if passage is not None:
-        if passage == OPEN:
-            return NEVER
-        if passage != SOLID:
-            return one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
+    """Time until a disc touches a segment that does not let it pass from both sides; NEVER if it does not."""
+    if passage is not None and passage != SOLID:
+        return one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
     return solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity)
 
 

@@ -182,9 +182,9 @@ class LoggedRun:
 
     def _write(self, batch: EventBatch, rows: int) -> None:
         """Write the first rows of a buffer of the log."""
+        self._log.write(rows)
         if self._on_events is not None and rows:
             self._on_events(batch.rows(0, rows))
-        self._log.write(rows)
 
     @property
     def _next_snapshot(self) -> float:

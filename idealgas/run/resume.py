@@ -82,17 +82,17 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
-    before = log.scene
-    name = f"{log.path}: scene"
-    text = dump_document(parse_scene(log.scene_text, name, overrides, discs=log.given))
-    scene = parse_scene(log.scene_text, name, overrides, discs=log.given, changes=log.changes)
+    before, given, name = log.scene, log.given, f"{log.path}: scene"
+    asked = scene = parse_scene(log.scene_text, name, overrides, discs=given)
+    if log.changes:
+        scene = parse_scene(log.scene_text, name, overrides, discs=given, changes=log.changes)
     run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
     expected = before.model_copy(update={"run": run})
     changed = [name for name in Scene.model_fields if getattr(scene, name) != getattr(expected, name)]
     if changed:
         tables = " and ".join(f"[{name}]" for name in changed)
         raise LogError(f"{log.path}: cannot be resumed with another {tables}: only {', '.join(STOP_RULES)} may change")
-    return text, scene
+    return dump_document(asked), scene
 
 
 def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:

@@ -79,7 +79,7 @@ def simulate(
         on_progress: called several times per second with the `Progress` of the run.
         interrupted: called as often; once it returns True, the run ends after its last event, and the summary has
             `completed` False. The log can then be read and resumed, as after Ctrl-C (KeyboardInterrupt).
-        on_events: called with the next rows of the log, in order, which it may use until it returns; the run waits.
+        on_events: called with the next rows of the log, in order, which it may read until it returns; the run waits.
 
     Raises:
         SceneError: if the discs cannot be placed.

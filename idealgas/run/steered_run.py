@@ -9,11 +9,15 @@ from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
 from idealgas.log import LogState
+from idealgas.log.schema import CHANGE_COLUMNS
 from idealgas.run.effects import make_schedule
 from idealgas.run.layout import by_name, snapshot_state
 from idealgas.run.logged_run import LoggedRun
 from idealgas.scene.changes import SceneChange, changed_scene
 from idealgas.toml.table import LARGEST
+
+LONGEST_SETTING = np.dtype(CHANGE_COLUMNS[-1].dtype).itemsize
+"""Largest length of the text of a change, bytes."""
 
 
 class SteeredRun(LoggedRun):
@@ -41,7 +45,7 @@ class SteeredRun(LoggedRun):
     @property
     def ended(self) -> bool:
         """Whether the run has reached the end of its scene."""
-        return self._slice_events > 0 and self._simulation.finished(self._stop)
+        return self._simulation.finished(self._stop)
 
     def advance(self, *, until: float = math.inf, events: int = UNLIMITED) -> bool:
         """Simulate to a time or by a number of events, at most to the end of the scene.
@@ -80,15 +84,16 @@ class SteeredRun(LoggedRun):
             UserError: if the scene has no table [steering], or for arrays of other shapes or values.
         """
         number = len(self._simulation.gas)
-        ids = np.arange(number) if discs is None else np.asarray(discs, int)
+        ids = np.arange(number) if discs is None else np.asarray(discs)
         given = np.asarray(velocity, float)
-        if ids.ndim != 1 or not ((ids >= 0) & (ids < number)).all():
+        whole = ids.dtype.kind in "iu" or not ids.size  # an empty list has no whole numbers
+        if ids.ndim != 1 or not whole or not ((ids >= 0) & (ids < number)).all():
             raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
         if given.shape != (len(ids), 2) or not (np.abs(given) <= LARGEST).all():
             raise UserError(f"velocity: not ({len(ids)}, 2) numbers up to {LARGEST:g} (got {given.shape})")
         self._arrive()
         self._stall.end_epoch()
-        self._simulation.set_velocities(ids, given)
+        self._simulation.set_velocities(ids.astype(int), given)
         self._begin_epoch(changed=True)
 
     def reverse(self) -> None:
@@ -115,6 +120,8 @@ class SteeredRun(LoggedRun):
         self._arrive()
         if self.time == 0:
             raise UserError("nothing has happened yet: change the scene itself")
+        if len(setting.encode()) > LONGEST_SETTING:
+            raise UserError(f"a setting of {len(setting.encode())} bytes (allowed at most {LONGEST_SETTING})")
         simulation, change = self._simulation, SceneChange(self.time, setting)
         self._scene = changed_scene(self._scene, change)
         self._stall.end_epoch()
@@ -127,5 +134,7 @@ class SteeredRun(LoggedRun):
         simulation = self._simulation
         if self._scene.steering is None:
             raise UserError("only a scene with a table [steering] can be changed in its run")
+        if self.ended:
+            raise UserError("the run has reached the end of its scene")
         if not simulation.epoch_over:
             self._advance(Stop(time=math.nextafter(self.time, math.inf) if self.time else 0.0))

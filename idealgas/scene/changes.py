@@ -1,12 +1,11 @@
 """Changes that a program makes to a scene while it runs: the past stays, and the rest of the steps is replaced."""
 
-import copy
 from typing import Any, NamedTuple
 
 from idealgas.effects.schedule import SteppedTable, as_times, steps_of
 from idealgas.scene.scene import Scene, make_scene
 from idealgas.toml.issues import SceneError
-from idealgas.toml.overrides import OverrideError, apply
+from idealgas.toml.overrides import OverrideError, find, value_of
 from idealgas.toml.text import Origin
 
 OPEN = "open"
@@ -37,23 +36,17 @@ def changed_scene(scene: Scene, change: SceneChange) -> Scene:
 
 def apply_change(document: dict[str, Any], change: SceneChange) -> None:
     """Make a change in a document. Raises OverrideError if the document has no such key."""
-    after = copy.deepcopy(document)
-    *tables, key = apply(change.setting, after)
-    before: Any = document
-    value: Any = after
-    for name in tables:
-        known = before.keys() if isinstance(before, dict) else range(len(before))
-        if name not in known:
-            raise OverrideError(f"no {name} in the scene")
-        before, value = before[name], value[name]
-    value = value[key]
-    if key == OPEN and tables[0] == "wall" and isinstance(value, bool):
-        past = {name: [t for t in as_times(before.pop(name, None)) if t <= change.time] for name in _GATE}
+    (*tables, key), table, text = find(change.setting, document)
+    if not text:
+        raise OverrideError("no value")
+    value = value_of(text)
+    if key == OPEN and tables[:1] == ["wall"] and isinstance(value, bool):
+        past = {name: [t for t in as_times(table.pop(name, None)) if t <= change.time] for name in _GATE}
         past[_GATE[not value]].append(change.time)
-        before.update({name: times for name, times in past.items() if times})
-    elif key in _STEPPED and key in before:
-        steps = steps_of(before[key])
-        before[key] = [*(step for step in steps if step[0] < change.time), (change.time, value)]
+        table.update({name: times for name, times in past.items() if times})
+    elif key in _STEPPED and key in table:
+        steps = steps_of(table[key])
+        table[key] = [*(step for step in steps if step[0] < change.time), (change.time, value)]
     else:
         allowed = ", ".join(sorted((*_STEPPED, OPEN)))
         raise OverrideError(f"not a value that can change (allowed {allowed}, if the scene has it)")

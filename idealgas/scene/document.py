@@ -19,7 +19,7 @@ from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
 from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
-from idealgas.scene.solids import Solids, find_solids
+from idealgas.scene.solids import NO_SOLIDS, Solids, find_solids
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
@@ -92,6 +92,8 @@ class Document(_DiscsAndEffects):
     @property
     def solids(self) -> Solids:
         """Solids that the tables [[wall]] make."""
+        if not any(wall is not None and wall.solid for wall in self.wall):
+            return NO_SOLIDS
         return find_solids(tuple(self.wall), self.box.size[0] * self.box.size[1])
 
     @property
@@ -163,7 +165,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def body_force(self) -> Vector:
-        """Constant acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
+        """Largest acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
         gravity = self.properties.strongest_pull
         body_force = list(gravity)
         if self.piston:

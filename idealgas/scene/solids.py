@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from idealgas.physics.arc import toggles
-from idealgas.physics.arc_geometry import NO_ARC, Point
+from idealgas.physics.arc_geometry import NO_ARC, Point, bounds
 
 if TYPE_CHECKING:
     from idealgas.effects.wall import Wall
@@ -36,16 +36,24 @@ class Solids(NamedTuple):
         return found | ~enclosed(points, self.walls["outside"]) if self.walls["outside"] else found
 
 
+NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
+"""Those of a scene without any."""
+
+
 @lru_cache(maxsize=4)
 def find_solids(walls: tuple[Wall | None, ...], box_area: float) -> Solids:
     """Solids that tables [[wall]] make in a box of some area, length²; None for invalid tables."""
     numbered = [(k, wall) for k, wall in enumerate(walls) if wall is not None and wall.solid is not None]
     kinds = {kind: tuple(wall for _, wall in numbered if wall.solid == kind) for kind in ("inside", "outside")}
     curves, loose = _curves(numbered)
+    rectangles = {kind: np.array([_rectangle(wall) for wall in found]).T for kind, found in kinds.items()}
     areas = dict.fromkeys(kinds, 0.0)
     for curve in curves:
         first, kind = curve[0][0], str(curve[0][0].solid)
-        others = tuple(wall for wall in kinds[kind] if all(wall is not own for own, _ in curve))
+        (x, y), own = first.start, {id(wall) for wall, _ in curve}
+        low, right, high = rectangles[kind]
+        met = np.flatnonzero((low <= y) & (y <= high) & (x <= right))  # by a ray from the point to the right
+        others = [wall for wall in (kinds[kind][k] for k in met) if id(wall) not in own]
         within = bool(enclosed(np.array([first.start]), others)[0])
         areas[kind] += (-1 if within else 1) * abs(math.fsum(_swept(*part) for part in curve))
     covered = areas["inside"] + (box_area - areas["outside"] if kinds["outside"] else 0.0)
@@ -59,6 +67,12 @@ def enclosed(points: np.ndarray, walls: Iterable[Wall]) -> np.ndarray:
         x, y = (points - wall.start).T
         found ^= toggles(x, y, *np.subtract(wall.end, wall.start), wall.arc or NO_ARC)
     return found
+
+
+def _rectangle(wall: Wall) -> tuple[float, float, float]:
+    """Lower, right and upper edge of the rectangle around a wall."""
+    (_, low), (right, high) = bounds(wall.start, wall.end, wall.arc)
+    return low, right, high
 
 
 def _curves(

@@ -13,6 +13,7 @@ from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -91,10 +92,8 @@ def run_sweep(
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
     """
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'") from None
+    if find_spec("distributed") is None:
+        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'")
     given, folder = folder, Path(folder).absolute()
     with hold_folder(folder):
         sweep = resume_numbering(sweep, folder)

@@ -16,6 +16,21 @@ def apply(override: str, document: dict[str, Any]) -> Key:
     A table in an array is chosen by index or name (`species.0.count=10`, `species.argon.count=10`), which may be left
     out if it is the only one (`species.count=10`).
     """
+    key, node, text = find(override, document, missing=True)
+    if text:
+        node[key[-1]] = value_of(text)
+    elif isinstance(node, dict):
+        node.pop(key[-1], None)
+    else:
+        raise OverrideError("no value (allowed a TOML value; only a key of a table can be taken away)")
+    return key
+
+
+def find(override: str, document: dict[str, Any], missing: bool = False) -> tuple[Key, Any, str]:
+    """Key that an override sets, the table or array that has it, and the text of the value.
+
+    missing: whether tables that the document does not have are made.
+    """
     path, equals, text = override.partition("=")
     names = [name.strip() for name in path.split(".")]
     if not equals or not all(names):
@@ -32,15 +47,12 @@ def apply(override: str, document: dict[str, Any]) -> Key:
         else:
             raise OverrideError(f"nothing of this name (got {name}; allowed {_choices(node)})")
         key = (*key, step)
-        if depth < len(names) - 1:
-            node = node.setdefault(step, {}) if isinstance(node, dict) else node[int(step)]
-    if text.strip():
-        node[step] = _value(text)
-    elif isinstance(node, dict):
-        node.pop(step, None)
-    else:
-        raise OverrideError("no value (allowed a TOML value; only a key of a table can be taken away)")
-    return key
+        if depth == len(names) - 1:
+            break
+        if isinstance(node, dict) and step not in node and not missing:
+            raise OverrideError(f"no {step} in the scene")
+        node = node.setdefault(step, {}) if isinstance(node, dict) else node[int(step)]
+    return key, node, text.strip()
 
 
 def _index(items: list[Any], name: str) -> int | None:
@@ -56,7 +68,7 @@ def _choices(node: Any) -> str:
     return ", ".join([f"0 to {len(node) - 1}", *names]) if node else "none: the array is empty"
 
 
-def _value(text: str) -> Any:
+def value_of(text: str) -> Any:
     """Value of a TOML text; the text itself if it is not TOML."""
     try:
         document = tomllib.loads(f"value = {text}")

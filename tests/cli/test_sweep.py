@@ -164,9 +164,9 @@ def test_a_ctrl_c_that_another_package_loses_is_not_lost(plan, tmp_path, monkeyp
     assert signal.getsignal(signal.SIGINT) == before
 
 
-def test_without_the_extra_one_line_names_it(plan, tmp_path):
-    (tmp_path / "distributed.py").write_text("raise ImportError")
-    done = idealgas("sweep", plan, "-o", tmp_path / "out", PYTHONPATH=str(tmp_path))
+def test_without_the_extra_one_line_names_it(plan, tmp_path, monkeypatch):
+    monkeypatch.setattr("idealgas.sweep.run.find_spec", lambda name: None)
+    done = called("sweep", plan, "-o", tmp_path / "out")
     assert done.returncode == 2
     assert done.stderr == "a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'\n"
     assert not (tmp_path / "out").exists()

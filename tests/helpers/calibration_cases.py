@@ -246,14 +246,14 @@ def scattered(log: Log) -> Named:
     for name, one in zip(("long", "second", "third", "short"), found.waves, strict=True):
         for title, estimate in (
             ("S(k)", one.structure),
-            ("⟨j²⟩ along", one.second_moment),
-            ("⟨j²⟩ across", one.transverse_moment),
+            ("⟨j²⟩ along", one.longitudinal_square),
+            ("⟨j²⟩ across", one.transverse_square),
             ("F_s, early", one.early),
         ):
             yield f"{title}, {name}", estimate
         for title, curve, index in (
             ("F", one.density, 8),
-            ("F_s", one.alone, 8),
+            ("F_s", one.self_part, 8),
             ("current along", one.longitudinal, 4),
             ("current across", one.transverse, 4),
             ("S(k, ω)", one.spectrum, 3),
@@ -295,7 +295,9 @@ CASES = {
     "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
     "periodic box": Case(GAS.format(sides=PERIODIC), CURRENTS, periodic),
     "closed box, entropy": Case(GAS.format(sides=""), SHORT_AND_LONG, in_phase_space),
-    "periodic box, scattering": Case(GAS.format(sides=PERIODIC), CURRENTS, scattered),
+    "periodic box, scattering": Case(
+        GAS.format(sides=PERIODIC), CURRENTS, scattered, caveats=lambda log: scattering(log).caveats
+    ),
     "work of a piston": Case(
         "[box]\nsize = [5, 4]\n[thermostat]\ntemperature = 1\nrate = 0.5\n[[species]]\nname = 'gas'\ncount = 2\n"
         f"radius = 0.5\ntemperature = 1\n[piston]\nvelocity = {STROKES}\n",

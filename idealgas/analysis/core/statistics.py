@@ -118,7 +118,7 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
                 influence += slope * (column - means[k])
         value = float(function(*means))
     error, samples = error_of_mean(influence)
-    return Estimate(value, error, samples, *_said(theory), errors_by_blocks(influence, error))
+    return Estimate(value, error, samples, *parts_of(theory), errors_by_blocks(influence, error))
 
 
 def errors_by_blocks(series: np.ndarray, error: float) -> tuple[tuple[float, float], ...]:
@@ -135,7 +135,7 @@ def errors_by_blocks(series: np.ndarray, error: float) -> tuple[tuple[float, flo
     return tuple(found)
 
 
-def _said(theory: Theory | float | None) -> tuple[float | None, float]:
+def parts_of(theory: Theory | float | None) -> tuple[float | None, float]:
     """Value and error of a theory; the error of a plain number is 0."""
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
@@ -170,11 +170,11 @@ def mean_of_flux(
     change, known = _change_of_store(flux - bulk, stored)
     whole = math.hypot(error, math.sqrt(change) / len(flux))
     if not whole > 0:
-        return Estimate(float(flux.mean()), whole, samples, *_said(theory))
+        return Estimate(float(flux.mean()), whole, samples, *parts_of(theory))
     blocks = errors_by_blocks(flux - flux.mean(), whole)
     share = (error / whole) ** 2
     doubt = share**2 / max(samples - 1, 1.0) + (1 - share) ** 2 / max(known, 1.0)
-    return Estimate(float(flux.mean()), whole, _samples_of(doubt), *_said(theory), blocks)
+    return Estimate(float(flux.mean()), whole, _samples_of(doubt), *parts_of(theory), blocks)
 
 
 def _samples_of(doubt: float) -> float:
@@ -249,7 +249,7 @@ def bootstrap(
     n = len(replicates)
     picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
     spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
-    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), *_said(theory))
+    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), *parts_of(theory))
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
@@ -262,7 +262,7 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
     errors = np.array([r.standard_error for r in replicates])
     whole = math.hypot(*errors)
     doubt = sum((errors / whole) ** 4 / [max(r.independent_samples - 1, 1.0) for r in replicates]) if whole > 0 else 0.0
-    return Estimate(float(values.mean()), whole / len(values), _samples_of(doubt), *_said(theory))
+    return Estimate(float(values.mean()), whole / len(values), _samples_of(doubt), *parts_of(theory))
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:

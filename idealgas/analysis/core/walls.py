@@ -45,7 +45,7 @@ class WallImpulses:
         walls = number_walls(log.scene)
         self._turn = np.array([wall.arc.turn if wall.arc else 0.0 for wall in walls])
         self._centre = np.array([np.add(wall.start, wall.arc[:2]) if wall.arc else (0.0, 0.0) for wall in walls])
-        self._period = np.where(log.periodic, log.box, np.inf)
+        self._box, self._period = np.array(log.box), np.where(log.periodic, log.box, 0.0)
         if self._turn.any():
             self.columns = (*self.columns, "end_position")
 
@@ -78,8 +78,7 @@ class WallImpulses:
         if (curved := np.flatnonzero(self._turn[wall])).size:
             assert flights.end_position is not None
             away = flights.end_position[hits[curved]] - self._centre[wall[curved]]
-            with np.errstate(invalid="ignore"):
-                away -= np.where(np.isfinite(self._period), self._period * np.rint(away / self._period), 0.0)
+            away -= self._period * np.rint(away / self._box)
             normals[curved] = away * (-self._turn[wall[curved]] / np.hypot(*away.T))[:, None]
         return normals
 

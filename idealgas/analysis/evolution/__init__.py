@@ -24,7 +24,7 @@ from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, format_estimate, time_series
 from idealgas.analysis.evolution.account import PISTON, Series, account
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
-from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_gate
+from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
 from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
@@ -105,7 +105,7 @@ class EvolutionAnalysis(Analysis):
     sections = (
         Section(
             "Evolution",
-            "Temperature in time with its law dashed, then the gate, the pressure, the piston and the walls",
+            "Temperature in time with its law dashed, then discs beyond a wall, the pressure, the piston and the walls",
         ),
     )
     start = "the log's start"
@@ -298,7 +298,7 @@ def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]],
 def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
     """Evolution at evenly spaced times, from the events of a log."""
     gas, frame, inertia = log.discs, centre_of_mass_velocity(log), log.inertia
-    gate = first_gate(log)
+    wall = first_passable(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
@@ -311,10 +311,10 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
             apart[name][k] = energy[own].mean()
         if inertia is not None and state.angular_velocity is not None:
             spin[k] = (inertia * state.angular_velocity**2).mean()
-        if gate:
-            axis, place = gate
+        if wall:
+            axis, place = wall
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
-    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if gate else {}
+    shares = dict(zip(gas.species_names, beyond.T, strict=True)) if wall else {}
     return time, temperature, None if inertia is None else spin, shares, apart
 
 

@@ -1,4 +1,4 @@
-"""Temperature of a gas against time, and what is beyond an open gate in the end, by theory."""
+"""Temperature of a gas against time, and what is beyond a wall in the end, by theory."""
 
 import math
 from collections.abc import Mapping
@@ -275,18 +275,18 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     return replace(law, chambers=dict(zip(apart, found, strict=True)))
 
 
-def first_gate(log: Log) -> tuple[int, float] | None:
+def first_passable(log: Log) -> tuple[int, float] | None:
     """Axis across which the first gate or permeable wall along an axis stands, and its coordinate; None without one."""
-    gates = (wall for wall in walls_inside(log.scene) if wall.is_passable and wall.is_straight)
-    return next(((k, wall.start[k]) for wall in gates for k in range(2) if wall.start[k] == wall.end[k]), None)
+    walls = (wall for wall in walls_inside(log.scene) if wall.is_passable and wall.is_straight)
+    return next(((k, wall.start[k]) for wall in walls for k in range(2) if wall.start[k] == wall.end[k]), None)
 
 
 def equilibrium_spread(log: Log, end: float) -> dict[str, Estimate]:
-    """Fractions of the discs of each species beyond the first gate in equilibrium, where centres reach both alike."""
-    gate, gas = first_gate(log), log.discs
-    if gate is None or gas.unlike or known_ensemble(log) is None or not becomes_uniform(log, end):
+    """Fractions of the discs of each species beyond a wall in equilibrium, where centres reach both sides alike."""
+    wall, gas = first_passable(log), log.discs
+    if wall is None or gas.unlike or known_ensemble(log) is None or not becomes_uniform(log, end):
         return {}
-    axis, place = gate
+    axis, place = wall
     reach = gas.radius[np.unique(gas.species, return_index=True)[1]] * (not log.periodic[axis])
     share = (log.box[axis] - reach - place) / (log.box[axis] - 2 * reach)
     error = np.sqrt(share * (1 - share) / np.bincount(gas.species))

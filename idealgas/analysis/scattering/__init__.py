@@ -18,7 +18,7 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
-from idealgas.analysis.scattering.sums import WAVES, Sums, powers_of_two, segments, wave_numbers
+from idealgas.analysis.scattering.sums import Sums, powers_of_two, segments, wave_numbers
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.waves import sound_of_discs
 from idealgas.errors import NotApplicableError, UserError
@@ -50,25 +50,25 @@ class Wave:
     """Correlations of the waves of one wave number.
 
     name: k as text. k: wave number, 1/length. time: (L,). density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx) (no
-    unit). alone: its self part F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of
-    the currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,),
-    S(k, ω) = ∫ F exp(iωt) dt with the lags tapered by a cosine, time. structure: S(k) =
-    F(k, 0) (no unit). second_moment, transverse_moment: longitudinal and transverse at t = 0, (length/time)²; k² times
-    the first is the second moment of S(k, ω). early: F_s at the first lag.
+    unit). self_part: F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of the
+    currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,),
+    S(k, ω) = ∫ F exp(iωt) dt with the lags tapered by cos², time. structure: S(k) =
+    F(k, 0) (no unit). longitudinal_square, transverse_square: ⟨|j|²⟩/N along and across k, (length/time)²; k² times the
+    first is the second moment of S(k, ω). early: F_s at the first lag.
     """
 
     name: str
     k: float
     time: np.ndarray
     density: Curve
-    alone: Curve
+    self_part: Curve
     longitudinal: Curve
     transverse: Curve
     frequency: np.ndarray
     spectrum: Curve
     structure: Estimate
-    second_moment: Estimate
-    transverse_moment: Estimate
+    longitudinal_square: Estimate
+    transverse_square: Estimate
     early: Estimate
 
 
@@ -107,9 +107,9 @@ class ScatteringAnalysis(Analysis):
     ) -> Scattering:
         """Measure how waves of density and of current decay, between two times of a log.
 
-        Errors are from the spread over 32 segments of the window. Exact for any density: the currents at t = 0, with
-        ⟨|j|²⟩/N = (1 - S(k)/N) T/m as the momentum of all discs is 0, and F_s for times shorter than those between
-        collisions, exp(-k²Tt²/2m).
+        Errors are from the spread over 32 segments of the window. Exact for any density are the currents at t = 0, with
+        ⟨|j|²⟩/N = (1 - S(k)/N) T/m as the momentum of all discs is 0. F_s after the first lag is compared with free
+        flight and the first collision by Enskog's rate.
 
         Args:
             log: log with events, of a gas of one species in a periodic box.
@@ -126,18 +126,19 @@ class ScatteringAnalysis(Analysis):
         window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
         speed, side = math.sqrt(ensemble(log).temperature / float(log.discs.mass[0])), max(log.box)
         waves, displacements = [], []
-        for k in (2 * math.pi / side * wave_numbers(log)).tolist():
+        numbers = (2 * math.pi / side * wave_numbers(log)).tolist()
+        for done, k in enumerate(numbers, 1):
             lags = min(LAGS, int(window.duration / 8 / (STEP / (k * speed))) + 1)
             if lags >= FEWEST_LAGS:
                 sums = list(segments(log, window, k, STEP / (k * speed), lags))
                 waves.append(_wave(log, k, STEP / (k * speed) * np.arange(lags), sums, speed))
                 displacements.append((waves[-1].time, np.array([one.displacements for one in sums])))
             if progress is not None:
-                progress(len(displacements), WAVES)
+                progress(done, len(numbers))
         if not waves:
             least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
             raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
-        caveats = (*narrow(log), *_too_short(log, window, waves[0].k))
+        caveats = (*narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
         return Scattering(window, speed, tuple(waves), *_non_gaussian(displacements), caveats=caveats)
 
     @staticmethod
@@ -148,15 +149,15 @@ class ScatteringAnalysis(Analysis):
             for one in result.waves
             for name, found in (
                 ("S(k) (no unit)", one.structure),
-                ("⟨|j|²⟩/N along k ((length/time)²)", one.second_moment),
-                ("⟨|j|²⟩/N across k ((length/time)²)", one.transverse_moment),
+                ("⟨|j|²⟩/N along k ((length/time)²)", one.longitudinal_square),
+                ("⟨|j|²⟩/N across k ((length/time)²)", one.transverse_square),
                 (f"F_s at t = {one.time[1]:.3g} (no unit)", one.early),
             )
         ]
         notes = [describe(result.window), "theory: (1 − S/N) T/m; free flight and the first collision"]
         tables = [estimates("Waves of density and current", rows, notes)]
         for one in result.waves:
-            curves = {"F": one.density, "F_s": one.alone, "along": one.longitudinal, "across": one.transverse}
+            curves = {"F": one.density, "F_s": one.self_part, "along": one.longitudinal, "across": one.transverse}
             tables.append(_series(f"Correlations, {one.name}", {"t": one.time}, curves))
             tables.append(_series(f"Spectrum, {one.name}", {"ω": one.frequency}, {"S(k, ω)": one.spectrum}))
         title = "Non-Gaussian parameter of displacements (no unit)"
@@ -168,7 +169,11 @@ class ScatteringAnalysis(Analysis):
         rows = [
             (f"{name}, {one.name}", found)
             for one in result.waves
-            for name, found in (("along", one.second_moment), ("across", one.transverse_moment), ("F_s", one.early))
+            for name, found in (
+                ("along", one.longitudinal_square),
+                ("across", one.transverse_square),
+                ("F_s", one.early),
+            )
         ]
         first = result.waves[0]
         return f"S(k) is {format_estimate(first.structure)} at {first.name}; currents and F_s: {agreement(rows)}."
@@ -176,42 +181,42 @@ class ScatteringAnalysis(Analysis):
     @staticmethod
     def figure(result: Scattering) -> "Figure":
         """Picture of F, F_s, S(k, ω), both currents and the non-Gaussian parameter; theory of free flight dashed."""
-        from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
+        from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
 
-        figure, (density, alone, spectrum, along, across, gaussian) = panels(3, 2)
+        figure, (density, own, spectrum, along, across, gaussian) = panels(3, 2)
         for index, one in enumerate(result.waves):
             colour, line, _ = curve_style(index)
             rate, square = one.k * result.thermal_speed, result.thermal_speed**2
             for ax, x, curve, unit in (
                 (density, one.time * rate, one.density, 1.0),
-                (alone, one.time * rate, one.alone, 1.0),
+                (own, one.time * rate, one.self_part, 1.0),
                 (spectrum, one.frequency / rate, one.spectrum, 1 / rate),
                 (along, one.time * rate, one.longitudinal, square),
                 (across, one.time * rate, one.transverse, square),
             ):
                 y, error = curve.value / unit, curve.error / unit
                 ax.plot(x, y, line, color=colour, label=one.name)
-                ax.fill_between(x, y - error, y + error, color=colour, alpha=0.25, linewidth=0)
+                ax.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
         free = np.linspace(0, 5, 100)
-        alone.plot(free, np.exp(-(free**2) / 2), "--", color=BLACK, label="free flight")
+        own.theory(free, np.exp(-(free**2) / 2), label="free flight")
         y, error = result.non_gaussian.value, result.non_gaussian.error
         gaussian.errorbar(result.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
         gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
         density.set_ylabel("F(k, t) (no unit)")
-        alone.set_ylabel("self part F_s(k, t) (no unit)")
+        own.set_ylabel("self part F_s(k, t) (no unit)")
         spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
         along.set_ylabel("current along k, over T/m (no unit)")
         across.set_ylabel("current across k, over T/m (no unit)")
-        for ax in (density, alone, along, across):
+        for ax in (density, own, along, across):
             ax.set_xlabel("k √(T/m) t (no unit)")
-        for ax in (density, alone, spectrum, along, across):
+        for ax in (density, own, spectrum, along, across):
             ax.legend()
         return figure
 
 
 def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> Wave:
     """Wave from the sums of all segments; speed: √(T/m)."""
-    density, alone, along, across = (np.array(one) for one in list(zip(*sums, strict=True))[:4])
+    density, self_part, along, across = (np.array(one) for one in list(zip(*sums, strict=True))[:4])
     taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
     frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
     spectrum = density @ (taper[:, None] * np.cos(time[:, None] * frequency))
@@ -221,15 +226,15 @@ def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) 
         k=k,
         time=time,
         density=_curve(density),
-        alone=_curve(alone),
+        self_part=_curve(self_part),
         longitudinal=_curve(along),
         transverse=_curve(across),
         frequency=frequency,
         spectrum=_curve(spectrum),
         structure=_first(density, 0),
-        second_moment=_first(along, 0, current),
-        transverse_moment=_first(across, 0, current),
-        early=_first(alone, 1, *_free_flight(log, k * float(time[1]), k)),
+        longitudinal_square=_first(along, 0, current),
+        transverse_square=_first(across, 0, current),
+        early=_first(self_part, 1, *_free_flight(log, k * float(time[1]), k)),
     )
 
 
@@ -287,12 +292,17 @@ def _non_gaussian(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarra
     return times, Curve(values, errors)
 
 
-def _too_short(log: Log, window: Window, k: float) -> Iterator[str]:
-    """Sentence on a window in which the longest wave decays a few times only."""
+def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:
+    """Sentences on a window that is too short for the longest waves, or for how slowly those of wave number k decay."""
+    if k != longest:
+        yield f"The window is too short for waves longer than that of k = {k:.4g}."
     gas, temperature, phi = log.discs, ensemble(log).temperature, log.discs.packing_fraction
+    if phi > hard_discs.HIGHEST:
+        yield f"Above φ = {hard_discs.HIGHEST:g} it is not known how fast waves decay; error bars may be too small."
+        return
     mass, diameter, density = float(gas.mass[0]), 2 * float(gas.radius[0]), len(gas) / gas.area
     fluid, chi = sound_of_discs(phi, temperature, mass, diameter), hard_discs.fluid_contact_value(phi)
     shear = hard_discs.enskog_viscosity(diameter, density, temperature, mass, chi) / (mass * density)
     rate = min(min(fluid.damping, fluid.spreading, shear) * k**2, k * math.sqrt(temperature / mass))
     if (number := window.duration * rate) < FEWEST_DECAYS:
-        yield (f"The window has {number:.2g} decay times of the longest wave; its error bars take {FEWEST_DECAYS:g}.")
+        yield f"The window has {number:.2g} decay times of the longest wave; its error bars take {FEWEST_DECAYS:g}."

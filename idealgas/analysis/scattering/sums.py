@@ -28,7 +28,7 @@ class Sums(NamedTuple):
     """Correlations (L,) in one segment, and mean Δr² and Δr⁴ after the lags of `powers_of_two` (P, 2)."""
 
     density: np.ndarray
-    alone: np.ndarray
+    self_part: np.ndarray
     longitudinal: np.ndarray
     transverse: np.ndarray
     displacements: np.ndarray
@@ -59,7 +59,7 @@ def _segment(log: Log, times: np.ndarray, axes: list[int], k: float, lags: int) 
     """Sums over all starts in evenly spaced times (G,)."""
     number, starts, drift = len(log.discs), len(times) - lags + 1, ensemble(log).centre_of_mass_velocity
     density, along, across = np.zeros((3, len(axes), len(times)), complex)
-    alone, powers = np.zeros(lags), powers_of_two(lags)
+    self_part, powers = np.zeros(lags), powers_of_two(lags)
     displacements = np.zeros((len(powers), 2))
     for discs in np.array_split(np.arange(number), -(-number * len(times) // MOST_IN_MEMORY)):
         places, velocities = sample_trajectories(log, times, discs)
@@ -69,12 +69,12 @@ def _segment(log: Log, times: np.ndarray, axes: list[int], k: float, lags: int) 
             density[a] += phases.sum(axis=1)
             along[a] += (velocities[:, :, axis] * phases).sum(axis=1)
             across[a] += (velocities[:, :, 1 - axis] * phases).sum(axis=1)
-            alone += correlation(phases, lags)
+            self_part += correlation(phases, lags)
         for p, lag in enumerate(powers):
             square = ((places[lag : lag + starts] - places[:starts]) ** 2).sum(axis=2)
             displacements[p] += square.sum(), (square**2).sum()
     rho, j_along, j_across = (correlation(one.T, lags) / (len(axes) * number) for one in (density, along, across))
-    return Sums(rho, alone / (len(axes) * number), j_along, j_across, displacements / (starts * number))
+    return Sums(rho, self_part / (len(axes) * number), j_along, j_across, displacements / (starts * number))
 
 
 def correlation(series: np.ndarray, lags: int) -> np.ndarray:

@@ -24,10 +24,10 @@ from idealgas.analysis.work.processes import (
     Crossing,
     Process,
     crossings,
+    expectation_of,
     joined,
     poorly_sampled,
     process,
-    theory_of,
 )
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
@@ -135,7 +135,7 @@ class WorkAnalysis(Analysis):
         """Result of one point of a sweep."""
         processes = []
         for one in found["processes"]:
-            theory = theory_of(Estimate.from_dict(one["free_energy"]))
+            theory = expectation_of(Estimate.from_dict(one["free_energy"]))
             ends, protocol = tuple(one["ends"]), tuple(map(tuple, one["protocol"]))
             series = np.array(one["work"]), np.array(one["start_energy"])
             processes.append(process(ends, protocol, *series, found["temperature"], found["number"], theory))
@@ -174,7 +174,7 @@ class WorkAnalysis(Analysis):
     @staticmethod
     def figure(result: Work) -> "Figure":
         """Picture of the distributions of the work forward and of minus the work back, and of their ratio."""
-        from idealgas.analysis.core.style import BLACK, COLOURS, panels
+        from idealgas.analysis.core.style import COLOURS, panels
 
         if not result.crossings:
             figure, axes = panels(len(result.processes))
@@ -197,8 +197,8 @@ class WorkAnalysis(Analysis):
             logs, error = np.log(a / b * (len(back) / len(forward))), np.sqrt(1 / a + 1 / b)
             ratio.errorbar(middle, logs, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="ln(P_F/P_R)")
             if (theory := crossing.free_energy.theory) is not None:
-                line = (middle - theory) / result.temperature
-                ratio.plot(middle, line, "--", color=BLACK, label="theory: (W − ΔF)/T")
+                line, doubt = (middle - theory) / result.temperature, crossing.free_energy.theory_error
+                ratio.theory(middle, line, doubt / result.temperature, "theory: (W − ΔF)/T")
             ratio.set(xlabel="W (energy)", ylabel="ratio of the distributions, logarithm (no unit)")
             ratio.legend()
         return figure
@@ -206,10 +206,13 @@ class WorkAnalysis(Analysis):
 
 def _mark(ax: Any, free_energy: Estimate) -> None:
     """A line at the free energy in a panel of distributions of the work."""
-    where, label = free_energy.value, "free energy by the work"
+    from idealgas.analysis.core.style import BAND, BLACK
+
+    where, error, label = free_energy.value, free_energy.standard_error, "free energy by the work"
     if free_energy.theory is not None:
-        where, label = free_energy.theory, "free energy by theory"
-    ax.axvline(where, linestyle="--", color="#000000", label=label)
+        where, error, label = free_energy.theory, free_energy.theory_error, "free energy by theory"
+    ax.axvline(where, linestyle="--", color=BLACK, label=label)
+    ax.axvspan(where - error, where + error, color=BLACK, alpha=BAND, linewidth=0)
     ax.set(xlabel="W (energy)", ylabel="distribution of the work (1/energy)")
     ax.legend()
 

@@ -8,11 +8,14 @@ from typing import Annotated
 import numpy as np
 
 from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, parts_of
 from idealgas.analysis.theory.values import Theory
 
 FEWEST_EFFECTIVE = 200.0
-"""Effective number of strokes in ⟨exp(-W/T)⟩, (Σx)²/Σx², below which its error is too small: by a quarter at 100."""
+"""Effective number of strokes in ⟨exp(-W/T)⟩, (Σx)²/Σx², below which its error may be too small.
+
+That of the strokes outwards of the example is by a seventh at 200.
+"""
 
 FEWEST_STROKES = 10
 """Least number of strokes in each direction for the ratio of their distributions."""
@@ -59,7 +62,7 @@ class Crossing:
     back: Annotated[np.ndarray, OMITTED]
 
 
-def theory_of(found: Estimate) -> Theory | None:
+def expectation_of(found: Estimate) -> Theory | None:
     """Theory of an estimate; None without one."""
     return None if found.theory is None else Theory(found.theory, found.theory_error, "")
 
@@ -93,7 +96,7 @@ def joined(same: Sequence[Process], temperature: float, number: int) -> Process:
     """Strokes of one kind of several runs together."""
     work, energy = (np.concatenate([getattr(one, name) for one in same]) for name in ("work", "start_energy"))
     first = same[0]
-    return process(first.ends, first.protocol, work, energy, temperature, number, theory_of(first.free_energy))
+    return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
 def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
@@ -102,7 +105,7 @@ def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
             f"⟨exp(−W/T)⟩ {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
-            "error is too small."
+            "error may be too small."
         )
 
 
@@ -144,19 +147,18 @@ def _crossing(forward: Process, back: Process, temperature: float) -> Crossing |
     error = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
     return Crossing(
         forward.name,
-        _estimate((middle - a / b) * temperature, error * temperature, n + m, theory_of(forward.free_energy)),
+        _estimate((middle - a / b) * temperature, error * temperature, n + m, expectation_of(forward.free_energy)),
         _estimate(b, math.sqrt(covariance[1, 1]), n + m, Theory(1.0, 0.0, "")),
         forward.work,
         back.work,
     )
 
 
-def _independent(values: np.ndarray, theory: Theory | None = None) -> Estimate:
+def _independent(values: np.ndarray) -> Estimate:
     """Mean of independent values."""
     n = len(values)
-    return _estimate(values.mean(), values.std(ddof=1) / math.sqrt(n) if n > 1 else math.nan, n, theory)
+    return _estimate(values.mean(), values.std(ddof=1) / math.sqrt(n) if n > 1 else math.nan, n, None)
 
 
 def _estimate(value: float, error: float, samples: int, theory: Theory | None) -> Estimate:
-    said = (theory.value, theory.error) if theory else ()
-    return Estimate(float(value), float(error), float(samples), *said)
+    return Estimate(float(value), float(error), float(samples), *parts_of(theory))

@@ -35,8 +35,8 @@ def make_wall_cells(
     across, along = (range(-1, 2) if is_periodic else (0,) for is_periodic in periodic_axes(periodic))
     cell_parts, item_parts = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
     for k in np.flatnonzero(segments.active):
+        arc = None if arcs is None or arcs[k].radius == 0 else arcs[k]
         for image in ((x, y) for x in across for y in along):
-            arc = None if arcs is None or arcs[k].radius == 0 else arcs[k]
             found = _cells_near(segments[k], arc, image, cells, reach)
             cell_parts.append(found)
             item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
@@ -72,9 +72,10 @@ def _cells_near(
     high = np.clip(np.floor((highest + reach) / size).astype(int) + 1, 1, last)
     column, row = np.meshgrid(np.arange(low[0], high[0] + 1), np.arange(low[1], high[1] + 1))
     centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
-    normal = np.array([-tangent[1], tangent[0]])
-    near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it lies between
-    if arc is not None:
+    if arc is None:
+        normal = np.array([-tangent[1], tangent[0]])
+        near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it lies between
+    else:
         centre = centre.reshape(-1, 2)
         away = np.hypot(*(centre - nearest_on_arc(centre, length * tangent, arc)).T)
         near = (away <= 0.5 * np.hypot(*size) + reach).reshape(row.shape)

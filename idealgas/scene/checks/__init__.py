@@ -60,7 +60,9 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
             if effect.find(tables := scene.tables_of(effect)) is not None:
                 yield from effect.check(tables)
         yield from discs_in_walls(scene)
-        yield from solid_issues(scene)
+        if solid := list(solid_issues(scene)):
+            yield from solid
+            return  # there may be no area left
     yield from piston.issues(scene, invalid)
     if not invalid:
         yield from _thermostat_issues(scene)

@@ -178,12 +178,12 @@ def wall_overlaps(
     order = np.argsort(centre[:, 0], kind="stable")
     along, largest = centre[order, 0], float(discs.radius.max(initial=0.0))
     for i, wall in walls.items():
-        passes = np.array([wall.lets_pass(name) for name in discs.names])
         low, high = bounds(wall.start, wall.end, wall.arc)
         reach = largest + wall.radius
         near = order[along.searchsorted(low[0] - reach) : along.searchsorted(high[0] + reach, "right")]
         distance = distance_to_wall(centre[near], wall)
-        if passes.any():
+        if wall.is_permeable:
+            passes = np.array([wall.lets_pass(name) for name in discs.names])
             distance = np.where(passes[discs.species[owner[near]]], _distance_to_ends(centre[near], wall), distance)
         for k in np.flatnonzero(distance < (discs.radius - slack)[owner[near]]).tolist():
             yield int(owner[near[k]]), i, float(distance[k])

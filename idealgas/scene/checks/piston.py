@@ -50,8 +50,7 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     found = list(_motion_issues(piston))
     yield from found
     if not found:
-        found = list(_forced_issues(scene, piston)) if piston.mass is None else []
-        found += list(_pressed_issues(scene, piston)) if piston.pressure is not None else []
+        found = list(_forced_issues(scene, piston) if piston.mass is None else _massive_issues(scene, piston))
         yield from found
     if not found:
         yield from _walls_in_the_way(scene, piston)
@@ -123,11 +122,13 @@ def track(scene: Document, piston: Piston) -> list[tuple[float, str]]:
     return found
 
 
-def _pressed_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check that a piston with a mass is pressed on the gas, under one gravity."""
+def _massive_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
+    """Check that a piston with a mass is under one gravity and, unless it is inner, pressed on the gas."""
     if scene.properties.later_accelerations:
         both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", "mass"))
         yield Issue(both, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
+    if piston.pressure is None:
+        return
     times = [time for time, _ in steps_of(piston.pressure)]
     accelerations = (piston.acceleration(scene.box.size, scene.properties.acceleration, time) for time in times)
     acceleration = max(accelerations, key=lambda a: a * piston.outward)

@@ -49,14 +49,18 @@ def _crossing(scene: Document) -> tuple[int, int] | None:
         if wall is not None and wall.solid
         for a, b in pairwise(drawn_points(wall.start, wall.end, wall.arc))
     ]
+    parts.sort(key=lambda part: min(part[1][0], part[2][0]))
     owner = np.array([k for k, *_ in parts])
     start, end = (np.array([part[n] for part in parts]) for n in (1, 2))
+    left, right = np.minimum(start, end)[:, 0], np.maximum(start, end)[:, 0]
     for n in range(len(parts)):
         a, b = start[n], end[n]
-        apart = _side(a, b, start) * _side(a, b, end)
-        facing = _side(start, end, a) * _side(start, end, b)
+        later = slice(n + 1, int(left.searchsorted(right[n], "right")))  # those that begin before this one ends
+        apart = _side(a, b, start[later]) * _side(a, b, end[later])
+        facing = _side(start[later], end[later], a) * _side(start[later], end[later], b)
         if (found := np.flatnonzero((apart < 0) & (facing < 0))).size:
-            return int(owner[n]), int(owner[found[0]])
+            first, second = sorted((int(owner[n]), int(owner[n + 1 + found[0]])))
+            return first, second
     return None
 
 

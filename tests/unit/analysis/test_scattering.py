@@ -37,8 +37,9 @@ def test_correlation_is_a_mean_over_starts():
     assert correlation(series, 8) == pytest.approx(slow)
 
 
-def test_sums_against_states(make):
+def test_sums_against_states(make, monkeypatch):
     """One segment by hand, from the states of the log; with two chunks of discs."""
+    monkeypatch.setattr("idealgas.analysis.scattering.sums.MOST_IN_MEMORY", 800)
     log = make("run.collisions_per_disc=40")
     found = idealgas.analyse(log, "scattering", start=0.0)
     k, step, lags = 2 * math.pi / 9, 0.05, 17
@@ -50,23 +51,17 @@ def test_sums_against_states(make):
     states = [log.state_at(begin + step * n) for n in range(starts + lags - 1)]
     position = np.array([state.position for state in states])
     velocity = np.array([state.velocity for state in states])
-    density, along, across, alone = 0.0, 0.0, 0.0, 0.0
-    lag = 5
+    assert 800 < 30 * len(states) <= 1600
+    lag, pairs = 5, [(t + 5, t) for t in range(starts)]
+    found = dict.fromkeys(("density", "along", "across", "own"), 0.0)
     for axis in range(2):
         wave = np.exp(-1j * k * position[:, :, axis])
-        pairs = [(t + lag, t) for t in range(starts)]
-        for name in ("density", "along", "across"):
-            weight = {"density": 1.0, "along": velocity[:, :, axis], "across": velocity[:, :, 1 - axis]}[name]
+        for name, weight in (("density", 1.0), ("along", velocity[:, :, axis]), ("across", velocity[:, :, 1 - axis])):
             total = (weight * wave).sum(axis=1)
-            mean = np.mean([(total[later] * total[t].conj()).real for later, t in pairs]) / 60
-            density, along, across = (
-                density + mean * (name == "density"),
-                along + mean * (name == "along"),
-                across + mean * (name == "across"),
-            )
-        alone += np.mean([(wave[later] * wave[t].conj()).real.mean() for later, t in pairs]) / 2
-    expected = (density, along, across, alone)
-    assert (one.density[lag], one.longitudinal[lag], one.transverse[lag], one.alone[lag]) == pytest.approx(expected)
+            found[name] += np.mean([(total[later] * total[t].conj()).real for later, t in pairs]) / 60
+        found["own"] += np.mean([(wave[later] * wave[t].conj()).real.mean() for later, t in pairs]) / 2
+    got = one.density[lag], one.longitudinal[lag], one.transverse[lag], one.self_part[lag]
+    assert got == pytest.approx(tuple(found.values()))
 
 
 @pytest.fixture(scope="module")
@@ -88,15 +83,15 @@ def test_exact_values_and_continuity(found):
     assert [round(one.k * 9 / (2 * math.pi)) for one in found.waves] == [1, 2, 4, 9]
     for one in found.waves:
         square = TEMPERATURE / 2 * (1 - one.structure.value / 30)
-        assert (one.second_moment.theory, one.transverse_moment.theory) == pytest.approx((square, square))
-        for estimate in (one.second_moment, one.transverse_moment, one.early):
+        assert (one.longitudinal_square.theory, one.transverse_square.theory) == pytest.approx((square, square))
+        for estimate in (one.longitudinal_square, one.transverse_square, one.early):
             assert estimate.theory is None or abs(estimate.deviation) < 4
         step, current = one.time[1], one.k**2 * one.longitudinal.value
         slope = np.append(0.0, np.cumsum(step * (current[1:] + current[:-1]) / 2))
         fall = np.append(0.0, np.cumsum(step * (slope[1:] + slope[:-1]) / 2))
         noise = 4 * np.hypot(one.density.error, one.density.error[0])
         assert (np.abs(one.density.value[0] - one.density.value - fall) < noise + 0.01)[:16].all()
-        assert one.alone.value[0] == pytest.approx(1, rel=1e-12)
+        assert one.self_part.value[0] == pytest.approx(1, rel=1e-12)
     assert any(one.early.theory is not None for one in found.waves)
     assert abs(found.non_gaussian.value[0] + 2 / 60) < 4 * found.non_gaussian.error[0] + 0.01
 

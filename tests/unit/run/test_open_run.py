@@ -1,5 +1,7 @@
 """Runs that a program advances and steers: the log of one run, and changes that replay, resume and account know."""
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 from helpers.log_compare import differences
@@ -7,6 +9,7 @@ from helpers.support import ROOT
 
 from idealgas import SceneError, UserError, load_scene, open_log, open_run, parse_scene, resume, simulate
 from idealgas.columns import Kind
+from idealgas.errors import OutputError
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "steering.toml"
 BOX = """
@@ -121,9 +124,39 @@ def test_what_cannot_be_steered_is_one_line(tmp_path):
             ([[1, 2]], None, r"^velocity: not \(40, 2\) numbers"),
             ([[1, np.nan]], [3], r"^velocity: not \(1, 2\) numbers"),
             ([[1, 2]], [40], r"^discs: not ids \(allowed 0 to 39\)$"),
+            (np.ones((40, 2)), np.ones(40, bool), "^discs: not ids"),
+            ([[1, 2]], [1.5], "^discs: not ids"),
         ):
             with pytest.raises(UserError, match=wrong):
                 run.set_velocities(velocity, discs)
+        run.set_velocities(np.empty((0, 2)), [])
+        run.advance(until=1)
+        with pytest.raises(UserError, match=r"^a setting of 315 bytes \(allowed at most 256\)$"):
+            run.change(f"wall.{'x' * 300}.open=true")
+        run.advance()
+        with pytest.raises(UserError, match=r"^the run has reached the end of its scene$"):
+            run.reverse()
+
+
+def test_a_closed_log_takes_nothing_more(tmp_path):
+    with open_run(parse_scene(BOX), tmp_path / "run.h5") as run:
+        run.advance(until=1)
+    with pytest.raises(OutputError, match=r"this log is closed$"):
+        run.advance(until=2)
+    with pytest.raises(OutputError, match=r"this log is closed$"):
+        run.reverse()
+
+
+def test_rows_of_a_reader_that_fails_are_in_the_log(tmp_path):
+    def fail(batch):
+        raise ZeroDivisionError
+
+    simulate(parse_scene(BOX), tmp_path / "whole.h5")
+    with open_run(parse_scene(BOX), tmp_path / "run.h5", on_events=fail) as run:
+        while not run.ended:
+            with suppress(ZeroDivisionError):
+                run.advance(until=run.time + 1)
+    assert differences(tmp_path / "run.h5", tmp_path / "whole.h5") == []
 
 
 STEPS = ROOT / "tests" / "cases" / "golden" / "steps.toml"
@@ -175,6 +208,8 @@ def test_values_changed_by_the_program_as_by_the_scene(tmp_path):
         ("wall.door.open=true", "nothing of this name"),
         ("thermostat.temperature=-1", "thermostat.temperature"),
         ("thermostat", "not an assignment"),
+        ("thermostat.temperature=", "no value"),
+        ("open=true", "not a value that can change"),
     ],
 )
 def test_a_change_that_does_not_fit_is_one_line_and_changes_nothing(tmp_path, setting, wrong):

@@ -34,6 +34,19 @@ def test_the_same_by_brute_force_and_resumed(tmp_path, scene, overrides, changes
         assert changes <= set(log.observables["energy"][0].tolist())
 
 
+ROUND = "[[wall]]\nfrom = [1, 5]\nto = [1, 5]\nvia = [9, 5]\n"
+BUMPER = "[[disc]]\nposition = [8, 5]\nradius = 0.5\nfixed = true\n"
+
+
+@pytest.mark.parametrize(("obstacle", "place", "time"), [(ROUND, [5, 5], 3.5), (BUMPER, [2, 5], 5.0)])
+def test_before_gravity_begins_round_walls_and_fixed_discs_are_there(tmp_path, obstacle, place, time):
+    gravity = "gravity.acceleration = [[0, [0, 0]], [20, [0, -1]]]\n"
+    text = f"box.size = [10, 10]\n{gravity}run.until = 8\n{obstacle}{DISC.format(place, [1, 0])}"
+    simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert next(log.chunks()).time[0] == time
+
+
 def rows_of(log, *columns):
     return [np.concatenate([getattr(block, name) for block in log.chunks()]) for name in columns]
 

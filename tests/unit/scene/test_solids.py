@@ -76,6 +76,7 @@ def test_the_ray_through_a_corner():
 
 
 CROSS = [([1, 4], [9, 4]), ([9, 4], [9, 6]), ([9, 6], [1, 6]), ([1, 6], [1, 4])]
+ROUND = '{{ from = [1, 5], to = [1, 5], via = [9, 5], solid = "{}" }},'
 INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
 
 
@@ -83,9 +84,10 @@ INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
     ("text", "rest", "message"),
     [
         (walls("inside", SIDES[:5]), "", 'wall.0.solid: no closed curve (got an end at [7.0, 5.0]; allowed an end of'),
-        (walls("inside", SIDES) + walls("inside", CROSS), "", "curves that cross (got wall 8; allowed closed"),
+        (walls("inside", SIDES) + walls("inside", CROSS), "", "curves that cross (got wall 6; allowed closed"),
         (walls("inside", SIDES), INSIDE, "disc.0.position: in a solid (got [5.0, 5.0]; allowed a place out of it)"),
         (walls("inside", SIDES).replace(" }", ", opens_at = 1 }", 1), "", 'a solid that opens (got "inside" and a'),
+        (ROUND.format("inside") + ROUND.format("outside"), "", "wall.0.solid: no area is left (got solids everywhere"),
         ("{ from = [1, 1], to = [3, 3], via = [2, 2] },", "", "no arc through these points (got [1.0, 1.0] via [2.0"),
         ("{ from = [1, 1], to = [3, 1], via = [2, -1] },", "", "wall not in the box (got [1.0, 1.0] via [2.0, -1.0]"),
         ("{ from = [1, 1], to = [1, 1], via = [1, 1] },", "", "no arc through these points"),
