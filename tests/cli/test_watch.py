@@ -127,7 +127,8 @@ def test_only_this_machine_and_this_name(finished):
         for request, code in ((other, 403), (address + "none", 404), (address + "part?after=x&newest=0", 400)):
             with pytest.raises(urllib.error.HTTPError) as refused:
                 urllib.request.urlopen(request)
-            assert refused.value.code == code
+            with refused.value as answer:
+                assert answer.code == code
         with urllib.request.urlopen(address) as page:
             assert "default-src 'none'" in page.headers["Content-Security-Policy"]
         port = int(address.rstrip("/").rpartition(":")[2])

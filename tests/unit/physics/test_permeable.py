@@ -6,11 +6,12 @@ import pytest
 from helpers.rounding import body, exact, gamma
 
 from idealgas.effects.wall import make_segments
+from idealgas.physics.arc import wall_contact
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import NO_IMAGES
 from idealgas.physics.permeable import FROM_LEFT, FROM_RIGHT, OPEN, closed_face_delay
-from idealgas.physics.wall import segment_contact, segment_normal
+from idealgas.physics.wall import segment_normal
 
 pytestmark = pytest.mark.interpreted
 
@@ -58,17 +59,17 @@ def test_a_disc_at_the_face_does_not_sink():
 
 
 def segment(start, end):
-    return make_segments(np.array([start]), np.array([end]))[0]
+    return make_segments(np.array([start]), np.array([end]))[:1]
 
 
 def contact(wall, passage, gravity=None, **motion):
     """Delay of a disc of radius 0.5, and where it then is with the normal that it meets."""
     disc = body(r=0.5, m=1.0, **motion)
-    time = segment_contact(disc, 0, wall, passage, gravity, None, None, NO_IMAGES)
+    time = wall_contact(disc, 0, 0, wall, None, passage, gravity, None, None, NO_IMAGES)
     if time == NEVER:
         return None
     there = body(r=0.5, x=disc.x + disc.vx * time, y=disc.y + disc.vy * time, vx=disc.vx, vy=disc.vy)
-    return time, *segment_normal(there, wall, passage, None, NO_IMAGES)
+    return time, *segment_normal(there, wall[0], passage, None, NO_IMAGES)
 
 
 def test_faces_and_ends():
