@@ -67,7 +67,7 @@ CROSSING = 5.0
 BEYOND = 1.25
 """Length of the shown room along the way of a piston, relative to the largest one of the gas."""
 
-LEFT, RIGHT, BOTTOM, TOP = 64, 22, 58, 48  # margins, pixels of the usual size
+LEFT, RIGHT, BOTTOM, TOP, NAME = 64, 22, 58, 48, 60  # margins, and the name of a piston, pixels of the usual size
 PANEL = 0.3
 """Smallest share of a frame for the panel beside or below the box."""
 
@@ -221,9 +221,9 @@ class Painter:
     def paint(self, state: LogState) -> np.ndarray:
         """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
         speed = np.hypot(*(state.velocity - self._flow).T)
-        energy = float(self._gas.mass @ (state.velocity**2).sum(axis=1)) / 2
         self._place(state.position, speed)
         beside = () if self._panel is None else self._panel.update(state, speed)
+        energy = self._gas.mass @ (state.velocity**2).sum(axis=1) / 2
         self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
         self._canvas.restore_region(self._still)
         for artist in (
@@ -267,16 +267,17 @@ class Painter:
         if self._piston is not None:
             draw = axes.axhline if self._piston.axis else axes.axvline
             self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
-            self._piston_name = self._name(axes, self._piston.name, (0.0, self._view[1][1]))
+            farthest = float(self._piston.place.max()) * (self._piston.axis == 0)
+            self._piston_name = self._name(axes, "piston", (farthest, self._view[1][1]))
 
     def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
         """Name of a wall beside a place of it, on the side with more room, legible on discs."""
-        low, high = self._view[0]
-        right = place[0] < (low + high) / 2 or (self._piston is not None and self._piston.axis == 0)
-        around = [Stroke(linewidth=3, foreground=axes.get_facecolor()), Normal()]
+        beyond = (self._figure.bbox.width - axes.transData.transform(place)[0]) * DPI / self._figure.dpi
+        right = place[0] < sum(self._view[0]) / 2 or (self._piston and self._piston.axis == 0 and beyond > NAME)
+        halo = [Stroke(linewidth=3, foreground=axes.get_facecolor()), Normal()]
         return axes.annotate(
             name, place, (6 if right else -6, -6), textcoords="offset points", ha="left" if right else "right",
-            va="top", fontsize="small", path_effects=around, animated=True, annotation_clip=False,
+            va="top", fontsize="small", path_effects=halo, animated=True, annotation_clip=False,
         )  # fmt: skip
 
     def _draw_panel(self, axes: Axes, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:

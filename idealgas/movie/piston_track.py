@@ -12,7 +12,7 @@ from idealgas.log import Log
 class PistonTrack:
     """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: (K,), length/time². limits: of its way.
 
-    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides. name: what pictures call it.
+    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides.
     """
 
     axis: int
@@ -21,7 +21,6 @@ class PistonTrack:
     pull: np.ndarray
     limits: tuple[float, float]
     outward: float
-    name: str = "piston"
 
     def at(self, time: float) -> float:
         """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""

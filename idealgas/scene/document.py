@@ -19,7 +19,7 @@ from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
 from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
-from idealgas.scene.solids import NO_SOLIDS, Solids, find_solids
+from idealgas.scene.solids import NO_SOLIDS, Solids, covered_area, find_solids
 from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
@@ -91,10 +91,13 @@ class Document(_DiscsAndEffects):
 
     @property
     def solids(self) -> Solids:
-        """Solids that the tables [[wall]] make."""
-        if not any(wall is not None and wall.solid for wall in self.wall):
-            return NO_SOLIDS
-        return find_solids(tuple(self.wall), self.box.size[0] * self.box.size[1])
+        """Solids that the tables [[wall]] make, with the area of fixed discs."""
+        width, height = self.box.size
+        made = any(wall is not None and wall.solid for wall in self.wall)
+        found = find_solids(tuple(self.wall), width * height) if made else NO_SOLIDS
+        if fixed := self.segments[len(self.wall) :]:
+            return found._replace(area=found.area + covered_area(fixed, (width, height), self.box.periodic))
+        return found
 
     @property
     def placed(self) -> list[tuple[int, Species]]:

@@ -6,6 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import pairwise, product
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from idealgas.physics.arc import toggles
 from idealgas.physics.arc_geometry import NO_ARC, Point, bounds
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import Wall
+    from idealgas.effects.wall import FixedDisc, Wall
 
 
 class Solids(NamedTuple):
@@ -22,7 +23,7 @@ class Solids(NamedTuple):
 
     Attributes:
         walls: of the solids, by what is solid of their curves: "inside" or "outside".
-        area: of the box that they cover, length²; without that beyond open curves.
+        area: of the box that they and fixed discs cover, length²; without that beyond open curves.
         loose: number of a wall and its end, of which the curve is not closed.
     """
 
@@ -38,6 +39,9 @@ class Solids(NamedTuple):
 
 NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
 """Those of a scene without any."""
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(32)
+"""Nodes and weights of the integral of a length that discs cover, on -1 to 1."""
 
 
 @lru_cache(maxsize=4)
@@ -107,3 +111,52 @@ def _swept(wall: Wall, forwards: bool) -> float:
     if arc := wall.arc:
         area += arc.turn * arc.radius**2 * (arc.angle - math.sin(arc.angle)) / 2
     return area if forwards else -area
+
+
+@lru_cache(maxsize=4)
+def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]) -> float:
+    """Area of a box that fixed discs cover, length², however they overlap each other and its sides.
+
+    It is the integral over x of the length along y that they cover, from each place where that is not smooth to the
+    next: where a disc begins or ends, and where two rims, or a rim and a side, cross.
+    """
+    width, height = size
+    shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
+    moves = list(product(*shifts))
+    x, y, radius = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
+    rims = (x - radius, x + radius, _crossings(x, y, radius), *(_heights(x, y, radius, y0) for y0 in (0.0, height)))
+    places, area = np.unique(np.clip(np.concatenate(((0.0, width), *rims)), 0.0, width)), 0.0
+    for start, end in pairwise(places.tolist()):
+        middle, half, angle = (start + end) / 2, (end - start) / 2, (NODES + 1) * math.pi / 2
+        here = np.abs(middle - x) < radius
+        across = (middle - half * np.cos(angle))[:, None] - x[here]
+        chord = np.sqrt(np.maximum(radius[here] ** 2 - across**2, 0.0))
+        low, high = np.clip((y[here] - chord, y[here] + chord), 0.0, height)
+        order = low.argsort(axis=1)
+        low, high = np.take_along_axis(low, order, axis=1), np.take_along_axis(high, order, axis=1)
+        reached = np.maximum.accumulate(np.insert(high, 0, 0.0, axis=1), axis=1)[:, :-1]
+        length = np.maximum(high - np.maximum(low, reached), 0.0).sum(axis=1)
+        area += half * math.pi / 2 * float(WEIGHTS @ (length * np.sin(angle)))
+    return area
+
+
+def _crossings(x: np.ndarray, y: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Places along x where the rims of two discs cross."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(np.column_stack((x, y))).query_pairs(2 * float(radius.max()), output_type="ndarray")
+    one, other = pairs[(x[pairs[:, 0]] != x[pairs[:, 1]]) | (y[pairs[:, 0]] != y[pairs[:, 1]])].T
+    dx, dy = x[other] - x[one], y[other] - y[one]
+    square = dx**2 + dy**2
+    along = (1 + (radius[one] ** 2 - radius[other] ** 2) / square) / 2
+    across = radius[one] ** 2 / square - along**2
+    some = across > 0
+    foot, aside = (x[one] + along * dx)[some], np.sqrt(across[some]) * dy[some]
+    return np.concatenate((foot - aside, foot + aside))
+
+
+def _heights(x: np.ndarray, y: np.ndarray, radius: np.ndarray, height: float) -> np.ndarray:
+    """Places along x where the rims of discs have a height."""
+    square = radius**2 - (height - y) ** 2
+    some = square > 0
+    return np.concatenate((x[some] - np.sqrt(square[some]), x[some] + np.sqrt(square[some])))

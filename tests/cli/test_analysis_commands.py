@@ -133,7 +133,7 @@ def test_check_names_what_it_compares(path):
     ("overrides", "why"),
     [
         (("species.radius=1.2", "species.count=58"), "above 0.62"),
-        (("species.count=1",), "holds less than 3"),
+        (("species.count=1",), "holds fewer than 3"),
         (("gravity.acceleration=[0, -0.01]",), "no equation of state holds under gravity"),
     ],
 )

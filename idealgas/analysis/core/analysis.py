@@ -193,7 +193,9 @@ class Analysis:
             raise NotApplicableError(f"{log.path}: not applicable to {differ}")
         with _arithmetic(f"{log.path}: {cls.key}"):
             found = cls.measure(log, start=start, end=end, progress=progress, **values)
-        slow = caveats.of_window(found.window) if hasattr(found, "window") else ()
+        slow: tuple[str, ...] = ()
+        if hasattr(found, "window"):
+            slow = *caveats.of_paths(log, found.window), *caveats.of_window(found.window)
         origin = caveats.origin_of(log.scene, str(log.path))
         return replace(found, caveats=(*caveats.of_log(log), *slow, *found.caveats), origin=origin, title=origin.title)
 

@@ -6,6 +6,8 @@ that all analyses share, and those of several logs together, are here.
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.theory import conserved, time_steps
@@ -30,6 +32,18 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 def of_log(log: Log) -> tuple[str, ...]:
     """Caveats of every average over time of a log: those of its gas and of its method of simulation."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
+
+
+def of_paths(log: Log, window: Window) -> tuple[str, ...]:
+    """Caveat of a window in which discs hardly collide with each other, so that nothing but walls mixes their paths."""
+    times, collisions = log.observables["disc_collisions"]
+    among = np.diff(np.interp((window.start, window.end), times, collisions))
+    if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
+        return ()
+    return (
+        f"Discs hardly collide with each other ({each:.2g} times each in the window): each keeps its energy, and "
+        "averages are those of its path between walls. Where paths stay alike for long, standard errors are too small.",
+    )
 
 
 def of_window(window: Window) -> tuple[str, ...]:

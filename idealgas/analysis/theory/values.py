@@ -320,7 +320,10 @@ def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float
     across = min(box) / (2 * radius)
     n_square = min(n, 4 * phi / math.pi * across**2 * (1 + 1e-9))  # discs in the square of the shorter side
     if n_square < NUMBERS[0]:
-        raise NoTheoryError(f"the box, or its shorter side's square, holds less than {NUMBERS[0]} discs")
+        raise NoTheoryError(
+            "at this packing fraction the square of the box's shorter side holds fewer than "
+            f"{NUMBERS[0]} of the largest discs"
+        )
     if phi > FRACTIONS[-1] and n_square < NUMBERS[-1]:
         raise NoTheoryError(f"the packing fraction is above {FRACTIONS[-1]:g}, too high for so few discs")
     by_number = np.log(ERRORS[kind])

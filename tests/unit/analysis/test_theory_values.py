@@ -122,8 +122,8 @@ def test_no_value_beyond_the_range():
     assert "too high for so few" in _periodic(50, 0.61).why_not
     assert _periodic(400, 0.61).why_not == ""
     assert "off by" in _periodic(4, 0.45).why_not
-    assert "holds less than 3" in _periodic(1, 0.1).why_not
-    assert "holds less than 3" in _periodic(40, 0.3, (40.0, 1.0)).why_not
+    assert "holds fewer than 3" in _periodic(1, 0.1).why_not
+    assert "holds fewer than 3" in _periodic(40, 0.3, (40.0, 1.0)).why_not
 
 
 @pytest.mark.parametrize(("phi", "pressure"), [(0.67, 7.98678), (0.68, 8.51325), (0.69, 8.9699), (0.7, 9.1297)])

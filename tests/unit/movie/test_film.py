@@ -122,6 +122,15 @@ def test_the_piston_is_drawn():
     assert paint(piston=track)[1](6.2, 5).min() > WHITE
 
 
+def test_the_name_of_a_piston_at_the_edge_is_whole():
+    made = scene()
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, 10.0]), np.zeros(2), (0.0, 10.0), 1.0)
+    for size in ((720, 720), (360, 360)):
+        painter = Painter(made, make_gas(made), track, 1.0, size=size, panel="none")
+        frame = painter.paint(STATE._replace(time=4.0))[..., :3]
+        assert frame[:, -2:].min() > WHITE
+
+
 def test_frames_of_the_same_state_are_the_same_whatever_came_before():
     made = scene()
     painter = Painter(made, make_gas(made), None, 1.0, size=SIZE)

@@ -97,3 +97,32 @@ def test_one_line_for_each_mistake(text, rest, message):
     with pytest.raises(SceneError) as caught:
         scene(text, rest or 'species = [{ name = "gas", count = 9, radius = 0.1, speed = 1 }]')
     assert message in str(caught.value)
+
+
+DISC = "{{ position = [{}, {}], radius = {}, fixed = true }},\n"
+SIDES_JOINED = 'box = {size=[10, 10], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
+LENS = 2 * math.pi / 3 - math.sqrt(3) / 2
+"""Area that two circles of radius 1 share whose centres are 1 apart."""
+
+
+@pytest.mark.parametrize(
+    ("discs", "joined", "covered"),
+    [
+        (((5, 5, 2), (2, 2, 1)), False, 5 * math.pi),
+        (((4, 5, 1), (5, 5, 1)), False, 2 * math.pi - LENS),
+        (((4, 4, 1), (4, 5, 1), (4, 4, 0.5)), False, 2 * math.pi - LENS),
+        (((0, 5, 2), (10, 10, 2)), False, 3 * math.pi),
+        (((0, 5, 2), (10, 10, 2)), True, 8 * math.pi),
+        (((0.5, 5, 1), (9.5, 5, 1)), True, 2 * math.pi - LENS),
+    ],
+    ids=["apart", "overlapping", "nested", "at sides", "at periodic sides", "overlapping across"],
+)
+def test_fixed_discs_leave_less_area(discs, joined, covered):
+    """N, φ and A are those of the discs that move: areas by hand."""
+    text = "".join(DISC.format(*each) for each in discs)
+    rest = 'species = [{ name = "gas", count = 10, radius = 0.1, speed = 1 }]'
+    text = f"box.size = [10, 10]\nrun.events = 10\ndisc = [\n{text}]\n{rest}\n"
+    found = parse_scene(text, overrides=[SIDES_JOINED] * joined)
+    gas = make_gas(found)
+    assert gas.area == pytest.approx(100 - covered, rel=1e-14)
+    assert gas.packing_fraction == pytest.approx(10 * math.pi * 0.01 / (100 - covered), rel=1e-12)

@@ -200,7 +200,7 @@ def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
             ("species.count=4000", "species.radius=0.1001", "box.size=[10, 19]", "species.placement=lattice"),
             "above 0.62",
         ),
-        (("species.count=1",), "holds less than 3"),
+        (("species.count=1",), "holds fewer than 3"),
     ],
 )
 def test_rates_of_a_rough_theory_are_marked(overrides, why):
