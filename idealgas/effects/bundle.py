@@ -7,6 +7,7 @@ None, so that no machine code is made for an absent effect.
 import math
 from collections import namedtuple
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import add_sums, clear
+from idealgas.physics.periodic import unwrapped
 from idealgas.state import Gas
 
 ENERGIES = ("wall_energy", "dissipated", "bath_energy", "step_energy")
@@ -97,8 +99,10 @@ def changed(effects: Effects, after: float, until: float) -> Effects:
 
 def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[str, float]:
     """Energies that the effects add, by field of `idealgas.run.energy.Energy`, mass length²/time²."""
-    parts = ((effect.energy, state) for effect, state in present(effects))
-    return {part.part: part.of(state, gas, local_time) for part, state in parts if part is not None}
+    parts = [(effect.energy, state) for effect, state in present(effects) if effect.energy is not None]
+    if parts:
+        gas = replace(gas, position=unwrapped(gas.position, effects.periodic))
+    return {part.part: part.of(state, gas, local_time) for part, state in parts}
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:

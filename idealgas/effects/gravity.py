@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from pydantic import Field
 
-from idealgas.columns import SIDES, Column, sides_across
+from idealgas.columns import Column
 from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, VectorInSteps, steps_of
@@ -43,17 +43,11 @@ def _properties(tables: Tables) -> Properties:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Gravity without acceleration, or along periodic sides, where discs would accelerate indefinitely."""
+    """Gravity without acceleration."""
     key: Key = ("gravity", "acceleration")
     steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
     if not any(map(any, steps)):
         yield Issue((key,), "no acceleration", str(list(steps[0])), "no [gravity], or one that pulls")
-    for axis, component in enumerate(max(each, key=abs) for each in zip(*steps, strict=True)):
-        low, high = (SIDES[side] for side in sides_across(axis))
-        if component and tables.sides[2 * axis] == "periodic":
-            keys = (key, ("box", low), ("box", high))
-            what = f"gravity through the periodic sides {low} and {high}"
-            yield Issue(keys, what, f"a component of {component}", "0, or sides that end the fall")
 
 
 def _make(_: Tables, start: Start) -> law.Gravity | None:
@@ -72,6 +66,7 @@ def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
 
 
 def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
+    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows."""
     return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 
 

@@ -128,10 +128,20 @@ class Properties:
         return x, y
 
     @property
+    def falls(self) -> tuple[bool, bool]:
+        """Along which axes gravity acts between periodic sides, where nothing ends the fall."""
+        x, y = (on and g != 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
+        return x, y
+
+    @property
+    def frictionless(self) -> bool:
+        """Whether nothing takes momentum along periodic sides: smooth walls take none along themselves."""
+        return self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
+
+    @property
     def conserves_momentum(self) -> tuple[bool, bool]:
-        """Along which axes nothing takes momentum from the discs: smooth walls take none along themselves."""
-        free = self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
-        x, y = (free and on and g == 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
+        """Along which axes nothing changes the momentum of the discs."""
+        x, y = (self.frictionless and on and not fall for on, fall in zip(self.periodic, self.falls, strict=True))
         return x, y
 
     def __and__(self, other: "Properties") -> "Properties":

@@ -8,6 +8,7 @@ import numpy as np
 from idealgas.effects.bundle import Effects
 from idealgas.physics.collision_rates import collisions_per_length
 from idealgas.physics.motion import MAX_DISPLACEMENT
+from idealgas.physics.periodic import periodic_axes
 from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
@@ -48,13 +49,15 @@ def epoch_length(
     extra_speed: float = 0.0,
     periodic: Sequence[bool] = (False, False),
     thermostat_collisions: float = 0.0,
+    fall: float = 0.0,
 ) -> float:
     """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
 
     In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
     speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
-    along y are periodic. thermostat_collisions: per time. Where the last digits decide, the sum of the speeds is
-    exactly rounded, so the length depends neither on the order of the discs nor on the processor.
+    along y are periodic. thermostat_collisions: per time. fall: acceleration along periodic sides, length/time²,
+    by which no disc gains more than the largest speed. Where the last digits decide, the sum of the speeds is exactly
+    rounded, so the length depends neither on the order of the discs nor on the processor.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
@@ -68,10 +71,11 @@ def epoch_length(
     def exponent(sum_of_speeds: float) -> float:
         """Exponent of 2 of the longest time that an epoch may have; infinite if nothing happens."""
         rate = (sum_of_speeds / n + extra_speed) * encounters + other_events
+        longest = fastest / fall if fall else math.inf
         if rate == 0.0:
-            return math.inf
+            return math.log2(longest)
         shortest = min(FEWEST_PER_DISC * n / rate, round_the_box / fastest)
-        longest = max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate
+        longest = min(longest, max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate)
         return math.log2(min(max(displacement / fastest, shortest), longest))
 
     power = exponent(float(speeds.sum()))
@@ -80,6 +84,14 @@ def epoch_length(
     if abs(power - round(power)) < UNDECIDED:
         power = exponent(math.fsum(speeds.tolist()))
     return 2.0 ** math.floor(power)
+
+
+def fall_along_sides(effects: Effects) -> float:
+    """Largest acceleration along periodic sides, length/time²; 0 where sides end every fall."""
+    if effects.gravity is None:
+        return 0.0
+    both = zip(effects.gravity, periodic_axes(effects.periodic), strict=True)
+    return max((abs(component) for component, on in both if on), default=0.0)
 
 
 def driving_speed(gas: Gas, effects: Effects) -> float:

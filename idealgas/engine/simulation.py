@@ -19,7 +19,7 @@ from idealgas.effects.bundle import (
     present,
 )
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
-from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length
+from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length, fall_along_sides
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
@@ -116,7 +116,8 @@ class Simulation:
             thermostat = self.effects.thermostat
             bath_collisions = 0.0 if thermostat is None else len(self.gas) * thermostat.rate
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
-            length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions)
+            fall = fall_along_sides(self.effects)
+            length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions, fall)
             self.length = min(length, until_change)
         self.method.start(self.gas, for_kernels(self.effects))
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)

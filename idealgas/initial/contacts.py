@@ -29,30 +29,38 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     """Name of each wall to which discs may be pressed, and a mask (N,) of the discs in static contact with it."""
-    acceleration = np.array(scene.properties.acceleration)
+    properties = scene.properties
+    accelerations = np.array([properties.acceleration, *properties.later_accelerations])
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
-        pressed = acceleration @ OUTWARD[side] > 0 or hasattr(scene.box.sides[side], "vibrating")
-        if pressed and not (scene.piston and scene.piston.wall == name):
+        pressed = _first(accelerations @ OUTWARD[side]) > 0 or hasattr(scene.box.sides[side], "vibrating")
+        if pressed and not properties.periodic[axis] and not (scene.piston and scene.piston.wall == name):
             coordinate = gas.position[:, axis]
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
-    if acceleration.any():
+    if accelerations.any():
         for k, wall in enumerate(scene.segments):
             if wall.is_there(0.0):
                 normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
                 touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
                 if wall.is_permeable and wall.permeable_from is None:
                     touches &= ~np.array([wall.lets_pass(name) for name in gas.species_names])[gas.species]
-                yield f"wall {k}", touches & (normal @ acceleration < 0) & ((normal * gas.velocity).sum(axis=1) == 0)
+                pressed = _first(accelerations @ normal.T) < 0
+                yield f"wall {k}", touches & pressed & ((normal * gas.velocity).sum(axis=1) == 0)
     if scene.piston:
         piston = scene.piston
         outward = piston.outward_from(gas.position, gas.box)
         gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
-        relative = piston.acceleration(gas.box, scene.properties.acceleration) - acceleration[piston.axis]
+        own = np.array([piston.acceleration(gas.box, acceleration) for acceleration in accelerations])
+        relative = _first(own - accelerations[:, piston.axis])
         pressed = outward * relative < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == piston.start_velocity)
         yield "the piston", in_contact & pressed
+
+
+def _first(accelerations: np.ndarray) -> np.ndarray:
+    """First component of each series along axis 0 that is not 0: it takes a disc away from a wall, or presses it on."""
+    return np.take_along_axis(accelerations, (accelerations != 0).argmax(axis=0)[None, ...], axis=0)[0]
 
 
 def _key_of(scene: Scene, gas: Gas, i: int) -> Key:

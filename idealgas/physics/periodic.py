@@ -53,6 +53,11 @@ def begin_epoch(periodic: Periodic, time: float) -> None:
     periodic.boundary_crossings[:] = 0
 
 
+def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
+    """Positions (N, 2) in the box as they are in space, length."""
+    return position if periodic is None else position + periodic.image * (periodic.Lx, periodic.Ly)
+
+
 @inline
 def images_between(periodic, a_id, b_id, image):
     """Numbers of box lengths (x, y) between the records of discs a and b; zeros without periodic sides.

@@ -55,7 +55,7 @@ def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
 
 
 def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
-    """Fresh effects. Periodic sides join left and right (top and bottom where gravity or a piston leave no other)."""
+    """Fresh effects. Periodic sides join left and right (top and bottom where a piston leaves no other)."""
     n = len(gas)
     draw = np.random.default_rng(seed)
     walls: list[tuple[float, float, float, float, bool]] = []
@@ -84,7 +84,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         piston[0].x, piston[0].a, piston[0].m, piston[0].outward = 4.2, 0.0, 3.0, 0.0
         piston[0].wall = FIRST_SEGMENT + len(walls)
     own: dict[str, Any] = {
-        "gravity": lambda: Gravity(0.0, -0.4),
+        "gravity": lambda: Gravity(0.1, -0.4),
         "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "permeable": lambda: Permeable(gas.species.copy(), passage),
@@ -145,9 +145,9 @@ def sums_of(effects: Effects) -> list[np.ndarray]:
 
 
 def allowed(names: set[str]) -> bool:
-    """Whether the effects go together here: gravity points down, so it leaves only the left and right sides to join."""
+    """Whether the effects go together here: hot and vibrating sides leave only the left and right ones to join."""
     moving = names & {"piston", "inner"}
-    crossed = "periodic" in names and moving and names & {"gravity", "thermal", "vibration"}
+    crossed = "periodic" in names and moving and names & {"thermal", "vibration"}
     return len(moving) < 2 and not crossed
 
 

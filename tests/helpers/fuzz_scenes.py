@@ -250,10 +250,10 @@ def tables_of(draw) -> dict[str, Any]:
             wall | (draw_gate(draw) if gates and "permeable_from" not in wall else {}) | (hot if k == 0 else {})
             for k, wall in enumerate(tables_of_walls)
         ]
-    if "gravity" in called and not periodic.all():
+    if "gravity" in called:
         pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
-        direction = np.where(periodic, 0.0, pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0)))
-        gravity = (pull * direction).tolist()
+        direction = pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0))
+        gravity = [pull * component for component in direction]
         if not (piston and "mass" in piston) and draw(st.booleans()):
             gravity = [[0.0, gravity], [pick(draw, 0.02, 0.5), [-share * component for component in gravity]]]
         tables["gravity"] = {"acceleration": gravity}

@@ -64,6 +64,8 @@ EFFECTS = {
     "{ from = [0, 70], to = [8, 70], permeable_to = ['b'] }]\n",
     "arcs": "wall = [{ from = [0.1, 30], to = [0.1, 30], via = [7.9, 30] }, "
     "{ from = [1, 60], to = [7, 60], via = [4, 66] }]\n",
+    "flow": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n'
+    "gravity.acceleration = [[0, [0.2, -0.05]], [1, [-0.1, 0]]]\n",
     "everything": 'box.left = "periodic"\nbox.right = "periodic"\nbox.bottom = { thermal = 1.0 }\n' + EVERYTHING,
 }
 

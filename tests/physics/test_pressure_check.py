@@ -157,6 +157,7 @@ NO_THEORY = {
     "osmosis",
     "otto",
     "piston",
+    "poiseuille",
     "quench",
     "rough-cooling",
     "separation",

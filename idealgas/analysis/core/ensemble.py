@@ -92,9 +92,11 @@ def nonstationary_reason(log: Log) -> str:
     scene, properties = log.scene, log.scene.properties
     if properties.driven:
         return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
+    if any(properties.falls) and (properties.frictionless or (properties.lossless and properties.isolated)):
+        return "gravity along periodic sides accelerates or heats the gas"
     if properties.vibrates and properties.lossless and properties.isolated:
         return "a vibrating side heats the gas"
-    if not properties.lossless and properties.isolated and not properties.vibrates:
+    if not properties.lossless and properties.isolated and not (properties.vibrates or any(properties.falls)):
         return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
     return ""
 
@@ -106,6 +108,8 @@ def nonequilibrium_reason(log: Log) -> str:
     scene, properties = log.scene, log.scene.properties
     if properties.varies:
         return "values change in time"
+    if any(properties.falls):
+        return "gravity drives a flow along periodic sides"
     if properties.vibrates:
         return "a side vibrates"
     if properties.one_way:

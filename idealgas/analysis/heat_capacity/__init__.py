@@ -15,7 +15,7 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
+from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom, nonequilibrium_reason
 from idealgas.analysis.core.fields import OPTIONAL, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_replicates, mean_theory
@@ -140,8 +140,7 @@ class HeatCapacityAnalysis(Analysis):
                 driven piston, a gas without positions.
         """
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
-        settles = properties.lossless and not properties.driven and not properties.varies
-        if not settles or len(properties.temperatures) > 1 or not log.has_positions:
+        if nonequilibrium_reason(log) or not log.has_positions:
             raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
         has_piston = bool(scene.piston and scene.piston.mass)
         if has_piston and scene.piston.inner:

@@ -1,7 +1,8 @@
-"""Measure density and temperature in strips along an axis, and the heat given by walls.
+"""Measure density, temperature and flow in strips along an axis, and the heat given by walls.
 
 Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and between two thermal sides
-T^(3/2) linear in the position, with the temperature jumps at them, and n T Z constant.
+T^(3/2) linear in the position, with the temperature jumps at them, and n T Z constant. A flow that gravity drives along
+periodic sides is Poiseuille's (`flow`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,16 +14,16 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
 from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
-from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, gradient, strip_test
-from idealgas.analysis.profile.theory import Expected, expected_profile, natural_axis
+from idealgas.analysis.profile.flow import LAW, expected_flow
+from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, collect, gradient, strip_test
+from idealgas.analysis.profile.theory import Expected, expected_profile, flow_axis, natural_axis
 from idealgas.analysis.theory.ensemble import composition
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -48,16 +49,19 @@ CLEAR = 5.0
 class SpeciesProfile:
     """Profiles of one species, one value for each strip.
 
-    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, energy. spin: mean I ω² per
-    disc, energy; None for discs without spin. gradient: slope of the straight line through the temperatures, each with
-    the weight of its discs, energy/length; None where fewer than two strips have a temperature. density_test,
-    temperature_test: of all strips together; None unless the gas is uniform by theory.
+    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, relative to the flow, energy.
+    spin: mean I ω² per disc, energy; None for discs without spin. velocity: of the flow, the mean velocity of the mass
+    along the axis along which gravity drives the gas, length/time; None without such a flow. gradient: slope of the
+    straight line through the temperatures, each with the weight of its discs, energy/length; None where fewer than two
+    strips have a temperature. density_test, temperature_test: of all strips together; None unless the gas is uniform by
+    theory.
     """
 
     species: str
     density: tuple[Estimate, ...]
     temperature: tuple[Estimate, ...]
     spin: Annotated[tuple[Estimate, ...] | None, OPTIONAL]
+    velocity: Annotated[tuple[Estimate, ...] | None, OPTIONAL]
     gradient: Estimate | None
     density_test: StripTest | None
     temperature_test: StripTest | None
@@ -70,6 +74,7 @@ class Profile(Result):
     Attributes:
         window: the time that was used.
         axis: "x" or "y".
+        flow: axis along which gravity drives a flow, "x" or "y"; None without one.
         edges: (K + 1,), edges of the strips, length.
         strip: area of one strip, length².
         frames: number of averaged frames.
@@ -80,6 +85,7 @@ class Profile(Result):
 
     window: Window
     axis: str
+    flow: Annotated[str | None, OPTIONAL]
     edges: np.ndarray
     strip: Annotated[float, OMITTED]
     frames: int
@@ -94,7 +100,7 @@ class Profile(Result):
 
 
 class ProfileAnalysis(Analysis):
-    """Profiles of density and temperature."""
+    """Profiles of density, temperature and flow."""
 
     position = 40
     results = (Profile,)
@@ -103,7 +109,7 @@ class ProfileAnalysis(Analysis):
         Option(
             "along",
             str,
-            "Axis of the profile.  [default: that of gravity, or of two thermal sides; else x]",
+            "Axis of the profile.  [default: across a flow, that of gravity, or of two thermal sides; else x]",
             choices=("x", "y"),
         ),
         Option("bins", int, "Number of strips.", default=BINS, least=1, most=1000),
@@ -122,7 +128,8 @@ class ProfileAnalysis(Analysis):
         """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
 
         Averages are taken over states at least as far apart as the events of a disc. Theory, if there is one, is a
-        uniform gas, the barometric law, or Fourier's law between two thermal walls.
+        uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille's for a flow, to which
+        temperatures then are relative.
 
         Args:
             log: log with events and positions.
@@ -140,17 +147,20 @@ class ProfileAnalysis(Analysis):
         axis = natural_axis(log) if along is None else "xy".index(along)
         reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
         window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
-        sums = _collect(log, axis, window.edges[window.first :], edges, progress)
+        along_flow = flow_axis(log)
+        sums = collect(log, axis, along_flow, window.edges[window.first :], edges, progress)
         expected = expected_profile(log, axis, edges, window.start)
+        flow = expected_flow(log, axis, edges) if along_flow == 1 - axis else None
         strip = float(edges[1] - edges[0]) * log.box[1 - axis]
         spinning = log.inertia is not None
         species = tuple(
-            _of_species(name, sums[:, s], edges, strip, expected, s, spinning)
+            _of_species(name, sums[:, s], edges, strip, expected, s, spinning, flow)
             for s, name in enumerate(composition(log.discs).name)
         )
         caveats = (*_unknown_strips(species), *_limits(log, axis, float(edges[1] - edges[0]), species, expected))
-        law = None if expected is None else expected.law
-        return Profile(window, "xy"[axis], edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)
+        law = expected.law if expected else LAW if flow else None
+        axes = "xy"[axis], None if along_flow is None else "xy"[along_flow]
+        return Profile(window, *axes, edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)
 
     @staticmethod
     def tables(result: Profile) -> list[Table]:
@@ -161,6 +171,7 @@ class ProfileAnalysis(Analysis):
         for entry in result.species:
             columns = {"density (1/length²)": entry.density, "temperature, m v²/2": entry.temperature}
             columns |= {"temperature, I ω²": entry.spin} if entry.spin is not None else {}
+            columns |= {f"velocity along {result.flow} (length/time)": entry.velocity} if entry.velocity else {}
             for name, column in columns.items():
                 tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
         if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
@@ -182,7 +193,9 @@ class ProfileAnalysis(Analysis):
         middles = [f"{result.axis} = {x:.4g}" for x in result.middles]
         found, rows = [], []
         for entry in result.species:
-            for name, column in (("density", entry.density), ("temperature", entry.temperature)):
+            columns = {"density": entry.density, "temperature": entry.temperature}
+            columns |= {"velocity": entry.velocity} if entry.velocity else {}
+            for name, column in columns.items():
                 known = [(x, e) for x, e in zip(middles, column, strict=True) if e.standard_error > 0]
                 rows += [(f"{name} of {entry.species} at {x}", e) for x, e in known]
                 if not known:
@@ -198,7 +211,7 @@ class ProfileAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Profile) -> "Figure":
-        """Picture of density and temperature against position, theory dashed; spin temperature as crosses."""
+        """Picture of density, temperature and flow against position, theory dashed; spin temperature as crosses."""
         from idealgas.analysis.core.style import BLACK, Strips, curve_style, panels
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
@@ -207,25 +220,29 @@ class ProfileAnalysis(Analysis):
             ax.theory(result.middles, theory, off, None)
             ax.errorbar(result.middles, value, error, ms=4, capsize=2, **style)
 
-        figure, (density, temperature) = panels(2)
+        figure, (density, temperature, *flow) = panels(2 if result.flow is None else 3)
         for k, entry in enumerate(result.species):
             colour, _, marker = curve_style(k)
             draw(density, entry.density, fmt=marker, color=colour, label=entry.species)
             draw(temperature, entry.temperature, fmt=marker, color=colour, label=f"{entry.species}: m v²/2")
             if entry.spin is not None:
                 draw(temperature, entry.spin, fmt="x", color=colour, label=f"{entry.species}: I ω²")
+            if entry.velocity is not None:
+                draw(flow[0], entry.velocity, fmt=marker, color=colour, label=entry.species)
         if result.law is not None:
-            density.plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
+            (*flow, density)[0].plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
             highest = [e.theory or 0.0 for entry in result.species for e in entry.density]
             if max(highest) > 20 * min(highest) > 0:
                 density.set_yscale("log")
-        for ax in (density, temperature):
+        for ax in (density, temperature, *flow):
             ax.set_xlabel(f"{result.axis} (length)")
             ax.legend()
         low, high, number = result.edges[0], result.edges[-1], len(result.middles)
         density.strips = Strips("xy".index(result.axis), float(low), float(high), number, result.strip)
         density.set_ylabel("n (1/length²)")
         temperature.set_ylabel("temperature (energy, k_B = 1)")
+        for ax in flow:
+            ax.set_ylabel(f"velocity along {result.flow} (length/time)")
         return figure
 
 
@@ -265,36 +282,25 @@ def _limits(
         yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."
 
 
-def _collect(log: Log, axis: int, times: np.ndarray, edges: np.ndarray, progress: Progress | None) -> np.ndarray:
-    """Sums (F, S, K, 3) of 1, m v²/2 and I ω² over the discs of a strip, at F times."""
-    gas, frame = log.discs, centre_of_mass_velocity(log)
-    shape = (len(gas.species_names), len(edges) - 1)
-    sums = np.zeros((len(times), *shape, 3))
-    inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
-    for k, state in enumerate(frames(log, times, progress)):
-        place = state.position[:, axis]
-        strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
-        cell = gas.species.astype(np.int64) * shape[1] + strip
-        spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
-        values = (np.ones(len(gas)), gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2, inertia * spin**2)
-        for c, value in enumerate(values):
-            sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
-    return sums
-
-
 def _of_species(
-    name: str, sums: np.ndarray, edges: np.ndarray, strip: float, expected: Expected | None, s: int, spinning: bool
+    name: str,
+    sums: np.ndarray,
+    edges: np.ndarray,
+    strip: float,
+    expected: Expected | None,
+    s: int,
+    spinning: bool,
+    flow: Sequence[Theory] | None,
 ) -> SpeciesProfile:
-    """Profiles of one species from its sums (F, K, 3); strip: area of a strip, length²."""
+    """Profiles of one species from its sums (F, K, 5); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
 
-    def per_disc(k: int, column: int) -> Estimate:
+    def per_disc(k: int, column: int, by: int = 0, theory: Theory | None = None) -> Estimate:
         if np.count_nonzero(sums[:, k, 0]) < FEWEST_FRAMES:
             return Estimate(np.nan, np.nan, 0.0)
-        theory = None
         if expected is not None:
             theory = expected.of_temperature(s, k) if column == 1 else expected.of_spin(s, k)
-        return ratio(sums[:, k, column], sums[:, k, 0], theory)
+        return ratio(sums[:, k, column], sums[:, k, by], theory)
 
     density_test = temperature_test = None
     if expected is not None and not expected.dilute:  # χ² would find the errors of a law of dilute gases
@@ -308,6 +314,7 @@ def _of_species(
         tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None) for k in strips),
         tuple(per_disc(k, 1) for k in strips),
         tuple(per_disc(k, 2) for k in strips) if spinning else None,
+        tuple(per_disc(k, 3, 4, flow[k] if flow else None) for k in strips) if sums[..., 3].any() else None,
         gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
         density_test,
         temperature_test,

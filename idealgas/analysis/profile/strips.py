@@ -1,12 +1,16 @@
-"""All strips of a profile together: the slope of the temperature, and a test against theory."""
+"""Sums over the discs of each strip; the slope of the temperature, and a test of all strips against theory."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.analysis import Progress
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.stream import frames
 from idealgas.analysis.profile.theory import Expected
 from idealgas.analysis.theory.values import Theory
+from idealgas.log import Log
 
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""
@@ -26,6 +30,32 @@ class StripTest:
     chi_squared: float
     waves: int
     p_value: float
+
+
+def collect(
+    log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: Progress | None
+) -> np.ndarray:
+    """Sums (F, S, K, 5) of 1, m v²/2, I ω², m u and m over the discs of a strip, at F times.
+
+    u: velocity along the axis `flow`, if there is a flow; v²/2 is then relative to the mean of u in the strip.
+    """
+    gas, frame = log.discs, centre_of_mass_velocity(log)
+    shape = (len(gas.species_names), len(edges) - 1)
+    sums = np.zeros((len(times), *shape, 5))
+    inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
+    for k, state in enumerate(frames(log, times, progress)):
+        place = state.position[:, axis]
+        strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
+        cell = gas.species.astype(np.int64) * shape[1] + strip
+        spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
+        energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
+        momentum = gas.mass * (0.0 if flow is None else state.velocity[:, flow])
+        for c, value in enumerate((np.ones(len(gas)), energy, inertia * spin**2, momentum, gas.mass)):
+            sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
+    momentum, mass = sums[..., 3], sums[..., 4]
+    mean_velocity = momentum.sum(axis=0) / np.maximum(mass.sum(axis=0), np.finfo(float).tiny)
+    sums[..., 1] -= mean_velocity * momentum - mean_velocity**2 * mass / 2
+    return sums
 
 
 def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> StripTest | None:

@@ -82,8 +82,16 @@ class Expected:
         return Theory(float(self.temperature[s, k]), self.error, self.law)
 
 
+def flow_axis(log: Log) -> int | None:
+    """Axis along which gravity drives a flow, 0 for x or 1 for y; None without one."""
+    falls = log.scene.properties.falls
+    return falls.index(True) if any(falls) else None
+
+
 def natural_axis(log: Log) -> int:
-    """Axis (0 for x, 1 for y) of gravity, or of two thermal sides of different temperatures; else x."""
+    """Axis (0 for x, 1 for y) across a flow, of gravity, or of two thermal sides of different temperatures; else x."""
+    if (along := flow_axis(log)) is not None:
+        return 1 - along
     if log.gravity[1] != 0:
         return 1
     bottom, top = (log.scene.properties.emits[side] for side in sides_across(1))

@@ -108,6 +108,11 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """Caveats of every average over time that follow from the start of a gas, `gas`."""
     found = []
+    if any(scene.properties.falls):
+        found.append(
+            "Gravity makes the gas flow along periodic sides: temperatures and speeds contain this motion, except for "
+            "those of `profile`."
+        )
     if len(gas) == 1 and not is_ergodic(scene, gas):
         if not all(scene.properties.periodic):
             found.append("A single disc does not share its energy evenly: its motions have no common temperature.")

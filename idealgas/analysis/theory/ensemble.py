@@ -217,7 +217,9 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
     leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties = scene.properties
-    if not properties.fixed_walls or not properties.lossless or properties.varies or len(gas) == 1:
+    if any(properties.falls) or not properties.fixed_walls or not properties.lossless or properties.varies:
+        return None
+    if len(gas) == 1:
         return None
     if baths := properties.temperatures:
         return min(baths) if len(baths) == 1 else None
