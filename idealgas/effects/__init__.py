@@ -13,6 +13,7 @@ from idealgas.effects.effect import EffectSpec
 NAMES = (
     "gravity",
     "periodic",
+    "shear",
     "wall",
     "arc",
     "permeable",

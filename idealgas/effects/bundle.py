@@ -59,9 +59,13 @@ else:
 
 
 def for_kernels(effects: Effects) -> Effects:
-    """The effects without the fields that no kernel needs, and without a gravity that pulls nothing at present."""
+    """The effects without the fields that no kernel needs, and without a gravity that pulls nothing at present.
+
+    The periodic sides get the shear, which moves their images.
+    """
     gravity = effects.gravity if effects.gravity is not None and any(effects.gravity) else None
-    return effects._replace(gravity=gravity, schedule=None, steering=None, step_energy=None)
+    periodic = effects.periodic if effects.shear is None else effects.periodic._replace(shear=effects.shear)
+    return effects._replace(gravity=gravity, periodic=periodic, schedule=None, steering=None, step_energy=None)
 
 
 def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:
@@ -71,10 +75,10 @@ def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:
             yield effect, state
 
 
-def begin_epoch(effects: Effects, time: float) -> None:
-    """Prepare all effects for an epoch that begins at a time, counted from the start of the run."""
+def begin_epoch(effects: Effects, time: float, length: float) -> None:
+    """Prepare all effects for an epoch of some length (time) that begins at a time of the run."""
     for effect, state in present(effects):
-        effect.begin_epoch(state, time)
+        effect.begin_epoch(state, time, length)
 
 
 def end_epoch(effects: Effects, length: float) -> None:

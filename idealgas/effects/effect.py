@@ -112,7 +112,8 @@ class EffectSpec(Generic[State]):
         gives_energy: whether walls give energy to discs, or take some.
         own_wall: number of a wall whose energy is part of the energy account, so that it gives none from outside.
         counted: total number of its own events.
-        begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run.
+        begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run, and has a
+            length (time).
         reverse: turn the velocities of the state around, at the start of an epoch.
         end_epoch: count local times from the end of an epoch of some length (time).
         schedule: changes in time of values of the state, after time 0.
@@ -143,7 +144,7 @@ class EffectSpec(Generic[State]):
     gives_energy: Callable[[State], bool] = lambda state: False
     own_wall: Callable[[State], int | None] = lambda state: None
     counted: Column | None = None
-    begin_epoch: Callable[[State, float], None] = lambda state, time: None
+    begin_epoch: Callable[[State, float, float], None] = lambda state, time, length: None
     end_epoch: Callable[[State, float], None] = lambda state, length: None
     reverse: Callable[[State], None] = lambda state: None
     schedule: Callable[[Tables, Start], Iterable[Change]] = lambda tables, start: ()

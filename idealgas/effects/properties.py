@@ -56,7 +56,7 @@ class Properties:
     temperature at the start of a heat bath that gives discs new velocities wherever they are; None without one.
     later_temperatures: of walls and heat bath. thermostat_rate: per disc, 1/time. last_wall_removed_at: time from which
     on no wall is inside the box; infinite if one always is. changes: times at which a value changes in a step, or a
-    gate opens or closes.
+    gate opens or closes. shear: rate at which sides shear the gas, 1/time.
     """
 
     uniform: bool = _plain(True, operator.and_)
@@ -81,6 +81,7 @@ class Properties:
     emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
     bath: float | None = _plain(None, _first_not_none)
     thermostat_rate: float = _plain(0.0, max)
+    shear: float = _plain(0.0, max)
     later_temperatures: tuple[float, ...] = _plain((), operator.add)
     last_wall_removed_at: float = _plain(0.0, max)
     changes: tuple[float, ...] = _plain((), operator.add)
@@ -142,7 +143,7 @@ class Properties:
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Along which axes nothing changes the momentum of the discs."""
         x, y = (self.frictionless and on and not fall for on, fall in zip(self.periodic, self.falls, strict=True))
-        return x, y
+        return x and not self.shear, y
 
     def __and__(self, other: "Properties") -> "Properties":
         """Properties of a gas with the effects of both."""

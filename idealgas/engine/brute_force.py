@@ -35,6 +35,7 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_inner, is_piston_side, piston_contact, stop_contact
+from idealgas.physics.shear import crossing_time
 from idealgas.physics.vibration import contact_with_side
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
@@ -54,7 +55,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
             if time < best[0]:
                 best = (time, PISTON, i, side, 0, 0)
         elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
-            time = contact_with_side(disc, side, length_y if along_y else length_x, effects.gravity, effects.vibration)
+            time = side_time(disc, side, length_y if along_y else length_x, effects.shear, effects)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
     best = segment_event(disc, i, effects.segments, effects, best)
@@ -63,6 +64,14 @@ def wall_event(record, i, effects, length_x, length_y, best):
         if time < best[0]:
             best = (time, PISTON, i, 0, 0, 0)
     return best
+
+
+@inline
+def side_time(disc, side, length, shear, effects):
+    """Local time at which a disc touches a side of the box, or crosses a sheared one; NEVER if it does not."""
+    if shear is not None:
+        return crossing_time(disc, side, length)
+    return contact_with_side(disc, side, length, effects.gravity, effects.vibration)
 
 
 @inline
@@ -111,8 +120,8 @@ def thermostat_event(i, thermostat, best):
 @inline
 def pair_event(record, i, j, effects, best):
     """The earlier of the event `best` and the next collision of discs i and j, in all images."""
-    for image_x in range(*image_range(effects.periodic, False)):
-        for image_y in range(*image_range(effects.periodic, True)):
+    for image_x in range(*sheared_range(effects.shear, 3, image_range(effects.periodic, False))):
+        for image_y in range(*sheared_range(effects.shear, 1, image_range(effects.periodic, True))):
             images = images_between(effects.periodic, i, j, (image_x, image_y))
             time = contact_time(
                 record[i], record[j], i, j, effects.gravity, effects.restitution, effects.periodic, images
@@ -126,6 +135,17 @@ def pair_event(record, i, j, effects, best):
 def image_range(periodic, along_y):
     """Range of the neighbouring images along an axis: -1 to 1 where it is periodic, else 0 alone."""
     return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
+
+
+@inline
+def sheared_range(shear, most, others):
+    """Range of the images along an axis: -most to most where sides are sheared, else the other one.
+
+    In an epoch, images move by up to one box, from up to one box ahead, and discs are up to one box apart.
+    """
+    if shear is not None:
+        return (-most, most + 1)
+    return others
 
 
 @inline

@@ -2,23 +2,25 @@
 
 import numpy as np
 
-from idealgas.columns import FIRST_SEGMENT
+from idealgas.columns import FIRST_SEGMENT, SIDES
 from idealgas.jit import inline
 from idealgas.physics.arc import wall_frame
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall, inward_normal
 from idealgas.physics.exact_sum import add
 from idealgas.physics.motion import advance
-from idealgas.physics.periodic import wrap
+from idealgas.physics.periodic import enter_opposite_side, wrap
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, is_inner, normal_of_piston
 from idealgas.physics.restitution import record_collision
+from idealgas.physics.shear import add_flow, cross, enter_common_frame, leave_common_frame
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import andersen_collision
 from idealgas.physics.vibration import side_velocity
 
 U = np.uintp
+TOP = SIDES.index("top")
 
 
 @inline
@@ -68,14 +70,31 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
     flights = flights_to(effects.flow, a, b, time)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
-    energy = energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
     before = a.vx, a.vy, b.vx, b.vy
+    enter_common_frame(a, b, effects.shear, images)
+    energy = energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
     collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
     energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
     add_energy(effects.dissipated, 0, energy)
+    leave_common_frame(a, b, effects.shear, images)
+    record_work_of_images(a, b, before, effects.shear, images, effects)
     record_collision_stress(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
     finish(a, a_id, time, effects)
     finish(b, b_id, time, effects)
+
+
+@inline
+def record_work_of_images(a, b, before, shear, images, effects):
+    """Record the work that the moving image of a partner does in a collision through the sheared top of the box.
+
+    before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time. The work is u times the momentum that
+    passes the top.
+    """
+    if shear is None:
+        return
+    if images[1] != 0:
+        to_a, to_b = a.m * (a.vx - before[0]), b.m * (b.vx - before[2])
+        add_energy(effects.wall_energy, TOP, 0.5 * shear.speed * images[1] * (to_a - to_b))
 
 
 @inline
@@ -124,11 +143,30 @@ def bounce_off_side(disc, own, nx, ny, side, time, vibration, effects):
 
 @inline
 def resolve_side(disc, own, side, time, effects):
-    """Collide a disc with a side of the box at a local time."""
+    """Collide a disc with a side of the box at a local time, or let it cross a sheared one."""
     arrive(disc, time, effects)
+    meet_side(disc, own, side, time, effects.shear, effects)
+
+
+@inline
+def meet_side(disc, own, side, time, shear, effects):
+    """Do the work of `resolve_side` for a record at the time of contact."""
+    if shear is not None:
+        cross_side(disc, own, side, shear, effects)
+        return
     nx, ny = inward_normal(side)
     px, py = bounce_off_side(disc, own, nx, ny, side, time, effects.vibration, effects)
     record_hit(effects.flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
+
+
+@inline
+def cross_side(disc, own, side, shear, effects):
+    """Move a disc that has reached a sheared side to the opposite one; no contact duration begins."""
+    vx = disc.vx
+    rows = cross(disc, side, shear)
+    add_energy(effects.wall_energy, side, 0.5 * disc.m * (disc.vx - vx) * (disc.vx + vx))
+    enter_opposite_side(disc, own, rows, effects.periodic)
+    disc.count += np.uint32(1)
 
 
 @inline
@@ -195,6 +233,7 @@ def resolve_thermostat_collision(disc, own, time, thermostat, effects):
         arrive(disc, time, effects)
         energy = energy_of(disc, own, effects.rotation)
         andersen_collision(disc, own, thermostat, effects.rotation)
+        add_flow(disc, effects.shear)
         add_energy(effects.bath_energy, 0, energy_of(disc, own, effects.rotation) - energy)
         wrap(disc, own, effects.periodic)
         disc.count += np.uint32(1)

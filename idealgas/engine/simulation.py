@@ -23,7 +23,7 @@ from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_le
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
-from idealgas.physics import stress
+from idealgas.physics import shear, stress
 from idealgas.physics.exact_sum import SumRangeError, add_term
 from idealgas.physics.periodic import Periodic, copy_of, periodic_axes
 from idealgas.physics.steering import reversed_velocity
@@ -109,7 +109,6 @@ class Simulation:
         """Begin an epoch with the present gas, effects and time."""
         done, steered = self.totals, len(self.steered)
         self.totals = done._replace(events=done.events + steered, steered=done.steered + steered)
-        begin_epoch(self.effects, self.time)
         until_change = next_change(self.effects, self.time) - self.time
         self.length = until_change
         if not self.method.single_epoch:
@@ -118,7 +117,8 @@ class Simulation:
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
             fall = fall_along_sides(self.effects)
             length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions, fall)
-            self.length = min(length, until_change)
+            self.length = min(length, until_change, shear.longest_epoch(self.effects.shear))
+        begin_epoch(self.effects, self.time, self.length)
         self.method.start(self.gas, for_kernels(self.effects))
         self._counters = np.zeros(1, COUNTERS).view(np.recarray)
         self._counters["trials"] = self.totals.trials
@@ -299,5 +299,6 @@ class Simulation:
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
-        method.start(gas, for_kernels(self.effects)._replace(periodic=copy_of(self.effects.periodic)))
+        sides, shift = copy_of(self.effects.periodic), shear.at(self.effects.shear, self.reached)
+        method.start(gas, for_kernels(self.effects._replace(periodic=sides, shear=shift)))
         return check_invariants(gas, method.deepest_overlap())

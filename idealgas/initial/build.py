@@ -7,6 +7,7 @@ import numpy as np
 from idealgas.initial.contacts import static_contact_issues
 from idealgas.jit import in_python
 from idealgas.physics.elementary import cos_sin_turns
+from idealgas.physics.shear import flow_at
 from idealgas.scene import Scene, SceneError, Species
 from idealgas.scene.checks.piston import crushed_issues
 from idealgas.scene.sizes import Values, mass_of
@@ -24,10 +25,14 @@ def make_gas(scene: Scene) -> Gas:
     pressed, or if the piston crushes some.
     """
     radius, mass, species, names = disc_constants(scene)
+    position, velocity = _positions(scene, radius), _all_velocities(scene, mass, species, names)
+    if rate := scene.properties.shear:  # given discs keep their velocities
+        drawn = slice(0 if scene.draws_velocities else len(scene.given), None)
+        velocity[drawn, 0] += flow_at(position[drawn, 1], rate, scene.box.size[1])
     gas = Gas(
         box=scene.box.size,
-        position=_positions(scene, radius),
-        velocity=_all_velocities(scene, mass, species, names),
+        position=position,
+        velocity=velocity,
         radius=radius,
         mass=mass,
         species=species,

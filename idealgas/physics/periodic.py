@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline
+from idealgas.physics.shear import Shear, less_offset_of_nearest
 
 U = np.uintp
 NO_IMAGES = (0, 0)
@@ -26,6 +27,8 @@ class Periodic(NamedTuple):
         boundary_crossings: (N, 2) i4 by id, how often each disc crossed periodic sides along x and y since its record's
             time; crossings to the left and downwards count as -1.
         image: (N, 2) i4 by id, box lengths to add to a record's position to unwrap it.
+        shear: motion of the images along y, for kernels; None without sheared sides. The crossing of a sheared side
+            is an event, so that y is false.
     """
 
     x: bool
@@ -34,6 +37,7 @@ class Periodic(NamedTuple):
     Ly: float
     boundary_crossings: np.ndarray
     image: np.ndarray
+    shear: Shear | None = None
 
 
 def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
@@ -48,7 +52,7 @@ def copy_of(periodic: Periodic | None) -> Periodic | None:
     return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
 
 
-def begin_epoch(periodic: Periodic, time: float) -> None:
+def begin_epoch(periodic: Periodic, time: float, length: float) -> None:
     """Set all boundary crossings to 0 at the start of an epoch, when all records are at one time."""
     periodic.boundary_crossings[:] = 0
 
@@ -123,6 +127,7 @@ def separation(a, b, periodic):
     x = a.x - b.x
     y = a.y - b.y
     if periodic is not None:
+        x, y = less_offset_of_nearest(x, y, a.t, periodic.shear)
         x = nearest_image(x, periodic.Lx, periodic.x)
         y = nearest_image(y, periodic.Ly, periodic.y)
     return x, y
@@ -147,6 +152,15 @@ def wrap(disc, own, periodic):
             disc.y, boxes = wrapped(disc.y, periodic.Ly)
             periodic.image[U(own), 1] += np.int32(boxes)
             periodic.boundary_crossings[U(own), 1] -= np.int32(boxes)
+
+
+@inline
+def enter_opposite_side(disc, own, rows, periodic):
+    """Wrap a record that has crossed a sheared side along x; rows: box lengths upwards, 1 or -1."""
+    if periodic is not None:
+        wrap(disc, own, periodic)
+        periodic.boundary_crossings[U(own), 0] = 0
+        periodic.image[U(own), 1] += np.int32(rows)
 
 
 @inline

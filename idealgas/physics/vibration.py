@@ -29,7 +29,7 @@ MOST_PARABOLAS = 64
 U = np.uintp
 
 
-def begin_epoch(vibration: np.recarray, time: float) -> None:
+def begin_epoch(vibration: np.recarray, time: float, _: float) -> None:
     """Let local times count from a time of the run; the phase is exact."""
     for side in vibration:
         if side.amplitude > 0.0:

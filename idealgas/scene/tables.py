@@ -8,6 +8,7 @@ from idealgas.columns import SIDES
 from idealgas.effects import EFFECTS
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import SteppedTable
+from idealgas.effects.shear import ShearedSide
 from idealgas.scene.sizes import Density, Normal, Size, Uniform, Values, sizes_of
 from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word, either
 
@@ -52,7 +53,7 @@ class Box(Table):
     @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether the box is periodic along x, and along y."""
-        return self.left == PERIODIC, self.bottom == PERIODIC
+        return self.left == PERIODIC, self.bottom == PERIODIC or isinstance(self.bottom, ShearedSide)
 
     def after(self, time: float) -> Self:
         """The box in a scene whose clock starts at a later time."""

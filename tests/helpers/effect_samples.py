@@ -96,6 +96,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         "thermostat": lambda: make_thermostat(n, seed),
     }
     there = {*names, *(["segments"] if walls else []), *(["piston"] if inner else [])}
+    there |= {"periodic"} if "shear" in names else set()
     wanted = [effect for effect in EFFECTS if effect.field in there]
     return Effects(
         **{e.field: own[e.field]() if e.field in own else from_benchmark(e, gas, seed) for e in wanted},
@@ -145,10 +146,14 @@ def sums_of(effects: Effects) -> list[np.ndarray]:
 
 
 def allowed(names: set[str]) -> bool:
-    """Whether the effects go together here: hot and vibrating sides leave only the left and right ones to join."""
+    """Whether the effects go together here: hot and vibrating sides leave only the left and right ones to join.
+
+    Sheared sides go with few others.
+    """
     moving = names & {"piston", "inner"}
     crossed = "periodic" in names and moving and names & {"thermal", "vibration"}
-    return len(moving) < 2 and not crossed
+    sheared = "shear" in names and not names <= {"shear", "periodic", "rotation", "restitution", "thermostat"}
+    return len(moving) < 2 and not crossed and not sheared
 
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:

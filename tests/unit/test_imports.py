@@ -60,7 +60,7 @@ FROM_ANALYSES = {
     "status": {"pressure"},
 }
 
-COMPUTES = {"idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
+COMPUTES = {"fractions", "idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""
 
 

@@ -136,6 +136,9 @@ class Analysis:
     takes_unlike_discs: ClassVar[bool] = True
     """Whether the analysis applies to species whose discs differ in radius or mass."""
 
+    takes_shear: ClassVar[bool] = False
+    """Whether the analysis subtracts the mean flow between sheared sides and follows the images that they move."""
+
     restore: ClassVar[Callable[..., Any] | None] = None
     """Function restore(found, label): result from the plain values that a sweep stored; None if sweeps are not read."""
 
@@ -191,6 +194,8 @@ class Analysis:
         if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
             differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
             raise NotApplicableError(f"{log.path}: not applicable to {differ}")
+        if not cls.takes_shear and log.scene.properties.shear:
+            raise NotApplicableError(f"{log.path}: not applicable between sheared sides, where the gas flows")
         with _arithmetic(f"{log.path}: {cls.key}"):
             found = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow: tuple[str, ...] = ()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import cell_index, enter, is_in_ring, leave, own_cells
+from idealgas.engine.event_driven.cells import cell_index, enter, find_cell, is_in_ring, leave, own_cells
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
 from idealgas.physics.disc_wall import arrival_delay
@@ -10,6 +10,7 @@ from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, is_periodic
 from idealgas.physics.piston import is_piston_side
+from idealgas.physics.shear import crossing_time
 from idealgas.physics.vibration import is_vibrating, misses_side_until, vibrating_contact
 
 U = np.uintp
@@ -89,9 +90,18 @@ def axis_crossing(disc, along_y, cells, own, now, effects):
         disc, along_y, cell, size, across, length, boundary_crossings, is_periodic, now, effects.gravity
     )
     side = (2 if along_y else 0) + (1 if forward else 0)
+    time = crossing_if_sheared(time, disc, at_side, side, length, effects.shear)
     if at_side and (is_piston_side(side, effects.piston) or is_vibrating(effects.vibration, side)):
         time = NEVER
     return time, forward, at_side
+
+
+@inline
+def crossing_if_sheared(time, disc, at_side, side, length, shear):
+    """Local time at which a disc's centre crosses a side of the box if it is sheared; else the given time."""
+    if shear is not None:
+        return crossing_time(disc, side, length) if at_side else time
+    return time
 
 
 @inline
@@ -158,6 +168,16 @@ def wrap_cell(disc, own, cells, along_y, periodic):
             cross_boundary = 1 if disc.column > cells.columns - 2 else -1
             disc.column -= cross_boundary * (cells.columns - 2)
             periodic.boundary_crossings[U(own), 0] += np.int32(cross_boundary)
+
+
+@inline
+def move_to_cell(record, state, i, shear):
+    """Move disc i to the list of the cell of its position after an event at a sheared side."""
+    if shear is not None:
+        disc = record[U(i)]
+        leave(state.cells, i, cell_index(state.cells, disc))
+        find_cell(state.cells, disc)
+        enter(state.cells, i, cell_index(state.cells, disc))
 
 
 @inline

@@ -11,7 +11,7 @@ import numpy as np
 from idealgas.columns import BATH, FIRST_SEGMENT
 from idealgas.engine.event_driven.cells import cell_index, clear_cells, enter, find_cell, own_cells
 from idealgas.engine.event_driven.contacts import predict_contact
-from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, predict_crossing
+from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, move_to_cell, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
 from idealgas.engine.event_driven.prefetch import prefetch_next
@@ -172,6 +172,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         else:
             side = prediction.crossing_code - SIDE_OF_BOX
             resolve_side(record[U(i)], ids[U(i)], side, time, effects)
+            move_to_cell(record, state, i, effects.shear)
             rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - side, WALL, record[U(i)], effects)
         change = np.int64(Repredict.EVENT)
     finish(subdomain, reached)

@@ -8,7 +8,7 @@ import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_driven.cells import Cells, CoarseCells, cell_of, discs_per_cell, make_levels
+from idealgas.engine.event_driven.cells import Cells, CoarseCells, cell_of, discs_per_cell, make_cells, make_levels
 from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
@@ -86,8 +86,11 @@ class EventDriven(Method):
         self._radius = gas.radius
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         cells, coarse = make_levels(gas.radius, gas.box, filling)
+        if effects.shear is not None:  # coarse cells have no neighbours through sheared sides
+            cells, coarse = make_cells(len(gas), gas.box, float(gas.radius.max()), filling), None
         self._state = make_state(len(gas), cells, coarse, effects)
-        self._shared = _share(cells, coarse, self._threads, len(gas), effects.piston is None, self.workers.tuning)
+        local = effects.piston is None and effects.shear is None
+        self._shared = _share(cells, coarse, self._threads, len(gas), local, self.workers.tuning)
 
     def _sort(self, gas: Gas) -> None:
         """Sort the discs in memory by cell."""

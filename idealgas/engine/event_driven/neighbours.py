@@ -1,5 +1,7 @@
 """Discs that a disc may meet: those in the cells around it, and near a far larger disc or for it in coarse cells."""
 
+import math
+
 import numpy as np
 
 from idealgas.engine.event_driven.cells import is_large
@@ -31,6 +33,41 @@ def append_wrapped_line(cells, candidates, images, count, column, row, along_y, 
         c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
         r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
         j = cells.head[U(r * cells.columns + c)]
+        candidates[U(count)] = j
+        record_image(images, count, image_x, image_y)
+        count += 1 if j >= 0 else 0
+    return append_sheared_rows(cells, candidates, images, count, column, row, along_y, periodic.shear)
+
+
+@inline
+def append_sheared_rows(cells, candidates, images, count, column, row, along_y, shear):
+    """Append what comes within reach through sheared sides, where some of the cells of `append_line` lie beyond them.
+
+    Discs may be in the cells of the column, or of those to either side.
+    """
+    if shear is not None:
+        if row < 1:
+            count = append_sheared_row(cells, candidates, images, count, column, along_y, -1, shear)
+        if row + (2 if along_y else 0) > cells.rows - 2:
+            count = append_sheared_row(cells, candidates, images, count, column, along_y, 1, shear)
+    return count
+
+
+@noinline
+def append_sheared_row(cells, candidates, images, count, column, along_y, image_y, shear):
+    """Append the first discs of the cells of the opposite row that a disc may touch in its cell during the epoch.
+
+    column: as in `append_line`; the disc's is the next one or, along y, one of the two beside it. image_y: 1 or -1, the
+    image of the row. The image above moves from one offset to the other, and discs touch in adjacent columns.
+    """
+    across = cells.columns - 2
+    first, last = (column - 1, column + 1) if along_y else (column + 1, column + 1)
+    start, end = shear.offset[0] / cells.width, shear.offset[1] / cells.width
+    low, high = (-end, -start) if image_y > 0 else (start, end)
+    row = 1 if image_y > 0 else cells.rows - 2
+    for seen in range(np.int64(math.floor(first - 1 + low)) - 1, np.int64(math.floor(last + high)) + 2):  # from 0
+        image_x = seen // across
+        j = cells.head[U(row * cells.columns + seen - image_x * across + 1)]
         candidates[U(count)] = j
         record_image(images, count, image_x, image_y)
         count += 1 if j >= 0 else 0

@@ -48,7 +48,8 @@ class EventDrivenState(NamedTuple):
 def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effects) -> EventDrivenState:
     """Event-driven state of n discs, without any prediction, and before the walls are known."""
     leaves = n if effects.piston is None else n + 1
-    room = 9 * n + 16  # in a box of one cell, each disc is a candidate in nine images
+    most = 9 if effects.shear is None else 25  # images in which each disc is a candidate, in a box of one cell
+    room = most * n + 16
     tree = make_tree(leaves)
     return EventDrivenState(
         cells,

@@ -56,7 +56,7 @@ def choose_threads(threads: int | None, rows: int, n: int, local: bool, tuning: 
     if INTERPRETED:
         return Threads(1, "nothing is compiled")
     if not local:
-        return Threads(1, "every disc may meet the piston")
+        return Threads(1, "any disc may meet the piston, or others through sheared sides")
     if threads is None:
         limits = {
             n // tuning.min_discs: f"each has at least {tuning.min_discs} discs",

@@ -15,6 +15,7 @@ pytestmark = pytest.mark.slow
 MARKERS = {
     "gravity": {"crossings.accelerated_crossing", "motion.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
+    "sheared sides": {"shear.cross", "shear.crossing_time", "neighbours.append_sheared_row"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "arcs": {"arc.arc_contact", "arc.arc_frame"},
     "permeable walls": {"permeable.closed_face_delay", "permeable.touches_face"},
@@ -49,9 +50,9 @@ from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.bench.effects import effect_scene
 from idealgas.run.simulate import simulate
 
-if sys.argv[2] == "all":
+if sys.argv[2] != "none":
     sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
-simulate(effect_scene("all", 4000) if sys.argv[2] == "all" else effect_scene(None, 300), sys.argv[1])
+simulate(effect_scene(None, 300) if sys.argv[2] == "none" else effect_scene(sys.argv[2], 4000), sys.argv[1])
 sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
 signatures = advance_events.compiled.signatures if hasattr(advance_events, "compiled") else []
@@ -61,7 +62,7 @@ print(json.dumps([sorted(names), types]))
 
 
 def run(folder, effects: str, **environment: str) -> tuple[set[str], list[str]]:
-    """Functions that were compiled (or, for "all", interpreted) in a run, and the types of its effects."""
+    """Functions that were compiled (or, with effects, interpreted) in a run, and the types of its effects."""
     variables = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache"), **environment}
     command = [sys.executable, "-W", "ignore", "-c", PROGRAM, str(folder / "run.h5"), effects]
     result = subprocess.run(command, env=variables, capture_output=True, text=True)
@@ -91,5 +92,6 @@ def test_nothing_of_an_absent_effect_is_compiled(plain, effect):
 def test_with_the_effects_the_same_functions_run(tmp_path):
     """What the names above are worth: each is called where its effect is."""
     called, _ = run(tmp_path, "all", NUMBA_DISABLE_JIT="1")
-    assert set().union(*MARKERS.values()) <= called
+    sheared, _ = run(tmp_path, "sheared sides", NUMBA_DISABLE_JIT="1")
+    assert set().union(*MARKERS.values()) <= called | sheared
     assert set(MARKERS) | {"restitution", "steering"} == set(EFFECT_NAMES)

@@ -1,0 +1,76 @@
+"""Sheared sides: bottom and top are periodic, and the images above and below move along x."""
+
+from collections.abc import Iterator
+
+from pydantic import Field
+
+from idealgas.columns import SIDES
+from idealgas.effects.effect import EffectSpec, Sample, Tables
+from idealgas.effects.periodic import PERIODIC
+from idealgas.effects.properties import Properties
+from idealgas.physics import shear as law
+from idealgas.toml.issues import Issue, Key
+from idealgas.toml.table import Positive, Table
+
+
+class ShearedSide(Table):
+    """`{ shear = rate }`: bottom or top of a box in uniform shear flow along x, between periodic left and right sides.
+
+    The image above moves with rate * height of the box (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
+    """
+
+    shear: Positive = Field(description="shear rate > 0, 1/time: mean velocity along x per length along y")
+
+    @property
+    def action(self) -> str:
+        """Short description for output."""
+        return f"sheared, rate {self.shear:g}"
+
+
+def _properties(tables: Tables) -> Properties | None:
+    rates = [side.shear for side in tables.sides if isinstance(side, ShearedSide)]
+    if not rates:
+        return None
+    return Properties(
+        uniform=False,
+        fixed_walls=False,
+        allows_monte_carlo=False,
+        allows_time_steps=False,
+        local=False,
+        driven=True,
+        drives_discs=True,
+        periodic=(False, True),
+        shear=rates[0],
+    )
+
+
+def _check(tables: Tables) -> Iterator[Issue]:
+    """Sides that are not bottom and top with one rate, between periodic ones."""
+    left, right, bottom, top = tables.sides
+    across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
+    if left != PERIODIC or right != PERIODIC:
+        yield Issue(across, "no shear between other sides", "left and right not periodic", f'both "{PERIODIC}"')
+    if bottom != top:
+        keys: tuple[Key, ...] = (("box", "bottom"), ("box", "top"))
+        yield Issue(keys, "sheared in two ways", "different bottom and top", "the same { shear = rate } for both")
+
+
+EFFECT = EffectSpec(
+    name="sheared sides",
+    field="shear",
+    side=ShearedSide,
+    side_text="{ shear = rate }",
+    properties=_properties,
+    check=_check,
+    make=lambda tables, start: law.make_shear(tables.sides[3].shear, tables.size),
+    gives_energy=lambda shear: True,
+    begin_epoch=law.begin_epoch,
+    samples=(
+        Sample(
+            box=lambda side: (
+                f'left = "{PERIODIC}"\nright = "{PERIODIC}"\nbottom = {{ shear = 0.05 }}\ntop = {{ shear = 0.05 }}\n'
+            )
+        ),
+    ),
+    sample_together=Sample(),
+)

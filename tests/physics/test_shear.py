@@ -1,0 +1,126 @@
+"""Sheared sides: exact crossings and contacts, the same by all methods and wherever the sides are."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.log_compare import same_by_brute_force_and_resumed
+from helpers.support import ROOT, gas_of, record, same_rows
+
+from idealgas import load_scene, open_log, parse_scene, simulate
+from idealgas.columns import SIDES, Kind
+from idealgas.effects.bundle import Effects
+from idealgas.engine.brute_force import BruteForce
+from idealgas.engine.event_driven.method import EventDriven
+from idealgas.engine.simulation import Simulation, Stop
+from idealgas.initial.build import make_gas
+from idealgas.physics.exact_sum import make_sums
+from idealgas.physics.exact_sum import values as values_of
+from idealgas.physics.periodic import Periodic
+from idealgas.physics.shear import make_shear
+from idealgas.run.effects import make_effects
+
+GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
+OTHERS = ("restitution.normal=0.9", "rotation.roughness=0.3", "thermostat.temperature=1", "thermostat.rate=0.1")
+
+
+@pytest.mark.parametrize("others", [(), OTHERS], ids=["elastic", "rough in a heat bath"])
+@pytest.mark.slow
+def test_the_same_by_brute_force_and_resumed(tmp_path, others):
+    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, others, "run.events=1500")
+    with open_log(tmp_path / "whole.h5") as log:
+        partner = np.concatenate([block.partner for block in log.chunks()])
+    assert all((partner == -1 - SIDES.index(side)).sum() > 30 for side in ("bottom", "top"))
+    assert abs(summary.energy_drift) < 1e-12  # work of the sides: u times the momentum through them
+    assert summary.deepest_overlap < 16 * 2.0**-53 * 9 / 0.4  # roundings of a coordinate over the sum of the radii
+    assert (summary.threads, summary.epochs > 3) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "rate", "count"),
+    [
+        (4, 9, 2.0, 5),
+        (2.2, 2.3, 1.0, 1),
+        (30, 2.2, 0.1, 10),
+        (2.2, 30, 0.01, 10),
+        (12, 14, 20.0, 20),
+        (20, 20, 1e-3, 60),
+    ],
+)
+@pytest.mark.slow
+def test_cells_of_any_size_give_the_log_of_brute_force(width, height, rate, count):
+    """Also few cells, in which a disc meets several images of another, and images that move fast."""
+    sides = [f"box.{side}.shear={rate}" for side in ("bottom", "top")]
+    counts = [f"species.{name}.count={count}" for name in ("large", "small")]
+    scene = load_scene(GOLDEN, [f"box.size=[{width},{height}]", *sides, *counts])
+    gas, stop = make_gas(scene), Stop(events=3000)
+    oracle = record(Simulation(gas, BruteForce(), make_effects(scene, gas)), stop)
+    for filling in (None, 0.2, 1e9):
+        assert same_rows(record(Simulation(gas, EventDriven(filling), make_effects(scene, gas)), stop, 100), oracle)
+
+
+def simulation_of(box, rate, position, velocity, radius, mass=1.0, start=0.0):
+    """A gas between sheared sides, from a time on."""
+    gas = gas_of(box, position, velocity, radius, mass)
+    none = np.zeros((len(gas), 2), np.int32)
+    sides = Periodic(True, False, *box, none, none.copy())
+    effects = Effects(periodic=sides, shear=make_shear(rate, box), wall_energy=make_sums([1.0] * 4))
+    return Simulation(gas, EventDriven(), effects, start)
+
+
+def test_a_disc_that_leaves_through_the_top_enters_at_the_bottom():
+    """After 5 the image above is 7.5 ahead and 1.5 faster."""
+    simulation = simulation_of((8.0, 6.0), 0.25, [[1.0, 1.0]], [[0.3, 1.0]], 0.5)
+    (up, again) = zip(*(column for column in record(simulation, Stop(events=2))[:6]), strict=True)
+    assert up[:4] == (5.0, 0, -1 - SIDES.index("top"), Kind.WALL)
+    assert up[4] == pytest.approx([1 + 1.5 - 7.5 + 8, 0])
+    assert up[5] == pytest.approx([0.3 - 1.5, 1])
+    assert again[0] == pytest.approx(11)
+    assert again[4] == pytest.approx([(3 - 1.2 * 6 - 1.5 * 11) % 8, 0])
+    work = values_of(simulation.effects.wall_energy)
+    assert work[3] == pytest.approx(0.5 * ((0.3 - 3) ** 2 - 0.3**2))
+
+
+@pytest.mark.parametrize("start", [0.0, 100.0])
+def test_a_contact_through_the_top_is_that_with_the_moving_image(start):
+    """The discs meet where the one below would be that much ahead and faster; velocities change in its frame."""
+    box, rate, low, x = (16.0, 12.0), 0.5, np.array([4.0, 1.0]), np.array([2.5, -1.3])
+    ahead, u = (rate * 12 * start) % 16, rate * 12
+    high = np.array([(low[0] + ahead + x[0]) % 16, low[1] + 12 + x[1]])
+    slow, fast = np.array([0.4, -0.3]), np.array([0.5, 0.7])
+    v = fast - slow - (u, 0)
+    rows = record(
+        simulation := simulation_of(box, rate, [low, high], [slow, fast], 0.5, [1.0, 3.0], start), Stop(events=1)
+    )
+    b, gap = x @ v, x @ x - 1
+    delay = gap / (-b + math.sqrt(b * b - (v @ v) * gap))
+    assert rows.time[0] == pytest.approx(start + delay, rel=1e-14)
+    n = x + v * delay
+    impulse = -2 * (v @ n) / (1 + 1 / 3) * n  # on the disc above, over n² = 1
+    assert rows.velocity == pytest.approx(np.array([slow - impulse, fast + impulse / 3]), abs=1e-13)
+    work = values_of(simulation.effects.wall_energy)
+    before, after = slow @ slow / 2 + 1.5 * fast @ fast, (rows.velocity**2).sum(axis=1) @ [0.5, 1.5]
+    assert work.tolist() == pytest.approx([0, 0, 0, after - before], abs=1e-13)
+
+
+def test_sides_may_be_anywhere(tmp_path):
+    """Moved up by h and faster by rate h, a gas has the same collisions at the same times, in another frame."""
+    scene = parse_scene(GOLDEN.read_text())
+    simulate(scene, tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        first, gas, rate, (width, height) = log.state_at(0.0), log.discs, 0.4, log.box
+        (rows,) = log.chunks()
+        met = np.flatnonzero(rows.kind == Kind.DISC)[:400]
+        pairs = np.column_stack((rows.disc, rows.partner))[met]
+        times, turned = rows.time[met], rows.velocity[met, 1]
+    y = first.position[:, 1] + 2.5
+    up = np.floor(y / height)
+    position = np.column_stack((first.position[:, 0], y - up * height))
+    velocity = first.velocity + np.column_stack((rate * (2.5 - up * height), np.zeros(len(y))))
+    moved = record(
+        simulation_of((width, height), rate, position, velocity, gas.radius, gas.mass), Stop(disc_collisions=200)
+    )
+    again = np.flatnonzero(moved.kind == Kind.DISC)
+    assert (np.column_stack((moved.disc, moved.partner))[again] == pairs).all()
+    assert np.abs(moved.time[again] - times)[:60].max() < 1e-9  # rounding grows by a factor of e in a few collisions
+    assert np.abs(moved.velocity[again, 1] - turned)[:60].max() < 1e-7
