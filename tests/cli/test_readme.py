@@ -1,4 +1,4 @@
-"""Pages of documentation: their code runs, and their tables list every command, key, dataset, scene and analysis."""
+"""Pages of documentation: their code runs and prints what they show, and they are short."""
 
 import io
 import json
@@ -8,16 +8,13 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
-from typing import get_args
 
-import click
 import h5py
 import numpy as np
 import pytest
 from helpers.readme_pages import (
-    LINK,
+    DOCUMENTS,
     PAGES,
-    PICTURE,
     blocks,
     commands,
     make_folder,
@@ -29,13 +26,10 @@ from helpers.readme_pages import (
     words,
 )
 from helpers.support import ROOT
-from idealgas_cli.main import main
-from pydantic import BaseModel
 
 from idealgas.log import open_log
-from idealgas.scene import Scene
 
-README, SCENES, ENGINE, LOG, RUN, ACCURACY, SWEEP, TESTS = (
+README, SCENES, ENGINE, LOG, RUN, ACCURACY, SWEEP = (
     "README.md",
     "configs/README.md",
     "idealgas/engine/README.md",
@@ -43,10 +37,8 @@ README, SCENES, ENGINE, LOG, RUN, ACCURACY, SWEEP, TESTS = (
     "idealgas/run/README.md",
     "idealgas/accuracy/README.md",
     "idealgas/sweep/README.md",
-    "tests/README.md",
 )
 ANALYSES = [page for page in PAGES if page.startswith("idealgas/analysis/")]
-DOCUMENTS = [ROOT / page for page in PAGES] + [ROOT / ".github" / name for name in ("CONTRIBUTING.md", "CHANGELOG.md")]
 NOT_RUN = {"toml", "bibtex", "text"}
 """Languages of blocks that are not programs: scenes are run by the commands about them."""
 
@@ -76,11 +68,6 @@ def assert_outputs_are_shown(page, printed):
         lines = {words(line) for line in dict(printed)[command].splitlines()}
         for line in shown.splitlines():
             assert words(line) in lines, (command, line)
-
-
-def pictures_of(page, text):
-    """Paths from the top folder of the figures in a text of a page."""
-    return [((ROOT / page).parent / path).resolve().relative_to(ROOT).as_posix() for path in PICTURE.findall(text)]
 
 
 # ── length ──
@@ -161,39 +148,6 @@ def test_code_of_scenes_runs(folder):
     assert all(text for _, text in printed)
 
 
-def keys_of_scenes():
-    """`table.key` and its default as text."""
-    for table, field in Scene.model_fields.items():
-        annotations = (field.annotation, *get_args(field.annotation))
-        (model,) = (a for a in annotations if isinstance(a, type) and issubclass(a, BaseModel))
-        for key, entry in model.model_fields.items():
-            yield (
-                f"{table}.{entry.alias or key}",
-                "" if entry.is_required() or entry.default is None else f"`{toml(entry.default)}`",
-            )
-
-
-def toml(value):
-    if isinstance(value, tuple):
-        return f"[{', '.join(map(toml, value))}]"
-    return json.dumps(value) if isinstance(value, (bool, str)) else f"{value:g}"
-
-
-def test_every_key_of_a_scene_is_listed_with_its_default():
-    described = {}
-    for cell in re.findall(r"^\| (`\w+\.\w+`.*?) \|", section(SCENES, "All keys"), re.MULTILINE):
-        keys, _, default = cell.partition(" (")
-        described |= {key.strip("`"): default.removesuffix(")") for key in keys.split(", ")}
-    assert described.pop("species.region") == "the box"
-    assert described == {key: default for key, default in keys_of_scenes() if key != "species.region"}
-
-
-def test_every_shipped_scene_is_listed():
-    listed = set(re.findall(r"`([\w/-]+)`", section(SCENES, "Shipped scenes")))
-    shipped = [*(ROOT / "configs").glob("*.toml"), *(ROOT / "configs" / "sweeps").glob("*.toml")]
-    assert {path.relative_to(ROOT / "configs").with_suffix("").as_posix() for path in shipped} <= listed
-
-
 # ── the log ──
 
 
@@ -254,15 +208,6 @@ def test_code_of_the_engine_runs(folder):
 
 def is_sweep(block):
     return "idealgas sweep" in block.text
-
-
-def test_every_analysis_has_a_page():
-    from idealgas.analysis import registry
-
-    for name in registry.commands():
-        page = f"{name.replace('-', '_')}.md"
-        assert f"idealgas/analysis/{page}" in ANALYSES
-        assert f"]({page})" in PAGES["idealgas/analysis/README.md"]
 
 
 @pytest.mark.slow
@@ -326,56 +271,3 @@ def test_the_sweep_is_valid(folder):
     shutil.copy(ROOT / "configs" / "quickstart.toml", folder)
     (folder / "sweep.toml").write_text(sweep.text)
     assert "36 points" in run_command("idealgas sweep sweep.toml -o out --dry-run")
-
-
-# ── tests ──
-
-
-def test_folders_and_markers_of_tests_are_listed():
-    (block,) = blocks(TESTS, "bash")
-    markers = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    for command in commands(block.text):
-        assert ".venv/bin/pytest" in command
-        for marker in re.findall(r'-m "?(\w+)', command):
-            assert f'"{marker}: ' in markers
-        for path in re.findall(r"tests/\w+", command):
-            assert (ROOT / path).is_dir()
-    listed = set(re.findall(r"^\| `(\w+)` \|", PAGES[TESTS], re.MULTILINE))
-    assert listed == {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name[0] not in "._"}
-
-
-# ── all pages ──
-
-
-def test_every_command_is_listed_once():
-    text = "".join(PAGES.values())
-    for name in main.list_commands(click.Context(main)):
-        assert text.count(f"| `idealgas {name}") == 1, name
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_each_figure_is_followed_by_its_command(page):
-    text = PAGES[page]
-    for found in PICTURE.finditer(text):
-        (path,) = pictures_of(page, found[0])
-        assert (ROOT / path).is_file()
-        command = re.match(r"\n\n```bash\n(.*)\n```\n", text[found.end() :])
-        assert command, path
-        assert path in commands(command[1])[-1].split(), path
-
-
-def test_every_figure_is_shown():
-    shown = [path for page, text in PAGES.items() for path in pictures_of(page, text)]
-    assert sorted(shown) == sorted(f".readme/{path.name}" for path in (ROOT / ".readme").iterdir())
-
-
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_links_lead_somewhere(document):
-    for link in LINK.findall(document.read_text(encoding="utf-8")):
-        path, _, heading = link.partition("#")
-        if not link.startswith("https://"):
-            target = document.parent / path if path else document
-            assert target.exists(), link
-            if heading:
-                headings = re.findall(r"^#+ (.*)", target.read_text(encoding="utf-8"), re.MULTILINE)
-                assert heading in [re.sub(r"[^\w -]", "", text).lower().replace(" ", "-") for text in headings], link

@@ -1,33 +1,12 @@
-"""Gases of the calibration of error bars, and the estimates that are taken of each."""
+"""Gases of the calibration of error bars, and what is measured of each."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from idealgas import (
-    Log,
-    cooling,
-    effusion,
-    entropy,
-    heat_capacity,
-    histogram,
-    order,
-    profile,
-    relaxation,
-    scattering,
-    sound,
-    work,
-)
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.scattering.sums import SEGMENTS as PARTS
-from idealgas.analysis.temperature import temperature
-from idealgas.analysis.transport.coefficients import SYMBOLS
-from idealgas.analysis.transport.diffusion import MOST_SEGMENTS as SEGMENTS
-from idealgas.analysis.transport.measure import transport
-from idealgas.analysis.transport.pair_distribution import FRAMES as INSTANTS
-
-Named = Iterator[tuple[str, Estimate]]
+from helpers import calibration_estimates as estimates
+from helpers.calibration_estimates import Named
+from idealgas import Log, scattering, transport
 
 
 class Case(NamedTuple):
@@ -45,130 +24,6 @@ class Case(NamedTuple):
     caveats: Callable[[Log], Sequence[str]] = lambda _: ()
 
 
-def box(log: Log) -> Named:
-    """Pressure, rates, flights, temperature and the heat capacity of a closed box."""
-    found = pressure(log)
-    for route in found.routes:
-        yield route.name, route.compressibility_factor
-    yield "collision rate", found.collision_rates[0].rate
-    (free,) = found.free_paths
-    yield from (("free path", free.path), ("free time", free.time), ("mean speed", free.speed))
-    yield "temperature along x", temperature(log).species[0].x
-    yield "heat capacity E/T", heat_capacity(log).routes["E/T"]
-    for quantity in ("vx", "free-path", "waiting-time"):
-        yield f"mean {quantity} (histogram)", histogram(log, quantity).distributions[0].mean
-
-
-def strips(log: Log) -> Named:
-    """Density and temperature in strips of a closed box."""
-    (strips,) = profile(log, "x", 4).species
-    for k, place in enumerate(("at the side", "in the middle")):
-        yield f"density {place}", strips.density[k]
-        yield f"temperature {place}", strips.temperature[k]
-    assert strips.gradient is not None
-    yield "temperature gradient", strips.gradient
-
-
-def periodic(log: Log) -> Named:
-    """Transport in a periodic box, and its curves at one lag and at contact."""
-    found = transport(log)
-    (disc,), (pairs,), (contact,) = found.diffusion, found.pair_distributions, found.contacts
-    yield "pairs, virial", pressure(log).routes[-1].compressibility_factor
-    yield "contact value", contact.value
-    yield "g(r) at contact", Estimate(pairs.value[0], pairs.error[0], INSTANTS)
-    yield "diffusion coefficient", disc.coefficient
-    yield "velocity correlation time", disc.velocity_correlation_time
-    early = len(disc.lag) // 8
-    yield "velocity correlation, early", Estimate(disc.correlation[early], disc.correlation_error[early], SEGMENTS)
-    yield "D(t), early", Estimate(disc.running[early], disc.running_error[early], SEGMENTS)
-    yield "D(t), late", Estimate(disc.running[-2], disc.running_error[-2], SEGMENTS)
-    assert found.collective is not None
-    for name, one in found.collective.coefficients.items():
-        yield name.replace("_", " "), one.value
-        if one.difference is not None:
-            yield f"{name.replace('_', ' ')}, difference of routes", one.difference
-        for when, k in (("early", len(one.times) // 8), ("late", -2)):
-            curve = Estimate(float(one.running[k]), float(one.running_error[k]), SEGMENTS)
-            yield f"{SYMBOLS[name]}(t), {when}", curve
-    for name in ("xx", "xy"):
-        yield f"pressure tensor, {name}", found.pressure[name]
-
-
-def in_each_other(log: Log) -> Named:
-    """Diffusion of two species."""
-    found = transport(log)
-    assert found.collective is not None
-    mutual = found.collective.coefficients["mutual_diffusion"]
-    assert mutual.difference is not None
-    yield from (("mutual diffusion", mutual.value), ("mutual diffusion, difference of routes", mutual.difference))
-    for entry in found.diffusion:
-        yield f"diffusion coefficient, {entry.species}", entry.coefficient
-
-
-def cools(log: Log) -> Named:
-    """A gas that loses energy in its collisions."""
-    found = cooling(log)
-    yield from (("part of T lost per collision", found.loss), ("Haff's time", found.haff), ("a₂", found.fourth))
-    yield from (("scatter of numbers, first tenth", found.first_scatter), ("flow, last tenth", found.last_flow))
-    yield "scatter of numbers, last tenth", found.last_scatter
-    if found.temperature_ratio is not None:
-        yield "temperature of spin over that of motion", found.temperature_ratio
-
-
-def ordered(log: Log) -> Named:
-    """Hexagonal order in a periodic box."""
-    found = order(log)
-    yield from (("ψ₆ of a disc", found.local), ("Ψ₆ of all discs", found.whole), ("six neighbours", found.hexagons))
-    assert found.structure is not None
-    for name, value, error in (
-        ("g₆ of neighbours", found.correlation, found.correlation_error),
-        ("S of the longest waves", found.structure.value, found.structure.error),
-    ):
-        yield name, Estimate(float(value[0]), float(error[0]), found.frames)
-
-
-def bath(log: Log) -> Named:
-    """A gas between thermal walls: fluctuations of its energy, and heat."""
-    yield "heat capacity Var(E)/T²", heat_capacity(log).routes["Var(E)/T²"]
-    yield "temperature", temperature(log).species[0].both
-    yield "heat of a wall", profile(log, "x", 2).heat["left"]
-
-
-def rough(log: Log) -> Named:
-    """Discs with spin: fluctuations of the kinetic energy of motion."""
-    found = heat_capacity(log)
-    yield "heat capacity, fluctuations", found.routes["fluctuations of the kinetic energy"]
-    yield "temperature by kinetic energy", found.temperature
-
-
-def waves(log: Log) -> Named:
-    """Sound in a periodic box."""
-    (wave,) = sound(log).waves
-    yield from (("speed of sound", wave.speed), ("damping of sound", wave.damping))
-    yield from (("thermal diffusivity", wave.spreading), ("adiabatic exponent", wave.exponent))
-
-
-def mixture(log: Log) -> Named:
-    """Two species that start at two temperatures."""
-    for entry in temperature(log).species[:2]:
-        yield f"temperature, {entry.species}", entry.both
-    for rate in pressure(log).collision_rates:
-        yield f"rate, {rate.species} {rate.other}", rate.rate
-
-
-def fluid(log: Log) -> Named:
-    """Pressure, collision rates of every two species, and temperatures that fluctuate."""
-    found = pressure(log)
-    yield "pairs, virial", found.routes[-1].compressibility_factor
-    names = list(dict.fromkeys(rate.species for rate in found.collision_rates))
-    for rate in found.collision_rates:
-        if names.index(rate.species) <= names.index(rate.other):
-            yield f"rate, {rate.species} {rate.other}", rate.rate
-    for entry in temperature(log).species[: len(names)]:
-        if entry.both.standard_error > 0:
-            yield f"temperature, {entry.species}", entry.both
-
-
 def two_sizes(number: int, fraction: float) -> str:
     """Closed box of discs of which half are 1.6 times as large and three times as heavy as the others."""
     radius = math.sqrt(2 * fraction / (number * math.pi * (1 + 1.6**2)))
@@ -182,85 +37,6 @@ def equal(number: int, fraction: float, sides: str = "") -> str:
     radius = math.sqrt(fraction / (number * math.pi))
     discs = f"[[species]]\nname = 'gas'\ncount = {number}\nradius = {radius!r}\ntemperature = 1\n"
     return f"[box]\nsize = [1, 1]\n{sides}{discs}"
-
-
-def slit(log: Log) -> Named:
-    """Two chambers and a slit."""
-    yield "flow through a slit", effusion(log).speed
-
-
-def gauges(log: Log) -> Named:
-    """Mechanical pressure of every wall, and what holds all of them together."""
-    found = pressure(log).mechanical
-    assert found is not None
-    for wall in found.walls:
-        yield wall.name, wall.pressure
-    for axis, force in found.forces[-1].large.items():
-        yield f"all walls, {axis}", force
-
-
-def equal_speeds(log: Log) -> Named:
-    """Relaxation from equal speeds."""
-    found = relaxation(log)
-    assert found.in_time is not None
-    assert found.in_collisions is not None
-    yield from (("relaxation time", found.in_time), ("relaxation, collisions per disc", found.in_collisions))
-
-
-def currents(log: Log) -> Named:
-    """Viscosities and thermal conductivity."""
-    found = transport(log).collective
-    assert found is not None
-    for name, one in found.coefficients.items():
-        yield name.replace("_", " "), one.value
-
-
-def steady_state(log: Log) -> Named:
-    """Pressure of the walls and temperature of a gas that exchanges its kinetic energy."""
-    yield from gauges(log)
-    yield "mean temperature", temperature(log).species[-1].both
-
-
-def in_phase_space(log: Log) -> Named:
-    """Boltzmann's H, and the entropy of positions."""
-    (found,) = entropy(log).species
-    assert found.mean_h is not None
-    assert found.mean_positions is not None
-    yield from (("Boltzmann's H", found.mean_h), ("entropy of positions", found.mean_positions))
-
-
-def strokes(log: Log) -> Named:
-    """Free energy by the work of a piston; outwards few strokes decide, so that errors take 1000 of them."""
-    found = work(log)
-    inwards, outwards = found.processes
-    yield from (("free energy, inwards", inwards.free_energy), ("mean work, inwards", inwards.mean_work))
-    for name, one in (("inwards", inwards), ("outwards", outwards)):
-        yield f"kinetic energy before, {name}", one.kinetic_energy
-    (crossing,) = found.crossings
-    yield from (("crossing", crossing.free_energy), ("slope of the crossing", crossing.slope))
-
-
-def scattered(log: Log) -> Named:
-    """Density and current correlations of four wave numbers."""
-    found = scattering(log)
-    for name, one in zip(("long", "second", "third", "short"), found.waves, strict=True):
-        for title, estimate in (
-            ("S(k)", one.structure),
-            ("⟨j²⟩ along", one.longitudinal_square),
-            ("⟨j²⟩ across", one.transverse_square),
-            ("F_s, early", one.early),
-        ):
-            yield f"{title}, {name}", estimate
-        for title, curve, index in (
-            ("F", one.density, 8),
-            ("F_s", one.self_part, 8),
-            ("current along", one.longitudinal, 4),
-            ("current across", one.transverse, 4),
-            ("S(k, ω)", one.spectrum, 3),
-        ):
-            yield f"{title}, {name}", Estimate(float(curve.value[index]), float(curve.error[index]), PARTS)
-    curve, late = found.non_gaussian, len(found.time) // 2
-    yield "α₂", Estimate(float(curve.value[late]), float(curve.error[late]), PARTS)
 
 
 FIFTY = f"count = 50\nradius = {math.sqrt(0.2 / (50 * math.pi))!r}\n"
@@ -291,97 +67,97 @@ STROKES = [[0, 0]] + [[22 * k + at, v] for k in range(400) for at, v in ((20, (-
 """Velocities of a piston that rests for 20 and moves for 2, in and out."""
 
 CASES = {
-    "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, box),
-    "closed box, strips": Case(GAS.format(sides=""), SLOW, strips),
-    "periodic box": Case(GAS.format(sides=PERIODIC), CURRENTS, periodic),
-    "closed box, entropy": Case(GAS.format(sides=""), SHORT_AND_LONG, in_phase_space),
+    "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, estimates.box),
+    "closed box, strips": Case(GAS.format(sides=""), SLOW, estimates.strips),
+    "periodic box": Case(GAS.format(sides=PERIODIC), CURRENTS, estimates.periodic),
+    "closed box, entropy": Case(GAS.format(sides=""), SHORT_AND_LONG, estimates.in_phase_space),
     "periodic box, scattering": Case(
-        GAS.format(sides=PERIODIC), CURRENTS, scattered, caveats=lambda log: scattering(log).caveats
+        GAS.format(sides=PERIODIC), CURRENTS, estimates.scattered, caveats=lambda log: scattering(log).caveats
     ),
     "work of a piston": Case(
         "[box]\nsize = [5, 4]\n[thermostat]\ntemperature = 1\nrate = 0.5\n[[species]]\nname = 'gas'\ncount = 2\n"
         f"radius = 0.5\ntemperature = 1\n[piston]\nvelocity = {STROKES}\n",
         ("until = 2200", "until = 8800"),
-        strokes,
+        estimates.strokes,
         "events = false\n",
         steady=False,
     ),
-    "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT, ordered),
+    "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT, estimates.ordered),
     "periodic mixture": Case(
         f"[box]\nsize = [1, 1]\n{PERIODIC}[[species]]\nname = 'light'\ncount = 25\nradius = 0.03\ntemperature = 1\n"
         "[[species]]\nname = 'heavy'\ncount = 25\nradius = 0.04\nmass = 4\ntemperature = 1\n",
         CURRENTS,
-        in_each_other,
+        estimates.in_each_other,
     ),
     "cooling gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n",
         ("collisions_per_disc = 400", "collisions_per_disc = 800"),
-        cools,
+        estimates.cools,
         steady=False,
     ),
     "cooling rough gas": Case(
         GAS.format(sides=PERIODIC) + "[restitution]\nnormal = 0.95\n[rotation]\ninertia = 0.5\nroughness = 0.5\n",
         ("collisions_per_disc = 200", "collisions_per_disc = 400"),
-        cools,
+        estimates.cools,
         steady=False,
     ),
-    "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, bath, SELDOM),
+    "heat bath": Case(GAS.format(sides=THERMAL), SLOWEST, estimates.bath, SELDOM),
     "rough discs": Case(
-        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, rough, OFTEN
+        GAS.format(sides="") + "[rotation]\ninertia = 0.5\nroughness = 1\n", SHORT_AND_LONG, estimates.rough, OFTEN
     ),
     "waves": Case(
         f"[box]\nsize = [12, 12]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 56\nradius = 0.5\ntemperature = 1\n",
         ("until = 4000", "until = 6000"),
-        waves,
+        estimates.waves,
     ),
     "mixture": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"
         "[[species]]\nname = 'heavy'\ncount = 20\nradius = 0.045\nmass = 4\ntemperature = 0.5\n",
         SLOW,
-        mixture,
+        estimates.mixture,
     ),
-    "small mixture": Case(two_sizes(20, 0.45), STRUCTURE, fluid),
-    "mixture of 40": Case(two_sizes(40, 0.45), STRUCTURE, fluid),
-    "mixture of 100": Case(two_sizes(100, 0.45), STRUCTURE, fluid),
-    "small mixture, 0.3": Case(two_sizes(20, 0.3), STRUCTURE, fluid),
-    "mixture of 40, 0.3": Case(two_sizes(40, 0.3), STRUCTURE, fluid),
-    "dense box": Case(equal(30, 0.6), STRUCTURE, fluid),
-    "thermal walls": Case(equal(40, 0.2, THERMAL), STRUCTURE, fluid),
-    "small periodic box": Case(equal(64, 0.3, PERIODIC), STRUCTURE, fluid),
+    "small mixture": Case(two_sizes(20, 0.45), STRUCTURE, estimates.fluid),
+    "mixture of 40": Case(two_sizes(40, 0.45), STRUCTURE, estimates.fluid),
+    "mixture of 100": Case(two_sizes(100, 0.45), STRUCTURE, estimates.fluid),
+    "small mixture, 0.3": Case(two_sizes(20, 0.3), STRUCTURE, estimates.fluid),
+    "mixture of 40, 0.3": Case(two_sizes(40, 0.3), STRUCTURE, estimates.fluid),
+    "dense box": Case(equal(30, 0.6), STRUCTURE, estimates.fluid),
+    "thermal walls": Case(equal(40, 0.2, THERMAL), STRUCTURE, estimates.fluid),
+    "small periodic box": Case(equal(64, 0.3, PERIODIC), STRUCTURE, estimates.fluid),
     "small periodic box, currents": Case(
-        equal(64, 0.3, PERIODIC), FEW_LAGS, currents, caveats=lambda log: transport(log).caveats
+        equal(64, 0.3, PERIODIC), FEW_LAGS, estimates.currents, caveats=lambda log: transport(log).caveats
     ),
     "column": Case(
         equal(40, 0.2).replace("temperature = 1", "speed = 1.5\nplacement = 'lattice'")
         + "[gravity]\nacceleration = [0, -2]\n",
         STRUCTURE,
-        steady_state,
+        estimates.steady_state,
     ),
-    "driven grains": Case(equal(40, 0.2, THERMAL) + "[restitution]\nnormal = 0.9\n", STRUCTURE, gauges),
+    "driven grains": Case(equal(40, 0.2, THERMAL) + "[restitution]\nnormal = 0.9\n", STRUCTURE, estimates.gauges),
     "two chambers": Case(
         "[box]\nsize = [2, 1]\n[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n"
         "[[wall]]\nname = 'gate'\nfrom = [1, 0.47]\nto = [1, 0.53]\nopens_at = 1\n[[species]]\nname = 'gas'\n"
         "count = 100\nradius = 0.002\ntemperature = 1\nregion = [0, 0, 1, 1]\n",
         ("until = 11", "until = 41"),
-        slit,
+        estimates.slit,
         steady=False,
     ),
     "held piston": Case(
         "[box]\nsize = [20, 5]\n[piston]\nposition = 10\nmass = 50\npressure = 1.5\n[[species]]\nname = 'gas'\n"
         "count = 50\nradius = 0.05\ntemperature = 1\n",
         ("until = 3000", "until = 6000"),
-        gauges,
+        estimates.gauges,
     ),
     "column on a hot floor": Case(
         "[box]\nsize = [10, 10]\nbottom = { thermal = 1 }\n[gravity]\nacceleration = [0, -0.3]\n"
         "[[species]]\nname = 'gas'\ncount = 50\nradius = 0.3\ntemperature = 1\n",
         ("until = 2000", "until = 4000"),
-        gauges,
+        estimates.gauges,
     ),
     "equal speeds": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'gas'\ncount = 200\nradius = 0.0178\nspeed = 1\n",
         ("collisions_per_disc = 45",),
-        equal_speeds,
+        estimates.equal_speeds,
         steady=False,
     ),
 }

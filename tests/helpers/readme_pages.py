@@ -31,6 +31,8 @@ PAGES = {
 }
 """Text of each page, by its path from the top folder."""
 
+DOCUMENTS = [ROOT / page for page in PAGES] + [ROOT / ".github" / name for name in ("CONTRIBUTING.md", "CHANGELOG.md")]
+
 LEFT_OUT = {
     "python3 -m venv": "creates an environment and installs from the network; test_install.py builds the package",
     "python3 -m pip": "the same",

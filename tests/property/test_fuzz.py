@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helpers.fuzz_scenes import scene_and_gas, scene_texts
-from helpers.invariants import InvariantChecker, MaxErrors
+from helpers.invariants import InvariantChecker
+from helpers.paths import MaxErrors
 from helpers.support import ROOT, batches, joined, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 
