@@ -95,15 +95,6 @@ def animate(
             echo(f"{paint_frame(log, output, frame, **look)}: t = {frame:.6g}")
         return
     with open_log(path) as log, progress_bar("reading frames") as progress:
-        film = make(
-            log,
-            output,
-            start=start,
-            end=end,
-            fps=fps,
-            speed=speed,
-            **look,
-            on_frame=progress,
-        )
+        film = make(log, output, start=start, end=end, fps=fps, speed=speed, **look, on_frame=progress)
     window = f"t = {film.start:.6g} to {film.end:.6g}"
     echo(f"{film.path}: {film.frames} frames, {window}, {film.fps:g} frames per second")

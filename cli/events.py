@@ -29,11 +29,8 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
 
     A collision of two discs is two rows. Partners are ids of discs, or -1 - k for wall k.
     """
-    from idealgas.errors import UserError
-
     with open_log(path) as log:
-        if not log.has_events:
-            raise UserError(f"{path}: has no events (made with log.events = false)")
+        log.require_events()
         row = 0 if t0 is None else log.row_at(t0)
         while True:
             live = follow and log.live  # before the rows are read, so that none is missed

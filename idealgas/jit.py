@@ -102,7 +102,7 @@ def _remove_old(base: Path) -> None:
 
 
 _declared: list[Callable[[], object]] = []
-"""What numba gets to know of inlined and other functions when the first entry point is compiled."""
+"""Declarations of inlined and other functions to numba, made when the first entry point is compiled."""
 _lock = threading.RLock()
 _local = threading.local()
 
@@ -302,9 +302,9 @@ overload(prefetch)(lambda array, row: lambda array, row: _fetch(array, row))
 overload(prefetch_next_line)(lambda array, row: lambda array, row: _fetch_next_line(array, row))
 
 
-def aligned(n: int, dtype: np.dtype, boundary: int = CACHE_LINE) -> Any:
+def aligned(n: int, dtype: np.dtype) -> Any:
     """Array of n zeros in cache lines that nothing else is in; a record array if the dtype is structured."""
-    raw = np.zeros((-(-n * dtype.itemsize // boundary) + 1) * boundary, np.uint8)
-    start = -raw.__array_interface__["data"][0] % boundary
+    raw = np.zeros((-(-n * dtype.itemsize // CACHE_LINE) + 1) * CACHE_LINE, np.uint8)
+    start = -raw.__array_interface__["data"][0] % CACHE_LINE
     kind: Any = np.recarray if dtype.names else np.ndarray
     return kind(n, dtype, raw, start)

@@ -68,8 +68,7 @@ def _cost(ax: Panel, found: Accuracy) -> None:
     ax.set(xscale="log", yscale="log", xlim=(0.75, 2 * cost.max()), ylim=(0.5 * min(*error, best), 2 * error.max()))
     ax.xaxis.set_major_formatter("{x:g}")
     ax.yaxis.set_major_formatter(PercentFormatter(1))
-    ax.set_xlabel("CPU time relative to the event-driven run (no unit)")
-    ax.set_ylabel(f"error of the {label}")
+    ax.set(xlabel="CPU time relative to the event-driven run (no unit)", ylabel=f"error of the {label}")
 
 
 def _digits(ax: Panel, found: Accuracy) -> None:
@@ -84,8 +83,7 @@ def _digits(ax: Panel, found: Accuracy) -> None:
         assert row.trajectory is not None
         ax.plot(found.collisions, np.maximum(row.trajectory, LEAST), "o-", ms=4, color=colour, label=name)
     ax.set(yscale="log", ylim=(LEAST, 100))
-    ax.set_xlabel("collisions per disc (no unit)")
-    ax.set_ylabel("rms distance from the true paths (diameters)")
+    ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the true paths (diameters)")
     ax.legend()
 
 
@@ -131,8 +129,7 @@ def _errors_against_time(ax: Panel, found: Accuracy, errors: dict[str, str], lea
             row["precision"], (time, 1.0), xycoords=("data", "axes fraction"), rotation=90, fontsize="small",
             color=GREY, ha="left" if k % 2 else "right", va="top",
         )  # fmt: skip
-    ax.set(xscale="log", yscale="log")
-    ax.set_xlabel("CPU seconds per unit of simulated time")
+    ax.set(xscale="log", yscale="log", xlabel="CPU seconds per unit of simulated time")
     ax.legend()
 
 
@@ -148,8 +145,7 @@ def _trajectories(ax: Panel, found: Accuracy) -> None:
         path = np.maximum(row.trajectory, LEAST)
         ax.plot(found.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
     ax.set_yscale("log")
-    ax.set_xlabel("collisions per disc (no unit)")
-    ax.set_ylabel("rms distance from the truth (diameters)")
+    ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the truth (diameters)")
     ax.legend()
 
 
@@ -168,7 +164,6 @@ def orbit_figure(found: OrbitStudy) -> Figure:
     ax.plot(x, line, "--", color=COLOURS[1], label=f"{found.time_per_digit:.3g} time units per digit")
     ax.set_xlim(0, 1.2 * digits.max())
     ax.set_ylim(bottom=0)
-    ax.set_xlabel("decimal digits carried (no unit)")
-    ax.set_ylabel("orbit lasts (time, at speed 1)")
+    ax.set(xlabel="decimal digits carried (no unit)", ylabel="orbit lasts (time, at speed 1)")
     ax.legend()
     return add_title(figure, "Unstable periodic orbit: how long digits keep it")

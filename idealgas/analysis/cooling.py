@@ -2,7 +2,7 @@
 
 Haff's time and the loss per collision with the Sonine correction, the fourth cumulant a₂ of the velocities, the
 ratio of the temperatures of spin and motion of rough discs, and how much numbers of discs in small cells scatter,
-which tells when clusters form.
+which shows when clusters form.
 """
 
 import math
@@ -15,6 +15,7 @@ import numpy as np
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.caveats import narrow
 from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.collisions import collisions_per_disc
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, ratio
@@ -126,12 +127,6 @@ class CoolingAnalysis(Analysis):
     ) -> Cooling:
         """Measure how a gas of equal discs cools by its collisions, and compare it with the theory of a uniform gas.
 
-        Args:
-            log: log with events.
-            start: start of the averages, time; by default 20 collisions per disc, or more if the spin relaxes slowly.
-            end: end of the series and averages, time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             NotApplicableError: if not only collisions of equal discs change the energy, or if the log is too short.
         """
@@ -149,7 +144,7 @@ class CoolingAnalysis(Analysis):
         for k, state in enumerate(frames(log, time, progress)):
             temperature[k], spin[k], cumulant[k] = _moments(log, state, dof)
             scatter[k], flow[k] = _scatter(log, state, shape)
-        collisions = _collisions(log, time)
+        collisions = collisions_per_disc(log, time)
         settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
         window = np.flatnonzero(collisions >= settled if start is None else time >= start)
         if len(window) < FEWEST:
@@ -300,7 +295,7 @@ def _parameters(log: Log) -> GranularParameters:
     elif others or not (all(log.periodic) or elastic_walls):
         why = f"more than collisions of discs changes its energy ({', '.join(others) or 'walls'})"
     elif not log.has_positions or not log.has_events:
-        why = "it takes events with positions"
+        why = "it requires events with positions"
     elif len(log.discs.species_names) > 1:
         why = "its discs are of several species, and the laws are those of equal discs"
     elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
@@ -338,14 +333,6 @@ def _scatter(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float
     counts = np.bincount(cell, minlength=cells)
     sums = sum(np.bincount(cell, v, cells) ** 2 for v in velocity.T)
     return float(counts.var(ddof=1) / counts.mean()), float(np.sum(sums) / (velocity**2).sum())
-
-
-def _collisions(log: Log, time: np.ndarray) -> np.ndarray:
-    """Mean number of collisions per disc with other discs from time[0] to each of the times (F,)."""
-    counts = np.zeros(len(time))
-    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
-        counts += rows.time[rows.partner >= 0].searchsorted(time, "right")
-    return counts / len(log.discs)
 
 
 def _nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[str]:

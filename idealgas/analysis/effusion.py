@@ -12,6 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.caveats import must_be_one_gas
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import INLINE, OMITTED
@@ -108,12 +109,6 @@ class EffusionAnalysis(Analysis):
         the flux of kinetic theory through a slit much narrower than the mean free path. Through a wider slit more discs
         pass; for one wider than a mean free path, and from a dense chamber, no theory is given.
 
-        Args:
-            log: log with events.
-            start: time; by default the opening of the slit.
-            end: time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             UserError: unless the scene has one gate along an axis, lower than the box, and one species, the log has
                 events, and the chambers are not in balance.
@@ -167,9 +162,7 @@ class EffusionAnalysis(Analysis):
             name: tuple(run for run in results if run.name == name) for name in dict.fromkeys(r.name for r in results)
         }
         for name, runs in groups.items():
-            if len(gases := {run.origin.gas: run.origin.words for run in runs if run.origin is not None}) > 1:
-                found = "; ".join(gases.values())
-                raise UserError(f"{name}: different gases under one name ({found}): analyse them separately")
+            must_be_one_gas(runs, f"{name}: different gases under one name")
         return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
 
     @staticmethod

@@ -90,14 +90,8 @@ class EntropyAnalysis(Analysis):
     ) -> Entropy:
         """Follow Boltzmann's H of the velocities and the entropy of the positions, per disc; needs no equilibrium.
 
-        Args:
-            log: log with events, of a gas that has a species of at least 8 discs.
-            start: time; by default the start of the log.
-            end: time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
-            UserError: if the log does not cover the times, has no events, or has too few discs.
+            UserError: if the log does not cover the times, has no events, or no species of at least 8 discs.
         """
         equilibrium = known_ensemble(log)
         species = [one for one in _species(log, equilibrium) if len(one.members) >= FEWEST_DISCS]

@@ -96,17 +96,9 @@ class LyapunovAnalysis(Analysis):
         after each event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth in the first collisions is left
         out. Errors are those of the mean growth rate.
 
-        Args:
-            log: log with events of an exact method: smooth elastic discs, between plain sides at rest or periodic ones,
-                with or without gravity.
-            start: start of the window, time; by default detected equilibrium.
-            end: end of the window, time; by default the end of the log.
-            progress: called as progress(done, total) while events are read.
-            exponents: how many.
-
         Raises:
-            UserError: for other effects and methods, more exponents than 4N, or a window of fewer than 52 events per
-                disc.
+            UserError: unless the log has the events of smooth elastic discs between plain sides at rest or periodic
+                ones, by an exact method; for more exponents than 4N, or fewer than 52 events per disc in the window.
         """
         must_have_tangent_map(log)
         number = len(log.discs)
@@ -185,14 +177,12 @@ class LyapunovAnalysis(Analysis):
         for lost in PRECISIONS:
             if lost < digits[-1]:
                 axes[0].axhline(lost, color=GREY, linewidth=0.8)
-        axes[0].set_xlabel("time")
-        axes[0].set_ylabel("growth (decimal digits)")
+        axes[0].set(xlabel="time", ylabel="growth (decimal digits)")
         axes[0].legend()
         for ax in axes[1:]:
             ax.plot(range(1, len(result.exponents) + 1), [one.value for one in result.exponents], ".", color=COLOURS[0])
             ax.axhline(0, color=GREY, linewidth=0.8)
-            ax.set_xlabel("number of the exponent")
-            ax.set_ylabel("exponent (1/time)")
+            ax.set(xlabel="number of the exponent", ylabel="exponent (1/time)")
         return figure
 
 

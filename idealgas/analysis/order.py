@@ -1,8 +1,8 @@
 """Measure the order of the discs: ψ₆ of neighbours, its correlation g₆(r) and the structure factor S(k).
 
-ψ₆ tells how well the neighbours of a disc stand at the corners of a hexagon; its mean over all discs is 1 in a
-crystal and of the order of 1/√N in a fluid. S(k), in a periodic box only, tells how well the discs stand in rows;
-theory knows its limit at small k, the compressibility of the fluid. A run without events is measured at its
+ψ₆ measures how well the neighbours of a disc form a regular hexagon; its mean over all discs is 1 in a
+crystal and of the order of 1/√N in a fluid. S(k), in a periodic box only, measures how well the discs form rows; its
+limit at small k is given by theory, the compressibility of the fluid. A run without events is measured at its
 checkpoints.
 """
 
@@ -19,6 +19,7 @@ from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import sampled
 from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.stream import frames
 from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate, with_error
 from idealgas.analysis.theory import hard_discs
 from idealgas.errors import NotApplicableError, UserError
@@ -122,12 +123,6 @@ class OrderAnalysis(Analysis):
         a periodic box the structure factor S(k), with its limit at small k by theory for a fluid of equal discs. All
         discs count alike, whatever their radius; walls inside the box do not part neighbours.
 
-        Args:
-            log: log with positions; without events the instants are its checkpoints.
-            start: start of the window, time; by default detected equilibrium.
-            end: end of the window, time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             UserError: without positions or with a piston, or if the window is empty or has too few checkpoints.
         """
@@ -138,14 +133,12 @@ class OrderAnalysis(Analysis):
         number, waves = len(log.discs), WaveVectors(log.box, len(log.discs))
         bins = _Distances(log)
         found, factors = [], []
-        for k, state in enumerate(log.frames(times)):
+        for k, state in enumerate(frames(log, times, progress)):
             local, neighbours = bond_order(state.position, log.box, log.periodic)
             found.append((np.abs(local).mean(), np.abs(local.mean()), (neighbours == FOLD).mean()))
             if k >= first:
                 bins.add(state.position, local)
                 factors += [waves.structure_factor(state.position)] if all(log.periodic) else []
-            if progress is not None:
-                progress(k + 1, len(times))
         size, whole, six = np.array(found).T
         distance, correlation, error = bins.correlation()
         return Order(
@@ -175,23 +168,18 @@ class OrderAnalysis(Analysis):
             ("share of discs with six neighbours", result.hexagons),
         ]
         notes = [f"{describe(result.window)}, {result.frames} frames"]
-        found = result.structure
-        if found is not None:
+        correlation = result.distance, result.correlation, result.correlation_error
+        functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
+        if (found := result.structure) is None:
+            notes.append("S(k) and positional order: in a periodic box only")
+        else:
             rows.append(("S/N at the highest peak (positional order, squared)", found.positional))
             notes.append(f"highest peak of S at k = ({found.peak[0]:.5g}, {found.peak[1]:.5g})")
-        else:
-            notes.append("S(k) and positional order: in a periodic box only")
+            title = "Structure factor, all directions (no unit)"
+            functions.append(_function(title, "k (1/length)", found.k, found.value, found.error))
         if result.compressibility is not None:
             notes.append(f"S(k) at small k by theory: {result.compressibility:.4g} (nT times the compressibility)")
-        correlation = result.distance, result.correlation, result.correlation_error
-        tables = [
-            estimates("Order (no unit)", rows, notes),
-            _function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation),
-        ]
-        if found is not None:
-            title = "Structure factor, all directions (no unit)"
-            tables.append(_function(title, "k (1/length)", found.k, found.value, found.error))
-        return tables
+        return [estimates("Order (no unit)", rows, notes), *functions]
 
     @staticmethod
     def summary(result: Order) -> str:

@@ -116,12 +116,6 @@ class SoundAnalysis(Analysis):
         correlation is fitted by hydrodynamics, as sound and heat conduction. Error bars are by the jackknife over 32
         parts of the window.
 
-        Args:
-            log: log with events, of a gas of one species.
-            start: start of the window, time; by default detected equilibrium.
-            end: end of the window, time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             UserError: without events or a periodic axis, for several species, with effects other than periodic sides,
                 or if the window is too short to follow a wave.

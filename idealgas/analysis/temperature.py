@@ -80,19 +80,15 @@ class Temperature(Result):
 
 
 def temperature(
-    log: Log,
-    start: float | None = None,
-    end: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    log: Log, start: float | None = None, end: float | None = None, progress: Callable[[int, int], None] | None = None
 ) -> Temperature:
     """Measure the temperature of every direction of motion, species by species, between two times of a log.
 
     By equipartition m⟨v²⟩ of a disc is the same along both axes, T = 2E/D with k_B = 1 and D degrees of freedom, and
     T(1 - m/M) along an axis whose total momentum is conserved, with the mass M of all discs.
 
-    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read. Raises UserError if there are no events in the window, and NotApplicableError if no start is given
-    and the gas has no equilibrium.
+    Raises:
+        UserError: if there are no events in the window, or if no start is given and the gas has no equilibrium.
     """
     if start is None and len(log.scene.properties.temperatures) > 1 and not nonstationary_reason(log):
         raise NotApplicableError(

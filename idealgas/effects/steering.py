@@ -49,10 +49,7 @@ EFFECT = EffectSpec(
     table=Steering,
     description="[steering]: reversed_at",
     properties=lambda tables: Properties(
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        varies=True,
-        changes=as_times(tables.own.reversed_at),
+        allows_monte_carlo=False, allows_time_steps=False, varies=True, changes=as_times(tables.own.reversed_at)
     ),
     check=_check,
     make=_make,

@@ -213,7 +213,7 @@ class Simulation:
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
-        """An error that a kernel raised, which cannot tell the time, with that of the last event."""
+        """An error raised in a kernel, which cannot name the time, with the time of the last event."""
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(

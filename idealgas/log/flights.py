@@ -152,8 +152,7 @@ class FlightReader:
         columns: Collection[str] | None = None,
     ) -> None:
         """Check the arguments of `Log.flights`. Raises LogError as described there."""
-        if not log.has_events:
-            raise LogError(f"{log.path}: no flights without events (made with log.events = false)")
+        log.require_events()
         known = [column.name for column in flight_columns(log.columns)]
         if unknown := [name for name in columns or () if name not in known]:
             raise LogError(f"{log.path}: its flights have no {' and no '.join(unknown)} (allowed: {', '.join(known)})")

@@ -43,6 +43,11 @@ class LogHistory(LogHeader):
         """Whether this log is being written now."""
         return self.unclosed and is_locked(self.path)
 
+    def require_events(self) -> None:
+        """Raise LogError if the log has no events."""
+        if not self.has_events:
+            raise LogError(f"{self.path}: has no events (made with log.events = false)")
+
     def refresh(self) -> None:
         """Read what the run has stored since the log was opened or last refreshed."""
         self._file.refresh()

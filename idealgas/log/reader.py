@@ -168,11 +168,7 @@ class Log(LogHistory):
         return times
 
     def flights(
-        self,
-        edges: ArrayLike | None = None,
-        *,
-        discs: ArrayLike | None = None,
-        columns: Sequence[str] | None = None,
+        self, edges: ArrayLike | None = None, *, discs: ArrayLike | None = None, columns: Sequence[str] | None = None
     ) -> Iterator[Flights]:
         """Flights of discs from event to event, in batches of at most 131 072, unless a single one has more pieces.
 
@@ -225,8 +221,7 @@ class Log(LogHistory):
         """
         check_choice(self.path, what, {"disc": disc, "t0": t0, "t1": t1, "times": times})
         if what == "events":
-            if not self.has_events:
-                raise LogError(f"{self.path}: has no events (made with log.events = false)")
+            self.require_events()
             return data_frame(flat_events(self.events(disc, t0, t1), self.columns), {"kind": KIND_NAMES})
         if what == "flights":
             edges = None if times is None else list(times)

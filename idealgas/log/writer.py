@@ -34,14 +34,9 @@ FLUSH_SECONDS = 1.0
 
 
 class _Rows(NamedTuple):
-    """Rows for a table, queued for the thread.
+    """Rows `start` to `stop` of the columns `data` for a table, queued for the thread.
 
-    Attributes:
-        table: writer of the table.
-        start: first row in the data.
-        stop: row after the last one in the data.
-        data: columns of the table.
-        buffer: buffer of the data that returns to the pool, if any.
+    buffer: buffer of the data that returns to the pool; None without one.
     """
 
     table: TableWriter

@@ -117,12 +117,7 @@ def animate(
 
 
 def paint_frame(
-    log: Log,
-    output: str | os.PathLike[str],
-    time: float,
-    *,
-    force: bool = False,
-    **look: Unpack[Look],
+    log: Log, output: str | os.PathLike[str], time: float, *, force: bool = False, **look: Unpack[Look]
 ) -> Path:
     """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
 
@@ -159,8 +154,7 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
         raise UserError(f"{log.path}: has a piston, and neighbours are only found in a box with fixed sides")
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method})")
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+    log.require_events()
 
 
 def _some_states(log: Log, first: float, last: float) -> list[LogState]:

@@ -297,7 +297,7 @@ class Painter:
         axes.legend(handles=[*self._panel.handles, *kinds], frameon=False, loc="upper right")
 
     def _key(self) -> list[tuple[str, Any]]:
-        """What colours stand for, where the axis of speeds does not tell it."""
+        """Meaning of the colours, where the axis of speeds does not show it."""
         if self._colouring == "species":
             return list(zip(self._gas.species_names, np.resize(COLOURS, len(self._gas.species_names)), strict=True))
         if self._colouring == "order":

@@ -53,8 +53,7 @@ class Live:
         Raises:
             UserError: if the log has no events, or too many discs.
         """
-        if not log.has_events:
-            raise UserError(f"{log.path}: has no events to show (made with log.events = false)")
+        log.require_events()
         if len(log.discs) > MOST_DISCS:
             raise UserError(f"{log.path}: has {len(log.discs):,} discs (allowed up to {MOST_DISCS:,} to be shown)")
         self._log, self._lock, self._second = log, Lock(), crossing(log.box, log.discs.velocity)

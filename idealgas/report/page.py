@@ -145,11 +145,11 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
     if log.has_positions:
         width, height = log.box
         shown = (
-            f"A box of {width:g} × {height:g} (length); the strip below the speeds tells the colours of the discs, "
+            f"A box of {width:g} × {height:g} (length); the strip below the speeds shows the colours of the discs, "
             "which are exact at any time; very small ones are drawn larger."
         )
     else:
-        shown = f"No discs to show: {log.scene.run.method} does not know where they are. Their speeds are exact."
+        shown = f"No discs to show: {log.scene.run.method} has no positions. Their speeds are exact."
     shown += " The player has "
     if played.end < log.end_time or played.start > log.start_time:
         shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."

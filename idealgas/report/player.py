@@ -30,8 +30,8 @@ MOST_ROWS = 600_000
 MOST_DISCS = 100_000
 SHADES = 16
 MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
-"""Limits of the number of instants at which the page knows the order of discs, and of discs times instants (but for
-the fewest instants); of more discs it knows none, as to find their neighbours would take longer than all the rest."""
+"""Limits of the number of instants at which the page has the order of discs, and of discs times instants (but for the
+fewest instants); with more discs it has none, as finding their neighbours would take longer than all the rest."""
 
 TICKS = 2.0**32 - 1
 """Number of steps in the time of the player; times of events are whole numbers of these steps."""
@@ -53,7 +53,7 @@ class Player:
 def player(log: Log, start: float | None = None, rows: int | None = None, order: bool = True) -> Player | None:
     """Data of the player from time `start`, by default the start of the log, for some event rows.
 
-    rows: their largest number, by default MOST_ROWS. order: whether the page knows the order ψ₆ of discs. None if the
+    rows: their largest number, by default MOST_ROWS. order: whether the page has the order ψ₆ of discs. None if the
     log has no events or more than MOST_DISCS discs.
     """
     gas = log.discs

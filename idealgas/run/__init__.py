@@ -1,1 +1,1 @@
-"""From a scene to a finished log: the one place that knows scene, engine and log."""
+"""From a scene to a finished log: the only part that imports scene, engine and log."""

@@ -67,12 +67,7 @@ def resume(
         simulation = _simulation_at(log, last, scene)
         past = _history_of(log, last, scene)
     with LogWriter.resume(
-        path,
-        None if last is None else -1,
-        fsync=scene.log.fsync,
-        scene_text=text,
-        command=command,
-        commit=log.commit,
+        path, None if last is None else -1, fsync=scene.log.fsync, scene_text=text, command=command, commit=log.commit
     ) as writer:
         return LoggedRun(scene, simulation, writer, past, compiled_before).finish(on_progress, interrupted)
 

@@ -79,9 +79,7 @@ def _rectangle(wall: Wall) -> tuple[float, float, float]:
     return low, right, high
 
 
-def _curves(
-    walls: Sequence[tuple[int, Wall]],
-) -> tuple[list[list[tuple[Wall, bool]]], tuple[tuple[int, Point], ...]]:
+def _curves(walls: Sequence[tuple[int, Wall]]) -> tuple[list[list[tuple[Wall, bool]]], tuple[tuple[int, Point], ...]]:
     """Closed curves, each of walls and whether it runs from start to end of each, and the loose ends of the others."""
     at: dict[tuple[str | None, Point], list[int]] = defaultdict(list)
     known = dict(walls)

@@ -86,8 +86,7 @@ class Species(Table):
         default="random", description="how the discs are placed in the region"
     )
     region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(
-        default=None,
-        description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston",
+        default=None, description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston"
     )
 
     @property

@@ -50,8 +50,7 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
             at, theory, error = np.array(known).T
             ax.plot(at, theory, line, color=colour, label=f"{label}: theory" if label else "theory")
             ax.fill_between(at, theory - error, theory + error, color=colour, alpha=0.2, linewidth=0)
-    ax.set_xlabel(axis)
-    ax.set_ylabel(quantity)
+    ax.set(xlabel=axis, ylabel=quantity)
     ax.legend()
     return figure
 

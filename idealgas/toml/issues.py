@@ -14,6 +14,9 @@ from idealgas.toml.dump import toml_value
 Key = tuple[str | int, ...]
 """Path of a key in the document: ("species", 0, "radius")."""
 
+LONGEST_VALUE = 60
+"""Largest number of characters of a value in a message."""
+
 _WORDS = {
     "float_type": ("wrong type", "a number"),
     "int_type": ("wrong type", "a whole number"),
@@ -85,9 +88,9 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     return Issue((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
 
 
-def _shown(value: Any, longest: int = 60) -> str:
+def _shown(value: Any) -> str:
     text = toml_value(value)
-    return text if len(text) <= longest else f"{text[:longest]}…"
+    return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}…"
 
 
 def _described(key: Key, model: type[BaseModel]) -> str:

@@ -72,7 +72,7 @@ def test_panels_and_trails(folder, panel, tmp_path):
     ("log", "arguments", "message"),
     [
         ("homogeneous", (), "homogeneous.h5: has no positions to show (monte_carlo)"),
-        ("eventless", (), "eventless.h5: has no events to show (made with log.events = false)"),
+        ("eventless", (), "eventless.h5: has no events (made with log.events = false)"),
         ("run", ("--from", 5, "--to", 5), "run.h5: empty time window t = 5 to 5: the log covers t = 0 to 30"),
         ("run", ("--to", 31), "run.h5: empty time window t = 0 to 31: the log covers t = 0 to 30"),
         ("run", ("--speed", 1e-9, "--to", 30), "frames are too many (allowed <= 1,000,000)"),

@@ -116,11 +116,7 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
     ("override", "said", "warned"),
     [
         ("restitution.wall=0.9", "at rest: a disc keeps bouncing, 13.72 to 15.25 times per time, up to a height", ""),
-        (
-            "restitution.contact_duration=1e-6",
-            "1e+06 to 1.111e+06 times per time",
-            "warning: A disc at rest has up to",
-        ),
+        ("restitution.contact_duration=1e-6", "1e+06 to 1.111e+06 times per time", "warning: A disc at rest has up to"),
         (
             "restitution.wall=0",
             "",

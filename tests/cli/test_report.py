@@ -147,7 +147,7 @@ def test_what_the_scene_is_about_comes_first(tmp_path, overrides, first):
 def test_a_gas_without_positions_shows_its_speeds(opened, pages):
     browser = opened("without positions")
     assert not browser.find_element(By.ID, "discs").is_displayed()
-    assert "No discs to show: monte_carlo does not know where they are" in browser.find_element(By.ID, "s0").text
+    assert "No discs to show: monte_carlo has no positions" in browser.find_element(By.ID, "s0").text
     before = picture(browser, "speeds")
     seek(browser, 5.0)
     assert picture(browser, "speeds") != before

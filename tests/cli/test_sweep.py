@@ -268,10 +268,7 @@ def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
 def test_a_scheduler_that_dies_is_one_line(plan, tmp_path):
     plan.write_text(LONGER)
     file, folder = tmp_path / "scheduler.json", tmp_path / "out"
-    programs = (
-        "scheduler --no-dashboard --port 0 --host 127.0.0.1",
-        "worker --no-dashboard --no-nanny --nthreads 1",
-    )
+    programs = ("scheduler --no-dashboard --port 0 --host 127.0.0.1", "worker --no-dashboard --no-nanny --nthreads 1")
     with contextlib.ExitStack() as stack:
         started = []
         for program in programs:

@@ -141,4 +141,4 @@ def test_only_this_machine_and_this_name(finished):
 
 def test_a_log_without_events_is_one_line(tmp_path):
     simulate(parse_scene(SCENE + "run.until = 1\nlog.events = false\n"), tmp_path / "gas.h5")
-    assert "has no events to show" in error_of("watch", tmp_path / "gas.h5")
+    assert "has no events (made with log.events = false)" in error_of("watch", tmp_path / "gas.h5")

@@ -6,7 +6,7 @@ import pytest
 
 from idealgas import evolution, pressure
 from idealgas.analysis.core.tables import as_text
-from idealgas.analysis.pressure.measure import PAIRS, WALLS
+from idealgas.analysis.pressure.routes import PAIRS, WALLS
 
 
 @pytest.fixture

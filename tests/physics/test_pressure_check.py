@@ -11,7 +11,8 @@ import pytest
 from helpers.support import ROOT
 
 from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.pressure.measure import PAIRS, WALLS, pressure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.routes import PAIRS, WALLS
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 

@@ -22,8 +22,7 @@ ALL_INNER = set(NAMES) - {"periodic", "piston", "shear"}
 SETS += [ALL, ALL_PERIODIC, ALL_INNER]
 
 interpreted_only = pytest.mark.skipif(
-    not numba.config.DISABLE_JIT,
-    reason="would compile for each set: NUMBA_DISABLE_JIT=1 pytest -m interpreted",
+    not numba.config.DISABLE_JIT, reason="would compile for each set: NUMBA_DISABLE_JIT=1 pytest -m interpreted"
 )
 
 

@@ -55,10 +55,7 @@ OF_COMMANDS = {"idealgas.__main__"}
 WITHIN_ANALYSIS = {"core": {"theory"}, "theory": set(), "registry": {"core"}}
 """What parts of the analyses may import of each other: every analysis these two, and what is named in FROM_ANALYSES."""
 
-FROM_ANALYSES = {
-    "heat_capacity": {"pressure"},
-    "status": {"pressure"},
-}
+FROM_ANALYSES = {"heat_capacity": {"pressure"}, "status": {"pressure"}}
 
 COMPUTES = {"fractions", "idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""

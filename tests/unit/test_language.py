@@ -53,6 +53,7 @@ PATTERNS = {
     r"way back": "reversal, return",
     r"outer pressure": "external pressure",
     r"the house": "structure",
+    r"(?:theory|walls?|pages?|series|which|kernel) (?:tells?|knows?)|tells? nothing|knows? none": "gives, shows, has",
     r"on another day|an earlier version|at the time of writing|this evening": "present tense, no diary",
 }
 """Regular expressions of words, and what to write instead."""

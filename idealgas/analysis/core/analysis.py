@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
 from functools import wraps
-from inspect import signature
+from inspect import getdoc, signature
 from numbers import Integral, Real
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -214,7 +214,21 @@ class Analysis:
             return cls.analyse(**arguments.bind(*given, **named).arguments)
 
         function.__name__ = function.__qualname__ = cls.name
+        function.__doc__ = cls._docstring()
         return function
+
+    @classmethod
+    def _docstring(cls) -> str:
+        """Docstring of `measure` with the arguments that all analyses take, and its own options."""
+        text, *errors = (getdoc(cls.measure) or "").partition("\n\nRaises:")
+        arguments = {
+            "log": "log to analyse, or its path.",
+            "start": f"start of the window, time; by default {cls.start}.",
+            "end": f"end of the window, time; by default {cls.end}.",
+            "progress": f"called as progress(done, total) with numbers of {cls.reads}.",
+        } | {option.name: f"{option.help} Allowed: {option.allowed}." for option in cls.options}
+        listed = "".join(f"\n    {name}: {words}" for name, words in arguments.items())
+        return f"{text}\n\nArgs:{listed}{''.join(errors)}"
 
     @classmethod
     def combined(cls, results: Sequence[Any]) -> Any:

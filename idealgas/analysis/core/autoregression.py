@@ -55,7 +55,7 @@ class Model(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """Standard error of the mean of a series, and number of independent samples that know an error as well as this."""
+    """Standard error of the mean of a series, and number of independent samples that would give it as precisely."""
 
     error: float
     samples: float
@@ -98,7 +98,7 @@ def error_of_mean(series: np.ndarray, number: int | None = None) -> Spread:
 
     Not a number for fewer than two samples, or where the series is not constant but its squares are 0.
 
-    number: of successive samples, if not all are averaged; the whole series tells how they fluctuate.
+    number: of successive samples, if not all are averaged; their fluctuations are those of the whole series.
 
     A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
     beside the fast ones.

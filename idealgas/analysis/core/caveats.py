@@ -4,7 +4,8 @@ An analysis tests its own conditions and puts one sentence per unmet condition i
 that all analyses share, and those of several logs together, are here.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene import Scene
 from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
+
+Sample = TypeVar("Sample", bound=Any)
 
 MOST = 6
 """Largest number of caveats of single logs that are kept where many logs are combined."""
@@ -112,6 +115,21 @@ def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
         for seed, paths in seeds.items()
         if len(paths) > 1
     )
+
+
+def must_be_one_gas(results: Sequence[Result], message: str = "different gases") -> None:
+    """Raise UserError if results are of different gases, with the beginning of its message."""
+    if len(gases := {r.origin.gas: r.origin.words for r in results if r.origin is not None}) > 1:
+        raise UserError(f"{message} ({'; '.join(gases.values())}): analyse them separately")
+
+
+def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
+    """Kind of gas in words, empty if unknown, and runs of each state, in order of the packing fraction."""
+    states: dict[tuple[float, int, str], list[Sample]] = {}
+    for one in samples:
+        kind = one.origin.kind if one.origin else ""
+        states.setdefault((round(one.packing_fraction, 9), one.number, kind), []).append(one)
+    return [(kind, runs) for (_, _, kind), runs in sorted(states.items())]
 
 
 def named(paths: Sequence[str]) -> str:

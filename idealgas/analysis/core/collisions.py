@@ -147,3 +147,11 @@ def _inverse(rate: Theory | None) -> Theory | None:
     if rate is None or rate.value == 0:
         return None
     return Theory(1 / rate.value, rate.error / rate.value**2, rate.source)
+
+
+def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
+    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
+    counts = np.zeros(len(time))
+    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
+        counts += rows.time[rows.partner >= 0].searchsorted(time, "right")
+    return counts / len(log.discs)

@@ -36,7 +36,7 @@ to 45 inefficiencies, 1.09 to 1.17 in 85, and right in 140.
 
 
 class Observable(NamedTuple):
-    """Means over blocks of what is steady in equilibrium, and what theory knows of its variance.
+    """Means over blocks of a quantity that is steady in equilibrium, and theoretical bounds of its variance.
 
     Attributes:
         values: (n,), means.

@@ -35,9 +35,9 @@ class Origin:
 class Result:
     """Base of the results of all analyses.
 
-    caveats: one sentence per condition of the numbers that is not met, or that readers should know of; empty if none
-    was found. Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from
-    several runs, or if the analysis was not called by `Analysis.analyse`. title: name of the run or runs in pictures.
+    caveats: one sentence per condition of the numbers that is not met, or is worth knowing; empty if none was found.
+    Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from several runs, or
+    if the analysis was not called by `Analysis.analyse`. title: name of the run or runs in pictures.
     """
 
     analysis: ClassVar[Any]

@@ -19,6 +19,9 @@ from idealgas.analysis.theory.values import Theory
 ENOUGH_REPLICATES = 20
 """Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
 
+RESAMPLES = 2000
+"""Number of samples of a bootstrap."""
+
 LEAST_DOUBT = 1e-4
 """One over the degrees of freedom from which on an error is as good as known by a law."""
 
@@ -34,8 +37,8 @@ class Estimate:
     """A measured number with its error bar.
 
     value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
-    there are too few samples. independent_samples: number of independent samples that would know the standard error as
-    well, one more than its degrees of freedom; inf if it is known by a law, or 0 as the quantity is known. theory:
+    there are too few samples. independent_samples: number of independent samples that would give the standard error as
+    precisely, one more than its degrees of freedom; inf if it is known by a law, or 0 as the quantity is known. theory:
     value expected by theory, in the same unit; None where no theory applies. theory_error: standard deviation of the
     error of that value, in the same unit. blocks: lengths of blocks as shares of the series, and the error by blocks
     of this length over standard_error (`errors_by_blocks`); empty if it is not from a series.
@@ -146,7 +149,7 @@ def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
 
 
 def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
-    """Estimate of the mean of a few successive samples of a series, whose fluctuations the whole series tells.
+    """Estimate of the mean of a few successive samples of a series, with the fluctuations of the whole series.
 
     series: (n,). part: (n,), whether a sample belongs to the part.
     """
@@ -178,7 +181,7 @@ def mean_of_flux(
 
 
 def _samples_of(doubt: float) -> float:
-    """Independent samples that know an error as well as its parts do together, by Welch and Satterthwaite.
+    """Number of independent samples for an error from several parts, by Welch and Satterthwaite.
 
     doubt: sum of (share of the variance)²/(degrees of freedom) over the parts.
     """
@@ -232,24 +235,16 @@ def ks_p_value(distance: float, samples: int) -> float:
     return float(special.kolmogorov(scaled + 1 / (6 * root) + (scaled - 1) / (4 * samples)))
 
 
-def bootstrap(
-    replicates: np.ndarray,
-    function: Callable[[np.ndarray], float] = np.mean,
-    *,
-    seed: int = 0,
-    resamples: int = 2000,
-    theory: Theory | float | None = None,
-) -> Estimate:
-    """Estimate of function(replicates), with its error by bootstrap over the independent replicates on the first axis.
+def bootstrap(values: np.ndarray, theory: Theory | float | None = None) -> Estimate:
+    """Estimate of the mean of independent values (n,), with its error by bootstrap.
 
     The bootstrap variance is multiplied by n/(n - 1), as it underestimates the variance of n replicates by this factor:
     Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
     """
-    replicates = np.asarray(replicates)
-    n = len(replicates)
-    picks = np.random.default_rng(seed).integers(n, size=(resamples, n))
-    spread = np.std([function(replicates[pick]) for pick in picks], ddof=1)
-    return Estimate(float(function(replicates)), float(spread * np.sqrt(n / (n - 1))), float(n), *parts_of(theory))
+    n = len(values)
+    picks = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
+    spread = np.std([values[pick].mean() for pick in picks], ddof=1)
+    return Estimate(float(values.mean()), float(spread * np.sqrt(n / (n - 1))), float(n), *parts_of(theory))
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
@@ -258,7 +253,7 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
     shared = sum(r.theory_error for r in replicates) / len(replicates)  # the error of theory is common to all runs
     theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
-        return bootstrap(values, theory=theory)
+        return bootstrap(values, theory)
     errors = np.array([r.standard_error for r in replicates])
     whole = math.hypot(*errors)
     doubt = sum((errors / whole) ** 4 / [max(r.independent_samples - 1, 1.0) for r in replicates]) if whole > 0 else 0.0

@@ -47,10 +47,7 @@ class Tally(Protocol):
 
 
 def stream(
-    log: Log,
-    edges: np.ndarray,
-    tallies: Iterable[Tally],
-    progress: Callable[[int, int], None] | None = None,
+    log: Log, edges: np.ndarray, tallies: Iterable[Tally], progress: Callable[[int, int], None] | None = None
 ) -> None:
     """Pass the flights between the times edges[0] and edges[-1] to all tallies.
 
@@ -122,8 +119,7 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
 
     A block is not shorter than the mean time between two events of a disc, unless there were too few blocks then.
     """
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    log.require_events()
     first, last = span(log, start, end)
     rows = log.row_at(last, "right") - log.row_at(first, "right")
     if rows == 0:
@@ -155,7 +151,7 @@ def span(log: Log, start: float | None, end: float | None) -> tuple[float, float
 
 
 def exact(number: float) -> str:
-    """A number with all the digits that tell it from any other."""
+    """A number with as many digits as distinguish it from any other."""
     return repr(float(number)).removesuffix(".0")
 
 

@@ -120,11 +120,7 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
     between = [
         (f"{entry.species}: {name}", value)
         for entry in paths
-        for name, value in (
-            ("mean free path", entry.path),
-            ("mean free time", entry.time),
-            ("mean speed", entry.speed),
-        )
+        for name, value in (("mean free path", entry.path), ("mean free time", entry.time), ("mean speed", entry.speed))
     ]
     return [
         estimates("Collisions per disc (1/time)", [(f"{r.species} with {r.other}", r.rate) for r in rates]),
@@ -192,7 +188,7 @@ def html_table(table: Table) -> str:
 
 
 def _cells(heads: Iterable[str], cells: Iterable[str]) -> Iterator[str]:
-    """Cells of a row; each knows the heading of its column, for pages that are too narrow for rows."""
+    """Cells of a row; each with the heading of its column, for pages that are too narrow for rows."""
     for head, cell in zip(heads, cells, strict=True):
         yield f'<td data-head="{head}">{escape(cell)}</td>' if head else f"<td>{escape(cell)}</td>"
 

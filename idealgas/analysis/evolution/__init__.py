@@ -120,12 +120,6 @@ class EvolutionAnalysis(Analysis):
         The theory, if there is one, is that of the temperature: in equilibrium, of a gas that cools by its collisions
         (Haff's law), or of one that a moving piston compresses (the adiabat).
 
-        Args:
-            log: log with samples of the energy.
-            start: time; by default the start of the log.
-            end: time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             UserError: if the log does not cover the times or has no samples of the energy.
         """

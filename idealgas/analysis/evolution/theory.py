@@ -139,7 +139,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
-    said = "Haff's law is that of a uniform gas; `idealgas cooling` tells whether this one remains so."
+    said = "Haff's law is that of a uniform gas; `idealgas cooling` shows whether this one remains so."
     return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(said,))
 
 

@@ -93,7 +93,13 @@ class HistogramAnalysis(Analysis):
         )
     )
     options = (
-        Option("quantity", str, "Quantity whose distribution is measured.", default="speed", choices=tuple(QUANTITIES)),
+        Option(
+            "quantity",
+            str,
+            "Quantity whose distribution is measured; free flights are those between two collisions with discs.",
+            default="speed",
+            choices=tuple(QUANTITIES),
+        ),
     )
 
     @staticmethod
@@ -111,14 +117,6 @@ class HistogramAnalysis(Analysis):
         are off. The p-values are those of the Kolmogorov-Smirnov test of independent samples. Under gravity or a piston
         the temperature of the law is the measured one. A gas that never reaches equilibrium has no law, and its window
         is the whole log by default.
-
-        Args:
-            log: log with events.
-            quantity: speed, vx, vy or energy of a disc; free-path or free-time of a disc between two collisions with
-                discs; or waiting-time, the time between two successive events of the gas.
-            start: time; by default detected equilibrium.
-            end: time; by default the end of the log.
-            progress: called as progress(done, total) while events are read.
 
         Raises:
             UserError: if no disc moves, or if the window has too few events.

@@ -23,11 +23,7 @@ class PressureAnalysis(Analysis):
 
     position = 0
     headline = "routes.pairs_virial*.compressibility_factor"
-    results = (
-        Pressure,
-        EquationOfState,
-        Sample,
-    )
+    results = (Pressure, EquationOfState, Sample)
     sections = (
         Section(
             "Pressure", "Z by every route with standard errors, theory as lines; without one the pressure of walls"

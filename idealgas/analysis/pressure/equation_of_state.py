@@ -6,11 +6,13 @@ from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.caveats import by_state
 from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
-from idealgas.analysis.pressure.measure import PAIRS, Pressure
+from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import SOLID, crystal
 from idealgas.errors import UserError
@@ -110,11 +112,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
             f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
             "pressure` of the single log has its theory"
         )
-    together: dict[tuple[float, int, str], list[Sample]] = {}
-    for sample in samples:
-        kind = sample.origin.kind if sample.origin else ""
-        together.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
-    states = tuple(_state(kind, runs) for (_, _, kind), runs in sorted(together.items()))
+    states = tuple(_state(kind, runs) for kind, runs in by_state(samples))
     b2, b3 = _virial_coefficients(states)
     found = EquationOfState(states, b2, b3)
     if len(found.kinds) == 1:

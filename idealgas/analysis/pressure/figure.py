@@ -30,8 +30,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
     ideal = result.number * result.temperature / result.area
     ax.axvline(ideal, color=BLACK, linewidth=1, label=f"{IDEAL}, N T/A: {ideal:.5g}")
     name_rows(ax, [wall.name for wall in walls])
-    ax.set_xlabel("P (energy/length²)")
-    ax.set_ylabel("pressure on every wall")
+    ax.set(xlabel="P (energy/length²)", ylabel="pressure on every wall")
     figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
     return figure
 
@@ -57,8 +56,7 @@ def _of_log(result: Pressure) -> Figure:
         if shown and theory.value not in known:
             colour = BLACK if name == IDEAL else GREY
             ax.axvline(theory.value, color=colour, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
-    ax.set_xlabel("Z = PA/NT (no unit)")
-    ax.set_ylabel(f"Z by every route, at packing fraction {result.packing_fraction:.4g}")
+    ax.set(xlabel="Z = PA/NT (no unit)", ylabel=f"Z by every route, at packing fraction {result.packing_fraction:.4g}")
     figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
     return figure
 
@@ -90,8 +88,7 @@ def _of_states(result: EquationOfState) -> Figure:
         low, high = (1e3 * (z / best - 1 + sign * 3 * error / best) for sign in (-1, 1))
         below.set_ylim(min(np.nanmin(low), 0.0), max(np.nanmax(high), 0.0))
     above.set_ylabel("Z = PA/NT (no unit)")
-    below.set_ylabel("deviation from theory (‰ of Z)")
-    below.set_xlabel("packing fraction φ (no unit)")
+    below.set(ylabel="deviation from theory (‰ of Z)", xlabel="packing fraction φ (no unit)")
     below.set_xlim(above.get_xlim())
     above.legend(frameon=False, fontsize="small")
     return figure

@@ -7,7 +7,7 @@ discs one radius inside the box.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -31,10 +31,10 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, sampled
-from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.walls import SampledWalls, WallGauge, moving_wall
-from idealgas.analysis.pressure.bulk import Bulk, bulk_in_events, bulk_in_samples
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
+from idealgas.analysis.pressure.routes import PAIRS, WALLS, Route, bulk_in_events, bulk_in_samples, routes_of
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import Composition, composition
 from idealgas.analysis.theory.values import (
@@ -48,34 +48,14 @@ from idealgas.analysis.theory.values import (
     fluid,
     mixture_error,
 )
-from idealgas.columns import OUTWARD, SIDES, axis_of
+from idealgas.columns import SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError, unknown
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
 
-WALLS, PAIRS = "walls, virial", "pairs, virial"
-"""Beginnings of the names of the routes that `Pressure.check` compares with theory.
-
-Where only one axis is periodic, the pressures along both differ, and names of the virials along one end in its name;
-PAIRS alone is the mean of both.
-"""
-
 IDEAL = "ideal gas"
 """Name of its theory, Z = 1."""
-
-
-@dataclass(frozen=True)
-class Route:
-    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring.
-
-    source: which theory both have; None without one.
-    """
-
-    name: Annotated[str, Key("route")]
-    pressure: Estimate
-    compressibility_factor: Estimate
-    source: Annotated[str | None, OMITTED] = None
 
 
 @dataclass(frozen=True)
@@ -141,10 +121,7 @@ class Pressure(Result):
 
 
 def pressure(
-    log: Log,
-    start: float | None = None,
-    end: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    log: Log, start: float | None = None, end: float | None = None, progress: Callable[[int, int], None] | None = None
 ) -> Pressure:
     """Measure the pressure of a gas between two times of its log, and compare Z = PA/NT with theory.
 
@@ -157,10 +134,8 @@ def pressure(
     segments, a piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical
     pressure of every wall, the momentum that it gets per time and length.
 
-    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read.
-
-    Raises UserError if no disc moves, or if there are no events or too few samples in the window.
+    Raises:
+        UserError: if no disc moves, or if there are no events or too few samples in the window.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
@@ -190,7 +165,7 @@ def pressure(
         area=gas.area,
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
-        routes=_routes(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts, tensor),
+        routes=routes_of(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts, tensor),
         known_theories=hard_disc_theories(equilibrium.discs, gas, theory),
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
@@ -246,7 +221,7 @@ def _without_theory(
 
 
 def _ends(log: Log) -> tuple[str, ...]:
-    """Sentence on faces of walls inside the box, where no events tell the ends of a wall from its faces."""
+    """Sentence on faces of walls inside the box, where no events distinguish the ends of a wall from its faces."""
     if log.has_events or not walls_inside(log.scene):
         return ()
     return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
@@ -292,73 +267,3 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
     }
     endless = {name: Theory(z, math.hypot(z - series.value, series.error), name) for name, z in others.items()}
     return theories | {series.source: series} | endless
-
-
-def _routes(
-    gas: Gas,
-    temperature: float,
-    periodic: tuple[bool, bool],
-    theory: BoxTheory,
-    window: Window,
-    bulk: Bulk,
-    impacts: Impacts | SampledImpacts,
-    tensor: dict[str, Estimate],
-) -> tuple[Route, ...]:
-    ideal = len(gas) * temperature / gas.area
-    sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
-    push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
-    through = push if bulk.sides is None else bulk.sides
-    length = [gas.box[1 - axis_of(k)] for k in range(len(SIDES))]
-    at_wall = {k: theory.sides[axis_of(k)] for k in sides}
-    store = gas.mass.sum() * temperature / 3 / window.width**2
-    routes = [
-        _wall(f"{SIDES[k]} wall", push[k], through[k], length[k] * ideal, store, ideal, at_wall[k]) for k in sides
-    ]
-    if sides:
-        perimeter = sum(length[k] for k in sides)
-        at_walls = _average([(at_wall[k], length[k] / perimeter) for k in sides])
-        pushed, carried = (series[sides].sum(axis=0) for series in (push, through))
-        routes.append(_wall("all walls", pushed, carried, perimeter * ideal, len(sides) / 2 * store, ideal, at_walls))
-        unit = len(sides) / 2 * gas.area * ideal
-        virial = window.of(impacts.wall_virial)
-        inner = virial if bulk.virial is None else bulk.virial
-        reach = np.array(gas.box)[~np.array(periodic)] - 2 * gas.radius[:, None]
-        moment = temperature * float((gas.mass[:, None] * reach**2).sum()) / 12 / window.width**2
-        along = "xy"[axis_of(sides[0])] if any(periodic) else ""
-        routes.append(_wall(f"{WALLS}, {along}" if along else WALLS, virial, inner, unit, moment, ideal, theory.walls))
-        if along:
-            source = theory.pairs.source if theory.pairs else None
-            virials = {axis: tensor[2 * axis] for axis in "xy"}
-            routes += [Route(f"{PAIRS}, {axis}", p, p.times(1 / ideal), source) for axis, p in virials.items()]
-    z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
-    return (*routes, _of(PAIRS, z, ideal, theory.pairs))
-
-
-def _wall(
-    name: str, flux: np.ndarray, bulk: np.ndarray, unit: float, stored: float, ideal: float, theory: Theory | None
-) -> Route:
-    """Pressure by a momentum flux to walls (n,), in units of one of the `ideal` pressure, beside that of the bulk.
-
-    stored: variance of the momentum that the gas stores on the way. Momenta of equilibrium are independent of each
-    other and of places: it is the sum of m T over discs, times the mean square of the share of it that has reached a
-    wall, which grows evenly from 0 at one wall to 1 at the other.
-    """
-    if not flux.any():  # walls that were never hit tell nothing of their error
-        z = Estimate(0.0, math.nan, 0.0, *((theory.value, theory.error) if theory else ()))
-    else:
-        z = mean_of_flux(flux / unit, bulk / unit, theory, stored / unit**2)
-    return _of(name, z, ideal, theory)
-
-
-def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> Route:
-    """Route with Z and with the pressure, Z times that of the ideal gas."""
-    return Route(name, z.times(ideal), z, theory.source if theory else None)
-
-
-def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
-    """Weighted mean of theories with a common error; None if one of them has no value."""
-    known = [(theory, weight) for theory, weight in parts if theory]
-    if not known or len(known) < len(parts):
-        return None
-    value, error = (sum(getattr(theory, name) * weight for theory, weight in known) for name in ("value", "error"))
-    return Theory(value, error, known[0][0].source)

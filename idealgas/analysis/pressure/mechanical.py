@@ -114,13 +114,11 @@ def _weight(log: Log) -> np.ndarray:
 
 def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: float | None) -> WallPressure:
     push, along, exposed = face.push[some], face.along[some], face.exposed[some]
-    if not push.any():  # a wall that was never hit tells nothing of its error
+    if not push.any():  # the error of a wall that was never hit is unknown
         return WallPressure(face.name, Estimate(0.0, np.nan, 0.0, holding), None)
     rough = np.abs(along).sum() > SMOOTH * push.sum()
     return WallPressure(
-        face.name,
-        _average(push, exposed, balances, holding),
-        _average(along, exposed, balances) if rough else None,
+        face.name, _average(push, exposed, balances, holding), _average(along, exposed, balances) if rough else None
     )
 
 

@@ -13,8 +13,9 @@ from idealgas.analysis.core.tables import (
     with_error,
 )
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
-from idealgas.analysis.pressure.measure import PAIRS, Pressure
+from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
+from idealgas.analysis.pressure.routes import PAIRS
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "

@@ -131,14 +131,6 @@ class ProfileAnalysis(Analysis):
         uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille's for a flow, to which
         temperatures then are relative.
 
-        Args:
-            log: log with events and positions.
-            along: "x" or "y"; by default the axis along which something changes.
-            bins: number of strips of equal width, over all that centres of discs reach.
-            start: time; by default detected equilibrium.
-            end: time; by default the end of the log.
-            progress: called as progress(done, total) while states are read.
-
         Raises:
             UserError: without events or positions, or if the window is empty.
         """

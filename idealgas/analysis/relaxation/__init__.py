@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
+from idealgas.analysis.core.collisions import collisions_per_disc
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import OMITTED, Key, reported
 from idealgas.analysis.core.result import Result
@@ -23,7 +24,6 @@ from idealgas.analysis.relaxation.speeds import (
     SpeedDistributions,
     check_steady,
     colliding_span,
-    collisions_per_disc,
     critical_distance,
     fit_decay,
     reduced_energy,
@@ -168,14 +168,6 @@ class RelaxationAnalysis(Analysis):
         every: float | None = None,
     ) -> Relaxation:
         """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit its time.
-
-        Args:
-            log: log with events.
-            start: time; by default the start of the log.
-            end: time; by default HORIZON collisions per disc after the start.
-            progress: called as progress(done, total) while states are read.
-            every: interval between the instants at which discs are also counted by speed, in trials (Monte Carlo) or
-                time; None for no counts.
 
         Raises:
             UserError: if no two discs collide in between, or if the energy of the discs is not constant, so that they

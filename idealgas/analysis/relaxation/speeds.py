@@ -11,6 +11,7 @@ from typing import Annotated
 import numpy as np
 from scipy import optimize
 
+from idealgas.analysis.core.collisions import collisions_per_disc
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.statistics import Estimate, ks_distance
@@ -45,8 +46,7 @@ def check_steady(log: Log) -> None:
     Raises:
         UserError: if the log has no events, if the kinetic energy of its discs is not constant, or if no disc moves.
     """
-    if not log.has_events:
-        raise UserError(f"{log.path}: has no events (made with log.events = false)")
+    log.require_events()
     if restless := log.scene.lacking("conserves_motion"):
         raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
     if not log.discs.temperature > 0:
@@ -70,15 +70,6 @@ def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[fl
     if not found:
         raise UserError(f"{log.path}: no two discs collide between t = {first:g} and {last:g}")
     return first, last
-
-
-def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
-    rows_until = np.zeros(len(time))
-    for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
-        instant = np.searchsorted(time, rows.time[rows.partner >= 0])
-        rows_until += np.bincount(instant, minlength=len(time))
-    return np.cumsum(rows_until) / len(log.discs)
 
 
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:

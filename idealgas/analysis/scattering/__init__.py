@@ -111,12 +111,6 @@ class ScatteringAnalysis(Analysis):
         ⟨|j|²⟩/N = (1 - S(k)/N) T/m as the momentum of all discs is 0. F_s after the first lag is compared with free
         flight and the first collision by Enskog's rate.
 
-        Args:
-            log: log with events, of a gas of one species in a periodic box.
-            start: start of the window, time; by default detected equilibrium.
-            end: end of the window, time; by default the end of the log.
-            progress: called as progress(done, total) while waves are measured.
-
         Raises:
             UserError: unless the box is periodic, for several species, with effects other than periodic sides, or if
                 the window is too short.

@@ -34,7 +34,7 @@ class SpeciesForecast:
     name: of the species. number: of its discs. radius: mean radius, length. polydispersity: standard deviation of the
     radius over its mean. mass: mean mass. packing_fraction: area of its discs over the area of the box. temperature:
     mean kinetic energy of its discs at the start, energy, without the motion of the gas as a whole. collision_rate:
-    collisions of one disc with other discs per time, 1/time; None if theory does not know it.
+    collisions of one disc with other discs per time, 1/time; None without a theory.
     """
 
     name: str
@@ -51,7 +51,7 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Values are None if the theory does not know them: it is that of a uniform gas of constant energy or in a heat bath,
+    Values are None where there is no theory: it is that of a uniform gas of constant energy or in a heat bath,
     or of a dilute column under gravity.
 
     number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
@@ -311,12 +311,7 @@ def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) 
 
 
 def _wall_hit_rate(
-    gas: Gas,
-    radius: np.ndarray,
-    mass: np.ndarray,
-    number: np.ndarray,
-    temperature: float,
-    periodic: tuple[bool, bool],
+    gas: Gas, radius: np.ndarray, mass: np.ndarray, number: np.ndarray, temperature: float, periodic: tuple[bool, bool]
 ) -> float:
     """Wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
 
@@ -335,7 +330,7 @@ def _wall_hit_rate(
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Simulated time at which the first stop rule is met; None if theory does not know it, or knows no such time."""
+    """Simulated time at which the first stop rule is met; None without a theory or if no rule is ever met."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None

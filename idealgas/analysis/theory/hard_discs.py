@@ -123,10 +123,7 @@ def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density:
 
 
 def confinement(
-    radius: ArrayLike,
-    box: tuple[float, float],
-    periodic: tuple[bool, bool] = (False, False),
-    axis: int | None = None,
+    radius: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False), axis: int | None = None
 ) -> np.ndarray:
     """Factor (S, S) by which walls change the number of contacts of species i and j, compared with a periodic box.
 
@@ -219,9 +216,9 @@ def mean_speed(temperature: float, mass: float | np.ndarray, dof: float = math.i
     return np.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
 
 
-def mean_relative_speed(temperature: float, mass: float, dof: float = math.inf) -> float:
+def mean_relative_speed(temperature: float, mass: float) -> float:
     """Mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass, length/time."""
-    return math.sqrt(2) * float(mean_speed(temperature, mass, dof))
+    return math.sqrt(2) * float(mean_speed(temperature, mass))
 
 
 def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.inf) -> np.ndarray:

@@ -24,7 +24,7 @@ class TwoDiscs(NamedTuple):
     """Z = PA/2T by each way of measuring; None where there is no such wall.
 
     pairs: by the virial of the pair. walls: by the virial of all walls; it differs from `pairs` where one axis is
-    periodic, as walls then tell of the pressure along the other axis only. sides: (x, y), by the force on the left or
+    periodic, as walls then give the pressure along the other axis only. sides: (x, y), by the force on the left or
     right and on the bottom or top wall over the whole length of the box's side.
     """
 

@@ -203,7 +203,7 @@ def box_theory(
         number: number of discs of each species, (S,).
         box: width and height of the box, length.
         periodic: whether the box is periodic along x and along y.
-        ergodic: False for a gas that does not reach all states of its energy, of which theory knows nothing.
+        ergodic: False for a gas that does not reach all states of its energy, which has no theory.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     try:

@@ -22,11 +22,7 @@ class TransportAnalysis(Analysis):
 
     position = 70
     headline = "diffusion.*.coefficient"
-    results = (
-        Transport,
-        States,
-        Sample,
-    )
+    results = (Transport, States, Sample)
     sections = (
         Section(
             "Transport",

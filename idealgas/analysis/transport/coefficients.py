@@ -7,17 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.currents import (
-    APART_X,
-    APART_Y,
-    CARRIED,
-    HEAT_X,
-    HEAT_Y,
-    XX,
-    XY,
-    YY,
-    Currents,
-)
+from idealgas.analysis.core.currents import APART_X, APART_Y, CARRIED, HEAT_X, HEAT_Y, XX, XY, YY, Currents
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.fields import INLINE, Key

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from idealgas.analysis.core.caveats import by_state
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
@@ -52,12 +53,8 @@ def combine_transport(results: Sequence[Transport | Sample]) -> Transport | Stat
     """Transport in the gas of a single log, or the coefficients of several logs or of a sweep."""
     if len(results) == 1 and isinstance(results[0], Transport):
         return results[0]
-    together: dict[tuple[float, int, str], list[Sample]] = {}
-    for found in results:
-        sample = _sample_of(found) if isinstance(found, Transport) else found
-        kind = sample.origin.kind if sample.origin else ""
-        together.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
-    return States(tuple(_state(kind, runs) for (_, _, kind), runs in sorted(together.items())))
+    samples = (_sample_of(found) if isinstance(found, Transport) else found for found in results)
+    return States(tuple(_state(kind, runs) for kind, runs in by_state(samples)))
 
 
 def restore_transport(found: dict[str, Any], label: str) -> Sample:
@@ -78,7 +75,7 @@ def _sample_of(found: Transport) -> Sample:
 
 
 def _over_theory(coefficients: dict[str, Estimate]) -> dict[str, Estimate]:
-    """Those coefficients that theory knows, in units of theirs."""
+    """Coefficients that have a theory, in units of it."""
     return {symbol: one.times(1 / one.theory) for symbol, one in coefficients.items() if one.theory}
 
 

@@ -26,12 +26,19 @@ from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import sampled
+from idealgas.analysis.core.samples import SampledImpacts, sampled
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import Composition, Ensemble, composition
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
-from idealgas.analysis.transport.diffusion import LEAST_LAG, Diffusion, diffusion, diffusion_caveats, diffusion_limits
+from idealgas.analysis.transport.diffusion import (
+    LEAST_LAG,
+    Diffusion,
+    Limits,
+    diffusion,
+    diffusion_caveats,
+    diffusion_limits,
+)
 from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.errors import UserError
@@ -91,77 +98,57 @@ def transport(
     distribution functions. Without events the sums of `log.pressure = true` and `log.heat_flow = true` give the
     collision rates and what follows from the currents of a periodic gas.
 
-    start, end: times; by default from detected equilibrium to the end of the log. progress(done, in all) is called as
-    events are read. lag: longest time for which discs and currents are followed, in mean free times.
-
-    Raises UserError if no disc moves, if there are no events or too few samples in the window, or for a gas with
-    effects other than periodic sides.
+    Raises:
+        UserError: if no disc moves, if there are no events or too few samples in the window, or for a gas with effects
+            other than periodic sides.
     """
-    equilibrium = ensemble(log)
+    equilibrium, needs = ensemble(log), ("uniform", "conserves_motion")
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
-    if not log.has_events:
-        return _from_samples(log, equilibrium, start, end, lag)
-    moments, impacts, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
-    window = measure(log, [moments, impacts, currents], start, end, progress, ("uniform", "conserves_motion"))
-    gas, discs = log.discs, composition(log.discs)
-    box = theory_of(log)
+    impacts: Impacts | SampledImpacts
+    if log.has_events:
+        moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
+        window, impacts = measure(log, [moments, events, currents], start, end, progress, needs), events
+        flow = currents.flow
+    else:
+        window, impacts = sampled(log, start, end, needs)
+        flow = impacts.flow
+    gas, discs, box = log.discs, composition(log.discs), theory_of(log)
     expected, enskogs = expected_rates(gas.box, equilibrium, box), enskog(log, discs, equilibrium)
     rates = collision_rates(discs, expected, window, impacts)
     free_time = _free_time(discs, rates)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    alone = [enskogs.diffusion] if enskogs else self_diffusion(log, equilibrium, expected)
-    limits = diffusion_limits(log, discs, rates, equilibrium)
-    spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium))
-    whole = None
+    limits: list[Limits] = []
+    spreading: tuple[Diffusion, ...] = ()
+    if log.has_events:
+        alone = [enskogs.diffusion] if enskogs else self_diffusion(log, equilibrium, expected)
+        limits = diffusion_limits(log, discs, rates, equilibrium)
+        spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium))
+    whole, followed = None, float(spreading[0].lag[-1]) if spreading else longest
     if all(log.periodic):
+        parts = (
+            flow_in_events(log, window, longest, progress) if log.has_events else flow_in_samples(log, window, longest)
+        )
         theories = enskogs, mutual_diffusion(log, discs, equilibrium, expected)
-        whole = collective(*flow_in_events(log, window, longest, progress), log, equilibrium, longest, theories)
+        whole = collective(*parts, log, equilibrium, longest, theories)
+        followed = whole.plateau[1]
     return Transport(
         window=window,
         packing_fraction=gas.packing_fraction,
         number=len(gas),
-        free_times=(whole.plateau[1] if whole else float(spreading[0].lag[-1])) / free_time,
+        free_times=followed / free_time,
         walled=not all(log.periodic),
         collision_rates=rates,
-        free_paths=free_paths(discs, expected, equilibrium, window, moments, impacts),
+        free_paths=free_paths(discs, expected, equilibrium, window, moments, events) if log.has_events else (),
         contacts=_contacts(gas.area, equilibrium, rates),
         diffusion=spreading,
         collective=whole,
-        pressure=pressure_tensor(log, equilibrium, box, window.of(currents.flow)),
-        pair_distributions=pair_distributions(log, discs, window.start, window.end),
+        pressure=pressure_tensor(log, equilibrium, box, window.of(flow)),
+        pair_distributions=pair_distributions(log, discs, window.start, window.end) if log.has_events else (),
         caveats=(
             *(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
             *_short_currents(whole, longest / free_time, window.duration / longest),
         ),
-    )
-
-
-def _from_samples(log: Log, equilibrium: Ensemble, start: float | None, end: float | None, lag: float) -> Transport:
-    """Transport in a gas without events: what sums in its samples tell."""
-    window, impacts = sampled(log, start, end, ("uniform", "conserves_motion"))
-    gas, discs, box = log.discs, composition(log.discs), theory_of(log)
-    rates = collision_rates(discs, expected_rates(gas.box, equilibrium, box), window, impacts)
-    free_time = _free_time(discs, rates)
-    longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    whole = None
-    if all(log.periodic):
-        theories = enskog(log, discs, equilibrium), None
-        whole = collective(*flow_in_samples(log, window, longest), log, equilibrium, longest, theories)
-    return Transport(
-        window=window,
-        packing_fraction=gas.packing_fraction,
-        number=len(gas),
-        free_times=(whole.plateau[1] if whole else longest) / free_time,
-        walled=not all(log.periodic),
-        collision_rates=rates,
-        free_paths=(),
-        contacts=_contacts(gas.area, equilibrium, rates),
-        diffusion=(),
-        collective=whole,
-        pressure=pressure_tensor(log, equilibrium, box, window.of(impacts.flow)),
-        pair_distributions=(),
-        caveats=tuple(_short_currents(whole, longest / free_time, window.duration / longest)),
     )
 
 

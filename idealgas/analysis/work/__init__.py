@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.caveats import must_be_one_gas
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import must_apply
 from idealgas.analysis.core.result import Result
@@ -77,14 +78,9 @@ class WorkAnalysis(Analysis):
         work back cross at ΔF (Crooks, Phys. Rev. E 60, 2721 (1999)). A stroke is the time in which the velocity of the
         piston is not 0, after a time in which it is.
 
-        Args:
-            log: log of a gas with thermal walls or a thermostat of one temperature and a piston of given velocities.
-            start: strokes begin at this time or later; by default at the start of the log.
-            end: strokes end at this time or before; by default at the end of the log.
-            progress: not called.
-
         Raises:
-            UserError: without such a piston or heat bath, or if no stroke lies in the window.
+            UserError: without a piston of given velocities, without a thermostat or thermal walls of one temperature,
+                or if no stroke lies in the window.
         """
         must_apply(log, 0.0, ("elastic", "lossless"))
         piston, temperatures = log.scene.piston, log.scene.properties.temperatures
@@ -120,8 +116,7 @@ class WorkAnalysis(Analysis):
         Raises:
             UserError: if the runs are of different gases.
         """
-        if len(gases := {r.origin.gas: r.origin.words for r in results if r.origin is not None}) > 1:
-            raise UserError(f"different gases ({'; '.join(gases.values())}): analyse them separately")
+        must_be_one_gas(results)
         kinds: dict[tuple[Any, ...], list[Process]] = {}
         for one in (each for result in results for each in result.processes):
             kinds.setdefault((one.ends, one.protocol), []).append(one)

@@ -17,7 +17,7 @@ _HINTS = {
     **dict.fromkeys(("x86_64", "AMD64"), ("llvm.x86.sse2.pause", ())),
     **dict.fromkeys(("aarch64", "arm64"), ("llvm.aarch64.hint", (1,))),
 }
-"""LLVM intrinsic by which a thread tells the processor that it waits, with its arguments."""
+"""LLVM intrinsic that hints to the processor that a thread is waiting, with its arguments."""
 
 
 def _pointer(context, builder, kind, array, index):

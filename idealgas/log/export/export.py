@@ -72,8 +72,8 @@ def export(
     made = FORMATS[kind]
     if times is None and not made.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
-    if times is None and not log.has_events:
-        raise LogError(f"{log.path}: has no events (made with log.events = false)")
+    if times is None:
+        log.require_events()
     if times is not None and not made.has_events and not log.has_positions:
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
     with _target(made, kind, output, force, log) as target:

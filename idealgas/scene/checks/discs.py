@@ -94,10 +94,7 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
                 yield Issue((key,), "no such species", f'"{name}"', " or ".join(f'"{one}"' for one in known))
 
 
-def room_issues(
-    scene: Document,
-    invalid: AbstractSet[str],
-) -> Iterator[Issue]:
+def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check that the discs lie in the space of the gas, and are not too large, too small or too many."""
     box, space, discs = scene.box, scene.room, scene.given
     kinds = [(i, s) for i, s in scene.placed if s.count]

@@ -166,7 +166,7 @@ def test_heat_capacities_of_different_gases_are_kept_apart(made):
     assert slope == pytest.approx(by_hand, rel=1e-9)
     apart = combined("heat-capacity", logs[0], logs[2])
     assert [r.name for r in apart.routes] == ["E/T", "E/T"]
-    assert apart.refused["dE/dT"] == "it takes logs of one gas at several energies"
+    assert apart.refused["dE/dT"] == "it requires logs of one gas at several energies"
     alike = combined("heat-capacity", *logs[:2])
     assert alike.caveats == ()
     assert [(r.name, r.gas) for r in alike.routes] == [("dE/dT", None), ("E/T", None)]

@@ -205,10 +205,7 @@ def test_a_gate_that_has_opened_is_no_wall(make):
 
 @pytest.mark.parametrize(
     ("overrides", "message"),
-    [
-        (["log.events=false"], "has no events"),
-        (["run.method=monte_carlo", "run.v_ref=20"], "no positions"),
-    ],
+    [(["log.events=false"], "has no events"), (["run.method=monte_carlo", "run.v_ref=20"], "no positions")],
 )
 def test_what_cannot_be_measured_is_refused(make, overrides, message):
     with pytest.raises(UserError, match=message):

@@ -21,10 +21,7 @@ SPIN = "rotation={inertia=0.5, roughness=0}"
     ("change", "words"),
     [
         ({2: "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]"}, "beside it is a gap of 3"),
-        (
-            {2: SLIT[2].replace("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}")},
-            "beside it is a gap of 0.5",
-        ),
+        ({2: SLIT[2].replace("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}")}, "beside it is a gap of 0.5"),
         ({2: SLIT[2].replace("to=[4, 3]}", "to=[4, 3], closes_at=100}")}, "beside it is a gap of 3"),
         ({2: SLIT[2].replace("wall=[", "wall=[{from=[4, 4.5], to=[4, 3]}, ")}, "a wall stands in the gate"),
         ({5: 'box={size=[8, 8], left="periodic", right="periodic"}'}, "discs pass through the periodic sides"),

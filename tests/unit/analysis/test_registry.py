@@ -46,13 +46,7 @@ STROKES = (
     "run.collisions_per_disc=",
     "run.until=20",
 )
-TAKES = {
-    "effusion": SLIT,
-    "sound": WAVES,
-    "scattering": WAVES,
-    "work": STROKES,
-    "cooling": ("restitution.normal=0.9",),
-}
+TAKES = {"effusion": SLIT, "sound": WAVES, "scattering": WAVES, "work": STROKES, "cooling": ("restitution.normal=0.9",)}
 """Overrides for the gas of those analyses that have no answer for a closed box."""
 
 NOT_ALONE = ["Cooling", "Scattering", "Sound", "Effusion", "Work"]
@@ -75,6 +69,8 @@ def test_an_analysis_takes_the_options_that_it_declares(analysis):
     assert set(taken[1:]) == {"start", "end", "progress", *(option.name for option in analysis.options)}
     assert all(kind.analysis is analysis for kind in analysis.results)
     assert registry.help_of(analysis.name) == inspect.getdoc(import_module(f"{package.__name__}.{analysis.name}"))
+    described = inspect.getdoc(getattr(idealgas, analysis.name)).split("\nArgs:\n")[1].partition("\n\nRaises:")[0]
+    assert {line.partition(":")[0].strip() for line in described.splitlines()} == set(taken)
 
 
 def test_what_analyses_say_of_themselves_takes_nothing_heavy():

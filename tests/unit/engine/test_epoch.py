@@ -6,13 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.engine.epoch import (
-    EVENTS_PER_DISC,
-    FEWEST_PER_DISC,
-    MOST_CROSSINGS,
-    encounters_per_length,
-    epoch_length,
-)
+from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_PER_DISC, MOST_CROSSINGS, encounters_per_length, epoch_length
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.state import Gas
 

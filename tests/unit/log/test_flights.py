@@ -218,6 +218,6 @@ def test_what_a_log_does_not_have_is_one_line(log, arguments, message):
 def test_a_log_without_events_has_no_flights(tmp_path):
     with (
         make(tmp_path / "run.h5", "log.events=false", "log.snapshot_every=0.5", "run.events=", "run.until=3") as log,
-        pytest.raises(LogError, match=r"no flights without events \(made with log.events = false\)"),
+        pytest.raises(LogError, match=r"has no events \(made with log.events = false\)"),
     ):
         log.flights()

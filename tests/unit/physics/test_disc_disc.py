@@ -65,10 +65,7 @@ def test_touching_discs_whose_collision_changes_nothing_are_done():
 
 @pytest.mark.parametrize(
     ("masses", "velocities", "expected"),
-    [
-        ((1, 1), ((1, 0.25), (-2, 0.5)), [[-2, 0.25], [1, 0.5]]),
-        ((3, 1), ((1, 0), (0, 0)), [[0.5, 0], [1.5, 0]]),
-    ],
+    [((1, 1), ((1, 0.25), (-2, 0.5)), [[-2, 0.25], [1, 0.5]]), ((3, 1), ((1, 0), (0, 0)), [[0.5, 0], [1.5, 0]])],
 )
 def test_collisions_along_x(masses, velocities, expected):
     """Equal discs exchange their normal velocities."""

@@ -14,14 +14,7 @@ from idealgas.jit import aligned
 from idealgas.physics.exact_sum import BATCH, stored, values
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.stress import (
-    COLLISIONAL,
-    KINETIC,
-    complete_flights,
-    copy_of,
-    flush,
-    kinetic_flow,
-)
+from idealgas.physics.stress import COLLISIONAL, KINETIC, complete_flights, copy_of, flush, kinetic_flow
 
 
 def flow_of(faces=4, rough=False):

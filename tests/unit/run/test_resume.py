@@ -149,10 +149,7 @@ def test_a_scene_that_is_none_is_one_line(finished, tmp_path):
     [
         (["run.events=4e3"], "already at 5,000 events; 4,000 lies before that"),
         (["run.until=0.001"], r"already at [\d.]+ units of time; 0.001 lies before that"),
-        (
-            ["run.collisions_per_disc=0.1", "run.events="],
-            r"already at [\d.]+ collisions per disc; 0.1 lies before",
-        ),
+        (["run.collisions_per_disc=0.1", "run.events="], r"already at [\d.]+ collisions per disc; 0.1 lies before"),
         (["gravity.acceleration=[0, -1]"], r"with another \[gravity\]: only until, events, .* may change"),
         (["species.gas.radius=0.01", "run.events=9000"], r"with another \[species\]"),
         (["run.method=brute_force"], r"with another \[run\]"),

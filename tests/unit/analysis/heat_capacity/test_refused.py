@@ -18,9 +18,9 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston(tmp_path):
         measured = heat_capacity(log, start=20.0)
     refused = HeatCapacityAnalysis.combine([measured]).refused
     assert "independent samples of the energy are too few (128 needed)" in refused["fluctuations of the kinetic energy"]
-    assert "it takes" not in refused["fluctuations of the kinetic energy"]
+    assert "it requires" not in refused["fluctuations of the kinetic energy"]
     assert refused["γ"].startswith("no heat capacity of the gas with the piston was measured")
-    assert refused["Var(E)/T²"].startswith("it takes thermal walls")
+    assert refused["Var(E)/T²"].startswith("it requires thermal walls")
 
 
 def test_few_samples_of_the_energy_name_the_key_that_stores_more(tmp_path):

@@ -194,9 +194,7 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
     assert differences(one, two) == []
     calls = []
     simulate(
-        parse_scene(GAS, overrides=["run.threads=3"]),
-        cut_off,
-        interrupted=lambda: calls.append(1) or len(calls) > 9,
+        parse_scene(GAS, overrides=["run.threads=3"]), cut_off, interrupted=lambda: calls.append(1) or len(calls) > 9
     )
     assert resume(cut_off, ["run.threads=2"]).shared_slices > 0
     assert differences(one, cut_off) == []

@@ -1,0 +1,179 @@
+"""Heat capacity from several logs: the slope dE/dT of each gas, means of the routes of single logs, and γ."""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import numpy as np
+
+from idealgas.analysis.core.fields import OPTIONAL, Key
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, mean_theory
+
+CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
+
+ROUTES = {
+    "dE/dT": "it requires logs of one gas at several energies",
+    "E/T": "it requires the pressure on the walls of a closed box, in a log with events",
+    "Var(E)/T²": "it requires thermal walls of one temperature, or a thermostat",
+    "fluctuations of the kinetic energy": "it requires an isolated gas with spin, gravity or a piston",
+    "γ": "it requires a piston with a mass",
+}
+"""Reason why a route does not apply to a set of logs, by the name of the route."""
+
+
+@dataclass(frozen=True)
+class Measured(Result):
+    """Measurements of one log that concern the heat capacity.
+
+    The temperature must be measured independently of the energy: by the pressure on the walls where all energy is
+    kinetic, as the temperature of thermal walls or of a thermostat in a heat bath, and by the kinetic energy where that
+    is a part of the energy.
+
+    Attributes:
+        path: of the log.
+        kind: kind of gas, such as a closed box or a heat bath.
+        number: of discs.
+        energy: mean energy per disc from an arbitrary zero, energy.
+        temperature: energy (k_B = 1).
+        thermometer: how the temperature was measured.
+        routes: heat capacity per disc (k_B = 1) by the name of each route.
+        refused: reason why the log gives no value by a route that applies to it, by the name of the route.
+        theory, theory_error: heat capacity per disc by theory, and its error.
+        excess: C_P - C_A per disc by theory, None without a piston.
+    """
+
+    path: str
+    kind: str
+    number: int
+    energy: Annotated[Estimate, Key("energy_per_disc")]
+    temperature: Estimate
+    thermometer: str
+    routes: dict[str, Estimate]
+    theory: float | None
+    excess: float | None
+    theory_error: float = 0.0
+    refused: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Route:
+    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one way of measuring.
+
+    name: of the route. kind: of gas. gas: its number of discs, box and effects; None if the logs hold one gas of this
+    kind.
+    """
+
+    name: Annotated[str, Key("route")]
+    kind: str
+    value: Estimate
+    gas: Annotated[str | None, OPTIONAL] = None
+
+
+@dataclass(frozen=True)
+class HeatCapacity(Result):
+    """Heat capacity by every route that a set of logs allows.
+
+    routes: heat capacities, one for each route and kind of gas. refused: reason why a route does not apply, by the name
+    of the route. logs: what was measured in each log.
+    """
+
+    routes: tuple[Route, ...]
+    refused: dict[str, str]
+    logs: tuple[Measured, ...]
+
+
+Groups = dict[tuple[str, str], list[Measured]]
+"""Logs by kind of gas and gas in words; the words are empty where all logs of the kind are of one gas."""
+
+
+def combine_logs(logs: Sequence[Measured]) -> HeatCapacity:
+    """Combine the logs of each gas: slopes dE/dT, means of the routes of single logs, and γ."""
+    groups = _groups(logs)
+    routes = [route for (kind, gas), members in groups.items() for route in _of_gas(kind, gas, members)]
+    routes += _gammas(tuple(routes), groups)
+    used = {route.name for route in routes}
+    reasons = ROUTES | {name: why for log in logs for name, why in log.refused.items()}
+    if any(log.excess is not None for log in logs):
+        reasons["γ"] = "no heat capacity of the gas with the piston was measured, or theory has none"
+    refused = {name: why for name, why in reasons.items() if name not in used}
+    return HeatCapacity(tuple(routes), refused, tuple(logs), caveats=tuple(_apart(groups)))
+
+
+def _groups(logs: Sequence[Measured]) -> Groups:
+    by_digest: dict[tuple[str, str], list[Measured]] = {}
+    for log in logs:
+        by_digest.setdefault((log.kind, log.origin.gas if log.origin else ""), []).append(log)
+    kinds = Counter(kind for kind, _ in by_digest)
+    groups: Groups = {}
+    for (kind, _), members in by_digest.items():
+        origin = members[0].origin
+        words = origin.words if origin and kinds[kind] > 1 else ""
+        if (kind, words) in groups and origin:
+            words = f"{words}, as in {origin.path}"  # gases that differ in what the words leave out
+        groups[kind, words] = members
+    return groups
+
+
+def _apart(groups: Groups) -> Iterator[str]:
+    """Sentence for each kind of gas of which there is more than one gas."""
+    for kind in dict.fromkeys(kind for kind, _ in groups):
+        if len(gases := [gas for other, gas in groups if other == kind]) > 1:
+            words = "; ".join(gases)
+            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: {words}."
+
+
+def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:
+    if (slope := _slope(members)) is not None:
+        yield Route("dE/dT", kind, slope, gas or None)
+    for name in dict.fromkeys(name for m in members for name in m.routes):
+        values = [m.routes[name] for m in members if name in m.routes]
+        yield Route(name, kind, mean_of_replicates(values), gas or None)
+
+
+def _slope(members: Sequence[Measured]) -> Estimate | None:
+    """Slope dE/dT per disc by weighted least squares with errors of E or of T; None if all are the same."""
+    energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
+    if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
+        return None
+    errors = np.array([(m.energy.standard_error, m.temperature.standard_error) for m in members])
+    guess = np.polyfit(t, energy, 1)[0]
+    weight = (errors[:, 0] ** 2 + (guess * errors[:, 1]) ** 2) ** -1.0
+    if not np.isfinite(weight).all():
+        return None
+    given, measured = (t, energy) if errors[:, 1].max() == 0 else (energy, t)
+    middle = (weight * given).sum() / weight.sum()
+    spread = (weight * (given - middle) ** 2).sum()
+    slope = (weight * (given - middle) * measured).sum() / spread
+    if given is energy:
+        slope = 1 / slope
+        error = spread**-0.5 * slope**2 / abs(guess)
+    else:
+        error = spread**-0.5
+    other = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
+    samples = sum(min(m.energy.independent_samples, m.temperature.independent_samples) for m in members)
+    theory_error = sum(m.theory_error for m in members) / len(members)
+    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]), theory_error)
+
+
+def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
+    """Ratio γ = C_P/C_A: C_A is measured in a log without the piston if there is one, else C_P - C_A is from theory."""
+    for route in routes:
+        excess = next((m.excess for m in groups[route.kind, route.gas or ""] if m.excess), None)
+        c_p = route.value
+        if excess is None or c_p.theory is None:
+            continue
+        without_piston = (ROUGH, f"{BATH}, {ROUGH}") if ROUGH in route.kind else (CLOSED, BATH)
+        at_area = [r.value for r in routes if r.kind in without_piston]
+        expected = c_p.theory / (c_p.theory - excess)
+        if at_area:
+            c_a = min(at_area, key=lambda value: value.standard_error)
+            value = c_p.value / c_a.value
+            error = value * math.hypot(c_p.standard_error / c_p.value, c_a.standard_error / c_a.value)
+        else:
+            value = c_p.value / (c_p.value - excess)
+            error = excess * c_p.standard_error / (c_p.value - excess) ** 2
+        gamma = Estimate(value, error, c_p.independent_samples, expected)
+        yield Route("γ", f"{route.kind}: {route.name}", gamma, route.gas)
