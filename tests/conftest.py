@@ -4,11 +4,15 @@ Hypothesis sets no deadlines: the first example of a test may have to compile.
 """
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 from hypothesis import settings
+
+from idealgas.jit import EntryPoint
 
 settings.register_profile("no-deadline", deadline=None)
 settings.load_profile("no-deadline")
@@ -45,6 +49,21 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         if name in metafunc.fixturenames:
             paths = sorted(folder.glob("*.toml"))
             metafunc.parametrize(name, paths, ids=[path.stem for path in paths])
+
+
+@pytest.fixture
+def uncompiled(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The engine runs in Python, with the same bits: for scenes of so few events that it takes longer to compile it."""
+    compiled = EntryPoint.__call__
+
+    def call(self: EntryPoint, *arguments: Any) -> Any:
+        if self.py_func.__module__.startswith("idealgas.engine"):
+            return self.py_func(*arguments)
+        return compiled(self, *arguments)
+
+    monkeypatch.setattr(EntryPoint, "__call__", call)
+    with np.errstate(all="ignore"):
+        yield
 
 
 @pytest.hookimpl(optionalhook=True)

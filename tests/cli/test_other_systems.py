@@ -107,9 +107,9 @@ def test_run_kill_resume_info_report(tmp_path, start, run):
         assert log.complete
         assert log.summary["events"] == events + 1000
     assert "complete" in run("info", "gas.h5")
-    run("resume", "gas.h5", "--events", events + 2000)
-    run("report", "gas.h5", "-o", "gas.html")
     run("run", "gas.toml", "-o", "gas.h5", "--force", "--set", "run.until=", "--set", "run.events=1000")
+    run("resume", "gas.h5", "--events", 2000)
+    run("report", "gas.h5", "-o", "gas.html")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["gas.h5", "gas.html", "gas.toml", "python"]
 
 

@@ -50,6 +50,7 @@ log.pressure = true
 """
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_hits_by_hand(tmp_path):
     """Of equal masses, velocities are exchanged: the piston takes on 2 at t = 3/4, meets the other disc at t = 5/3."""
     simulate(parse_scene(HANDS.format(mass=1, velocity="")), tmp_path / "run.h5")
@@ -67,6 +68,7 @@ def test_hits_by_hand(tmp_path):
         assert observed["piston_velocity"] == -1
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_it_is_reflected_at_a_side(tmp_path):
     """In an empty part of the box the piston goes on to its end and comes back."""
     alone = HANDS.format(mass=1e6, velocity=", velocity = -1").replace("events = 2", "until = 7").splitlines()

@@ -26,6 +26,7 @@ def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
     assert summary.deepest_overlap < 1e-14
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_reflection_at_45_degrees(tmp_path):
     """The centres are 2.5 apart along (1, 1): a disc that comes along x leaves along y."""
     place = 5 - 2.5 / math.sqrt(2)

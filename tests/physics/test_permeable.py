@@ -41,6 +41,7 @@ def rows_of(tmp_path, text):
 DOOR = "wall = [{ from = [5, 0], to = [5, 10], permeable_from = 'left' }]"
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_disc_passes_once(tmp_path):
     """From x = 2 at speed 1 with radius 0.5: to the right side, and back and forth between it and the door."""
     disc = "disc = [{ position = [2, 5], velocity = [1, 0], radius = 0.5 }]"
@@ -50,6 +51,7 @@ def test_a_disc_passes_once(tmp_path):
     assert rows.partner.tolist() == [-2, -5, -2, -5]
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_disc_that_is_hit_back_in_the_middle_stays(tmp_path):
     """It starts in the wall, its centre 0.25 beyond, is hit by a disc from the right, and bounces at x = 5."""
     discs = (
@@ -62,6 +64,7 @@ def test_a_disc_that_is_hit_back_in_the_middle_stays(tmp_path):
     assert rows.velocity[-1].tolist() == [1.0, 0.0]
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_gap_narrower_than_a_disc_keeps_it(tmp_path):
     """The door is 0.75 from the right side: the centre of the disc goes between them, from 9.25 to 9.5."""
     text = f"box.size = [10, 10]\n{DOOR.replace('[5,', '[9.25,')}\nrun.events = 5\n"

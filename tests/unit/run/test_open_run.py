@@ -114,6 +114,7 @@ def test_a_lost_program_leaves_a_log_that_goes_on_after_the_last_change(tmp_path
         assert log.end_time == 12
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_what_cannot_be_steered_is_one_line(tmp_path):
     with open_run(parse_scene(BOX, overrides=["steering="]), tmp_path / "plain.h5") as run:
         run.advance(until=1)
@@ -138,6 +139,7 @@ def test_what_cannot_be_steered_is_one_line(tmp_path):
             run.reverse()
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_closed_log_takes_nothing_more(tmp_path):
     with open_run(parse_scene(BOX), tmp_path / "run.h5") as run:
         run.advance(until=1)
@@ -184,6 +186,7 @@ UNCHANGED = (
 )
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_values_changed_by_the_program_as_by_the_scene(tmp_path):
     simulate(load_scene(STEPS, ["steering={}"]), tmp_path / "scene.h5")
     with open_run(load_scene(STEPS, UNCHANGED), tmp_path / "program.h5") as run:
@@ -199,6 +202,7 @@ def test_values_changed_by_the_program_as_by_the_scene(tmp_path):
         assert abs(other.summary["energy_drift"]) < 1e-12
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize(
     ("setting", "wrong"),
     [

@@ -38,6 +38,7 @@ ROUND = "[[wall]]\nfrom = [1, 5]\nto = [1, 5]\nvia = [9, 5]\n"
 BUMPER = "[[disc]]\nposition = [8, 5]\nradius = 0.5\nfixed = true\n"
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize(("obstacle", "place", "time"), [(ROUND, [5, 5], 3.5), (BUMPER, [2, 5], 5.0)])
 def test_before_gravity_begins_round_walls_and_fixed_discs_are_there(tmp_path, obstacle, place, time):
     gravity = "gravity.acceleration = [[0, [0, 0]], [20, [0, -1]]]\n"
@@ -73,6 +74,7 @@ def test_the_velocities_have_the_temperature_of_the_time(tmp_path):
         assert abs(some.mean() / temperature - 1) < 4 / math.sqrt(len(some))
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_side_reflects_where_its_step_says_so(tmp_path):
     """To and fro over 9: it meets the left side at 4, 22 and 40, and is emitted only by the second."""
     side = 'box = { size = [10, 2], left = { thermal = [[0, "reflecting"], [20, 1e-8], [23, "reflecting"]] }}\n'
@@ -84,6 +86,7 @@ def test_a_side_reflects_where_its_step_says_so(tmp_path):
     assert 0 < velocity[2, 0] < 1e-2
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_piston_falls_on_the_parabolas_of_its_pressures(tmp_path):
     """X = 9 - t²/4 up to 2, then 8 - s - s²/2 up to 3, then 6.5 - 2 s - s²/8: a = -P L/m is -1/2, -1, -1/4."""
     piston = "[piston]\nside = 'top'\nposition = 9\nmass = 4\npressure = [[0, 1], [2, 2], [3, 0.5]]\n"
@@ -96,6 +99,7 @@ def test_a_piston_falls_on_the_parabolas_of_its_pressures(tmp_path):
     assert summary.energy_drift == 0
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_disc_falls_on_the_parabolas_of_its_gravities(tmp_path):
     """Up at 1 from y = 2: 4 at t = 2, then y = 4 + s - s²/2 to 4 at t = 4, where v = -1 and g = (1/2, 0) takes over."""
     gravity = "gravity = { acceleration = [[0, [0, 0]], [2, [0, -1]], [4, [0.5, 0]]] }\nbox.size = [20, 8]\n"
@@ -121,6 +125,7 @@ def test_a_disc_falls_on_the_parabolas_of_its_gravities(tmp_path):
     assert summary.energy_drift == 0
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_gate_opens_and_closes_twice(tmp_path):
     gate = "[[wall]]\nfrom = [5, 0]\nto = [5, 2]\nopens_at = [2, 20]\ncloses_at = [6, 30]\n"
     scene = "[box]\nsize = [10, 2]\n" + gate + DISC.format([2, 1], [1, 0]) + "[run]\nuntil = 35\n"

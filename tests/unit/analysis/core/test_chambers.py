@@ -5,6 +5,8 @@ import pytest
 from idealgas.analysis.core.chambers import Chambers
 from idealgas.columns import SIDES
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 GAS = """
 scene.seed = 3
 box.size = [8, 6]
