@@ -22,7 +22,19 @@ if TYPE_CHECKING:
     from idealgas.sweep.run import Progress
 
 
-@click.command(epilog="Example: idealgas sweep phi.toml -o phi --workers 2")
+EXAMPLE = """\b
+A sweep of scene gas.toml, temperatures.toml:
+  [sweep]
+  scene = "gas.toml"
+  analyses = ["pressure"]
+  [[axis]]
+  key = "species.gas.temperature"
+  values = [0.5, 1, 2, 4]
+
+Example: idealgas sweep temperatures.toml -o temperatures --plot pressure.png"""
+
+
+@click.command(epilog=EXAMPLE)
 @click.argument("paths", type=FILE, metavar="SWEEP.toml...", nargs=-1)
 @click.option(
     "-o", "--output", type=FILE, metavar="DIR",

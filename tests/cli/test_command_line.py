@@ -221,7 +221,7 @@ def test_help_of_a_command():
 def examples():
     """All examples that the program gives, as words."""
     of_commands = (main.get_command(None, name).epilog for name in main.list_commands(click.Context(main)))
-    texts = [*EXAMPLES.values(), *(text.removeprefix("Example: ") for text in of_commands)]
+    texts = [*EXAMPLES.values(), *(text.rpartition("Example: ")[2] for text in of_commands)]
     return [shlex.split(text) for text in texts]
 
 

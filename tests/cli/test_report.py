@@ -93,13 +93,12 @@ def test_nothing_is_cut_off_or_wider_than_its_column(sized, name, width):
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [360, 800, 1600])
 def test_everyone_can_read_it(sized, width, scheme):
-    """Nothing serious by the rules of axe-core, contrast of at least 4.5:1 among them."""
+    """Nothing to mend by the rules of axe-core, contrast of at least 4.5:1 among them."""
     browser = sized("piston", width, scheme)
     browser.execute_script(rules_of_axe())
     found = browser.execute_async_script("""
         const done = arguments[0];
         axe.run({ resultTypes: ["violations"] }).then(({ violations }) => done(violations
-            .filter(rule => ["serious", "critical"].includes(rule.impact))
             .map(rule => [rule.id, rule.nodes.length, rule.nodes[0].html])))
     """)
     assert found == []

@@ -7,7 +7,7 @@ import pytest
 from helpers.log_compare import same_by_brute_force_and_resumed
 from helpers.support import ROOT
 
-from idealgas import load_scene, open_log, parse_scene, simulate
+from idealgas import evolution, load_scene, open_log, parse_scene, simulate
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import WallImpulses
 from idealgas.columns import Kind
@@ -83,3 +83,9 @@ def test_the_stadium_is_filled(stadium):
         assert (np.hypot(np.maximum(x - 2, 0), y) < 2).all()
     x = np.abs(stadium.discs.position[:, 0] - 4.5)
     assert abs((x < 2).mean() - 16 / area) < 3 * math.sqrt(16 / area * (1 - 16 / area) / 100)
+
+
+def test_the_pressure_in_a_stadium_is_that_of_its_own_walls(stadium):
+    """No disc reaches the sides of the box: the picture has the four walls inside."""
+    found = evolution(stadium)
+    assert found.pressure.shown == ("wall 4, up", "wall 5, inside", "wall 6, down", "wall 7, inside")

@@ -182,7 +182,8 @@ def escape(text: str) -> str:
 def html_table(table: Table) -> str:
     """The rows of a table that are shown, with its title as caption; its notes are not part of it."""
     heads = [escape(head) for head in table.heads]
-    head = f"<tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>" if any(heads) else ""
+    head = "".join(f"<th>{head}</th>" if head else "<td></td>" for head in heads)
+    head = f"<tr>{head}</tr>" if any(heads) else ""
     body = "".join(f"<tr>{''.join(_cells(heads, cells))}</tr>" for cells in table.shown)
     return f"<table><caption>{escape(table.title)}</caption>{head}{body}</table>"
 

@@ -171,7 +171,7 @@ class WallGauge:
                 names = [f"{wall.name}, {name}" for name in self._looks(k, wall)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
-                if self._log.discs.solid_area > 0 and not push.any():  # it looks into a solid
+                if any(self._log.scene.solids.walls.values()) and not push.any():  # it looks into a solid
                     continue
                 found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
         return found

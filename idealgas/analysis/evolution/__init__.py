@@ -208,7 +208,8 @@ class EvolutionAnalysis(Analysis):
                 replace(one, value=share[-1], theory=one.value) for n, one in result.spread.items() if n == name
             ]
             said = agreement([(name, one) for one in expected], "equilibrium")
-            found.append(f"At the end {100 * share[-1]:.1f} % of {name} are beyond the wall; {said}.")
+            discs = name if len(result.beyond) > 1 else "the discs"
+            found.append(f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {said}.")
         return " ".join(found)
 
     @staticmethod

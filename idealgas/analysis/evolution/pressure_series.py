@@ -91,7 +91,7 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
     else:
         piston = log.scene.piston
         own = [face for face in faces if piston and log.walls[face.wall].name == piston.wall]
-        shown = [face.name for face in own or sides]
+        shown = [face.name for face in own or sides or faces]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
     lines = track = None
     if gauge.moving:

@@ -131,7 +131,7 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
     (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
     more = z.value - 1
     beside = f"{abs(100 * more):.2g} % {'above' if more > 0 else 'below'} the ideal gas"
-    if abs(more) < z.standard_error:
+    if abs(more) <= z.standard_error:
         beside = "an ideal gas within the error"
     theory = f"hard discs at φ = {result.packing_fraction:.3g}"
     return f"P A = {format_estimate(z)} N T: {beside}; {agreement([(PAIRS, z)], theory, result.no_theory)}."

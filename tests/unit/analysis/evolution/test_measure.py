@@ -10,7 +10,7 @@ import pytest
 from helpers.crafted import craft
 
 from idealgas import evolution, open_log
-from idealgas.analysis.evolution import MOST_SAMPLES
+from idealgas.analysis.evolution import MOST_SAMPLES, EvolutionAnalysis
 from idealgas.errors import UserError
 from idealgas.log.hdf5.commit import Commit
 
@@ -77,6 +77,7 @@ def test_a_gate_counts_who_is_beyond(make):
     share = found.beyond["gas"]
     assert (share[found.time <= 5] == 0).all()
     assert share[-1] == (log.state_at(20.0).position[:, 0] > 6).mean() > 0.2
+    assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in EvolutionAnalysis.summary(found)
 
 
 def test_haff(make):
