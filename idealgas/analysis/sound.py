@@ -18,7 +18,7 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.stream import sample_trajectories
+from idealgas.analysis.core.stream import trajectories
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.ensemble import composition
@@ -45,8 +45,7 @@ FEWEST_DECAYS = 100
 """Number of decay times of sound that an estimate takes."""
 
 MOST_FRAMES = 2**17
-AT_ONCE = 2**20
-"""Number of places that are in memory together."""
+"""Largest number of instants."""
 
 HYDRODYNAMIC = 0.5
 """Largest k times the mean free path, and k times the diameter, at which waves are those of a fluid."""
@@ -231,17 +230,11 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
 
 def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Progress | None) -> np.ndarray:
     """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
-    drift, discs = ensemble(log).centre_of_mass_velocity, np.arange(len(log.discs))
     found = np.empty((len(axes), len(times)), complex)
-    some = max(AT_ONCE // len(discs), 1)
-    for first in range(0, len(times), some):
-        now = times[first : first + some]
-        places, _ = sample_trajectories(log, now, discs)
+    for some, places, _ in trajectories(log, times, progress):
         for a, axis in enumerate(axes):
-            phase = (places[:, :, axis] - drift[axis] * now[:, None]) * (2 * math.pi / log.box[axis])
-            found[a, first : first + some] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
-        if progress is not None:
-            progress(min(first + some, len(times)), len(times))
+            phase = places[:, :, axis] * (2 * math.pi / log.box[axis])
+            found[a, some] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
     return found
 
 

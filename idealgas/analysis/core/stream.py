@@ -17,6 +17,7 @@ from idealgas.log.flights import NO_EVENT, FlightReader
 from idealgas.state import Gas
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
+PLACES_AT_ONCE = 2**18  # positions that are in memory together
 DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
 
 VELOCITIES = ("velocity", "end_velocity", "new_velocity")
@@ -182,3 +183,21 @@ def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple
         last = slot[flights.disc[ended]]
         places[-1, last], velocities[-1, last] = (place + flights.displacement)[ended], flights.end_velocity[ended]
     return places[back], velocities[back]
+
+
+def trajectories(
+    log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None = None
+) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+    """Positions and velocities of all discs at times (G,) in order, relative to the centre of mass, in bounded memory.
+
+    Yields the next g of the times as a slice, and unwrapped positions (length) and velocities (length/time), each
+    (g, N, 2). progress(done, total) is called with numbers of times.
+    """
+    drift, discs = centre_of_mass_velocity(log), np.arange(len(log.discs))
+    some = max(PLACES_AT_ONCE // len(discs), 1)
+    for first in range(0, len(times), some):
+        now = times[first : first + some]
+        places, velocities = sample_trajectories(log, now, discs)
+        yield slice(first, first + len(now)), places - drift * now[:, None, None], velocities - drift
+        if progress is not None:
+            progress(first + len(now), len(times))

@@ -1,6 +1,7 @@
 """Measure density and current correlations in space and time: F(k, t), S(k, ω), self part and currents.
 
-In a periodic box, for wave vectors along its sides; with the non-Gaussian parameter of displacements.
+In a periodic box, for wave vectors along its sides; with the self part of the van Hove function, G_s(r, t), and the
+non-Gaussian parameter of displacements.
 """
 
 import math
@@ -18,7 +19,8 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
-from idealgas.analysis.scattering.sums import Sums, powers_of_two, segments, wave_numbers
+from idealgas.analysis.scattering.displacements import Curve, VanHove, curve_of, non_gaussian, van_hove
+from idealgas.analysis.scattering.sums import APART, Sums, distance_edges, read, segments, wave_numbers
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.waves import sound_of_discs
 from idealgas.errors import NotApplicableError, UserError
@@ -35,14 +37,6 @@ LAGS, FEWEST_LAGS = 65, 17
 
 FEWEST_DECAYS = 100.0
 """Length of a window in decay times of sound from which on segments are independent."""
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A function of time or frequency, and its standard error, in the same unit."""
-
-    value: np.ndarray
-    error: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -76,13 +70,15 @@ class Wave:
 class Scattering(Result):
     """Density and current correlations of the gas of one log.
 
-    window: the time that was used. thermal_speed: √(T/m), length/time. waves: from the longest to the shortest. time:
-    (D,). non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
+    window: the time that was used. thermal_speed: √(T/m), length/time. waves: from the longest to the shortest.
+    van_hove: for the time in which a free disc flies 4/k, of each wave. time: (D,). non_gaussian: (D,),
+    ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
     """
 
     window: Window
     thermal_speed: float
     waves: tuple[Wave, ...]
+    van_hove: tuple[VanHove, ...]
     time: np.ndarray
     non_gaussian: Curve
 
@@ -96,7 +92,8 @@ class ScatteringAnalysis(Analysis):
     results = (Scattering,)
     sections = (
         Section(
-            "Scattering", "F(k, t), its self part beside free flight, S(k, ω), currents and non-Gaussian parameter"
+            "Scattering",
+            "F(k, t), its self part beside free flight, S(k, ω), currents, displacements and non-Gaussian parameter",
         ),
     )
     reads = "wave numbers"
@@ -119,25 +116,28 @@ class ScatteringAnalysis(Analysis):
             raise NotApplicableError(f"{log.path}: scattering requires a gas of one species in a periodic box")
         window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
         speed, side = math.sqrt(ensemble(log).temperature / float(log.discs.mass[0])), max(log.box)
-        waves, displacements = [], []
+        waves, displaced, moments = [], [], []
         numbers = (2 * math.pi / side * wave_numbers(log)).tolist()
         for done, k in enumerate(numbers, 1):
             lags = min(LAGS, int(window.duration / 8 / (STEP / (k * speed))) + 1)
             if lags >= FEWEST_LAGS:
-                sums = list(segments(log, window, k, STEP / (k * speed), lags))
-                waves.append(_wave(log, k, STEP / (k * speed) * np.arange(lags), sums, speed))
-                displacements.append((waves[-1].time, np.array([one.displacements for one in sums])))
+                time = STEP / (k * speed) * np.arange(lags)
+                series = read(log, window, k, float(time[1]), lags)
+                sums = list(segments(log, k, lags, series))
+                waves.append(_wave(log, k, time, sums, speed))
+                displaced.append(van_hove(float(time[APART]), distance_edges(series), sums))
+                moments.append((time, np.array([one.moments for one in sums])))
             if progress is not None:
                 progress(done, len(numbers))
         if not waves:
             least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
             raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
         caveats = (*narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
-        return Scattering(window, speed, tuple(waves), *_non_gaussian(displacements), caveats=caveats)
+        return Scattering(window, speed, tuple(waves), tuple(displaced), *non_gaussian(moments), caveats=caveats)
 
     @staticmethod
     def tables(result: Scattering) -> list[Table]:
-        """Tables of S(k) and the currents, of the correlations of each wave, and of the non-Gaussian parameter."""
+        """Tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
         rows = [
             (f"{name}, {one.name}", found)
             for one in result.waves
@@ -154,6 +154,9 @@ class ScatteringAnalysis(Analysis):
             curves = {"F": one.density, "F_s": one.self_part, "along": one.longitudinal, "across": one.transverse}
             tables.append(_series(f"Correlations, {one.name}", {"t": one.time}, curves))
             tables.append(_series(f"Spectrum, {one.name}", {"ω": one.frequency}, {"S(k, ω)": one.spectrum}))
+        for own in result.van_hove:
+            columns = {"r": own.distance, "normal": own.gaussian}
+            tables.append(_series(f"Displacements, G_s(r, {own.time:.4g})", columns, {"G_s": own.density}))
         title = "Non-Gaussian parameter of displacements (no unit)"
         return [*tables, _series(title, {"t": result.time}, {"α₂": result.non_gaussian})]
 
@@ -174,10 +177,11 @@ class ScatteringAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Scattering) -> "Figure":
-        """Picture of F, F_s, S(k, ω), both currents and the non-Gaussian parameter; theory of free flight dashed."""
+        """Picture of F, F_s, S(k, ω), both currents, G_s and the non-Gaussian parameter; free flight dashed."""
         from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
 
-        figure, (density, own, spectrum, along, across, gaussian) = panels(3, 2)
+        figure, (density, own, spectrum, along, across, gaussian, displaced, rest) = panels(4, 2)
+        rest.set_axis_off()
         for index, one in enumerate(result.waves):
             colour, line, _ = curve_style(index)
             rate, square = one.k * result.thermal_speed, result.thermal_speed**2
@@ -196,6 +200,15 @@ class ScatteringAnalysis(Analysis):
         y, error = result.non_gaussian.value, result.non_gaussian.error
         gaussian.errorbar(result.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
         gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
+        for index, moved in enumerate(result.van_hove):
+            colour, line, _ = curve_style(index)
+            x, unit = moved.distance / math.sqrt(moved.square), 1 / moved.square
+            y, error = moved.density.value / unit, moved.density.error / unit
+            displaced.plot(x, y, line, color=colour, label=f"t = {moved.time:.4g}")
+            displaced.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
+        displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
+        displaced.legend()
         density.set_ylabel("F(k, t) (no unit)")
         own.set_ylabel("self part F_s(k, t) (no unit)")
         spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
@@ -210,7 +223,7 @@ class ScatteringAnalysis(Analysis):
 
 def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> Wave:
     """Wave from the sums of all segments; speed: √(T/m)."""
-    density, self_part, along, across = (np.array(one) for one in list(zip(*sums, strict=True))[:4])
+    density, self_part, along, across, *_ = (np.array(one) for one in zip(*sums, strict=True))
     taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
     frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
     spectrum = density @ (taper[:, None] * np.cos(time[:, None] * frequency))
@@ -219,12 +232,12 @@ def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) 
         name=f"k = {k:.4g}",
         k=k,
         time=time,
-        density=_curve(density),
-        self_part=_curve(self_part),
-        longitudinal=_curve(along),
-        transverse=_curve(across),
+        density=curve_of(density),
+        self_part=curve_of(self_part),
+        longitudinal=curve_of(along),
+        transverse=curve_of(across),
         frequency=frequency,
-        spectrum=_curve(spectrum),
+        spectrum=curve_of(spectrum),
         structure=_first(density, 0),
         longitudinal_square=_first(along, 0, current),
         transverse_square=_first(across, 0, current),
@@ -240,14 +253,9 @@ def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve
     return time_series(title, columns)
 
 
-def _curve(parts: np.ndarray) -> Curve:
-    """Mean of the segments (S, L) and its standard error."""
-    return Curve(parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts)))
-
-
 def _first(parts: np.ndarray, lag: int, theory: float | None = None, theory_error: float = 0.0) -> Estimate:
     """Estimate of a correlation at one lag, from segments (S, L)."""
-    curve = _curve(parts)
+    curve = curve_of(parts)
     return Estimate(float(curve.value[lag]), float(curve.error[lag]), float(len(parts)), theory, theory_error)
 
 
@@ -267,23 +275,6 @@ def _free_flight(log: Log, path: float, k: float) -> tuple[float | None, float]:
     half = path**2 * temperature / mass * (1 - 1 / len(gas)) / 2
     value = math.exp(-half * 2 * (collisions + math.expm1(-collisions)) / collisions**2)
     return (value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))) if collisions < 1 else (None, 0.0)
-
-
-def _non_gaussian(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, Curve]:
-    """Times and non-Gaussian parameter from times (L,) and moments (S, P, 2) of each wave number.
-
-    Long times are from the long waves, short ones from the short waves.
-    """
-    found: list[tuple[float, float, float]] = []
-    for time, moments in reversed(parts):
-        for lag, (square, fourth) in zip(powers_of_two(len(time)), np.moveaxis(moments, 0, 2), strict=True):
-            if not found or time[lag] > found[-1][0] * 1.01:
-                second = square.mean()
-                change = (fourth - fourth.mean()) - 2 * fourth.mean() / second * (square - second)
-                error = float(change.std(ddof=1)) / math.sqrt(len(change)) / (2 * second**2)
-                found.append((float(time[lag]), float(fourth.mean() / (2 * second**2) - 1), float(error)))
-    times, values, errors = np.array(found).T
-    return times, Curve(values, errors)
 
 
 def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:

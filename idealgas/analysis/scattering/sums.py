@@ -6,32 +6,58 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.stream import sample_trajectories
+from idealgas.analysis.core.stream import trajectories
 from idealgas.log import Log
 
 WAVES = 4
 """Number of wave numbers, evenly spaced in their logarithm from that of the box to that of a diameter."""
 
-STARTS = 32
-"""Largest number of instants in a segment from which lags count."""
+STARTS = 64
+"""Number of instants in a segment from which lags count, unless segments with all of them hold few more instants."""
 
 SEGMENTS = 32
 """Parts of the window; the spread over them gives the error bars."""
 
-MOST_IN_MEMORY = 2**20
-"""Number of positions that are in memory together."""
+MOST_PLACES = 2**20
+"""Number of positions that are kept at all instants; of more discs a part gives the self part and displacements."""
+
+APART = 16
+"""Lag after which distances are counted, in steps."""
+
+BINS, FARTHEST = 30, 3.0
+"""Number of bins of distances, and their end in root-mean-square displacements."""
 
 
 class Sums(NamedTuple):
-    """Correlations (L,) in one segment, and mean Δr² and Δr⁴ after the lags of `powers_of_two` (P, 2)."""
+    """Correlations (L,) in one segment, and displacements.
+
+    moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`. distances: (BINS,), shares of the discs that
+    are at the distances between `distance_edges` from their place APART steps before.
+    """
 
     density: np.ndarray
     self_part: np.ndarray
     longitudinal: np.ndarray
     transverse: np.ndarray
-    displacements: np.ndarray
+    moments: np.ndarray
+    distances: np.ndarray
+
+
+class Series(NamedTuple):
+    """A wave at G instants, in units of the time between two: amplitudes, and places of some discs.
+
+    at: (G,), whole numbers from the start of the window on. starts: number of starts of lags in each segment. begins:
+    (SEGMENTS,), indices of their first instants. axes: A axes along which the wave runs. waves: (3, A, G), Σ exp(-ikx)
+    and the currents along and across k. places: (2, G, M), x and y, unwrapped, length.
+    """
+
+    at: np.ndarray
+    starts: int
+    begins: np.ndarray
+    axes: list[int]
+    waves: np.ndarray
+    places: np.ndarray
 
 
 def wave_numbers(log: Log) -> np.ndarray:
@@ -45,36 +71,57 @@ def powers_of_two(lags: int) -> np.ndarray:
     return 2 ** np.arange((lags - 1).bit_length())
 
 
-def segments(log: Log, window: Window, k: float, step: float, lags: int) -> Iterator[Sums]:
-    """Sums of each segment of a window, for waves of the wave number k along the longest sides."""
-    room = window.duration - (lags - 1) * step
-    starts = min(max(int(room / SEGMENTS / step), 1), STARTS)
+def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
+    """Read a wave of the wave number k along the longest sides, each instant once.
+
+    Segments have all instants of a short window as starts, and STARTS each, with gaps between them, of a long one.
+    """
+    apart = int((window.duration / step - lags + 2) / SEGMENTS)
+    starts = apart if apart <= STARTS + lags else STARTS
+    begins = apart * np.arange(SEGMENTS)
+    at = np.unique(begins[:, None] + np.arange(starts + lags - 1))
     axes = [axis for axis in (0, 1) if log.box[axis] == max(log.box)]
-    for begin in window.start + room / SEGMENTS * np.arange(SEGMENTS):
-        times = np.minimum(begin + step * np.arange(starts + lags - 1), window.end)
-        yield _segment(log, times, axes, k, lags)
+    chosen = np.arange(len(log.discs))[:: -(-len(log.discs) * len(at) // MOST_PLACES)]
+    waves, places = np.empty((3, len(axes), len(at)), complex), np.empty((2, len(at), len(chosen)))
+    for part in np.split(np.arange(len(at)), np.flatnonzero(np.diff(at) > 1) + 1):
+        for some, place, velocity in trajectories(log, np.minimum(window.start + step * at[part], window.end)):
+            now = part[some]
+            for a, axis in enumerate(axes):
+                phase, along, across = k * place[:, :, axis], velocity[:, :, axis], velocity[:, :, 1 - axis]
+                cos, sin = np.cos(phase), np.sin(phase)
+                waves[0, a, now] = cos.sum(axis=1) - 1j * sin.sum(axis=1)
+                waves[1, a, now] = (along * cos).sum(axis=1) - 1j * (along * sin).sum(axis=1)
+                waves[2, a, now] = (across * cos).sum(axis=1) - 1j * (across * sin).sum(axis=1)
+            places[:, now] = np.moveaxis(place[:, chosen], 2, 0)
+    return Series(at, starts, at.searchsorted(begins), axes, waves, places)
 
 
-def _segment(log: Log, times: np.ndarray, axes: list[int], k: float, lags: int) -> Sums:
-    """Sums over all starts in evenly spaced times (G,)."""
-    number, starts, drift = len(log.discs), len(times) - lags + 1, ensemble(log).centre_of_mass_velocity
-    density, along, across = np.zeros((3, len(axes), len(times)), complex)
-    self_part, powers = np.zeros(lags), powers_of_two(lags)
-    displacements = np.zeros((len(powers), 2))
-    for discs in np.array_split(np.arange(number), -(-number * len(times) // MOST_IN_MEMORY)):
-        places, velocities = sample_trajectories(log, times, discs)
-        places, velocities = places - drift * times[:, None, None], velocities - drift
-        for a, axis in enumerate(axes):
-            phases = np.exp(-1j * k * places[:, :, axis])
-            density[a] += phases.sum(axis=1)
-            along[a] += (velocities[:, :, axis] * phases).sum(axis=1)
-            across[a] += (velocities[:, :, 1 - axis] * phases).sum(axis=1)
-            self_part += correlation(phases, lags)
-        for p, lag in enumerate(powers):
-            square = ((places[lag : lag + starts] - places[:starts]) ** 2).sum(axis=2)
-            displacements[p] += square.sum(), (square**2).sum()
-    rho, j_along, j_across = (correlation(one.T, lags) / (len(axes) * number) for one in (density, along, across))
-    return Sums(rho, self_part / (len(axes) * number), j_along, j_across, displacements / (starts * number))
+def segments(log: Log, k: float, lags: int, series: Series) -> Iterator[Sums]:
+    """Sums of each segment of a wave."""
+    starts, edges, number = series.starts, distance_edges(series), len(series.axes)
+    phases = [np.exp(-1j * k * series.places[axis]) for axis in series.axes]
+    for first in series.begins:
+        some = slice(first, first + starts + lags - 1)
+        places = series.places[:, some]
+        waves = (correlation(one.T, lags) / (number * len(log.discs)) for one in series.waves[:, :, some])
+        density, longitudinal, transverse = waves
+        own = np.sum([correlation(one[some], lags) for one in phases], axis=0) / (number * places.shape[2])
+        squares = [squares_after(places, lag, starts) for lag in powers_of_two(lags)]
+        moments = np.array([(square.mean(), (square * square).mean()) for square in squares])
+        found = np.histogram(squares_after(places, APART, starts), edges**2)[0] / squares[0].size
+        yield Sums(density, own, longitudinal, transverse, moments, found)
+
+
+def squares_after(places: np.ndarray, lag: int, starts: int) -> np.ndarray:
+    """Squares (starts, M) of displacements after a number of instants, from places (2, n, M)."""
+    x, y = places[:, lag : lag + starts] - places[:, :starts]
+    return np.asarray(x * x + y * y)
+
+
+def distance_edges(series: Series) -> np.ndarray:
+    """Edges (BINS + 1,) of bins of distances, up to FARTHEST root-mean-square displacements in the first segment."""
+    square = squares_after(series.places, APART, series.starts).mean()
+    return np.linspace(0, FARTHEST * np.sqrt(square), BINS + 1)
 
 
 def correlation(series: np.ndarray, lags: int) -> np.ndarray:
