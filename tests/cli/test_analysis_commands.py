@@ -15,7 +15,7 @@ species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
 run.collisions_per_disc = 100
 """
 PLOTTED = ("temperature", "pressure", "heat-capacity", "profile", "evolution", "relaxation", "histogram")
-QUANTITIES = ("vx", "vy", "energy", "free-path", "free-time", "waiting-time")
+QUANTITIES = ("vx", "vy", "energy", "free-path", "free-time", "waiting-time", "impact-parameter", "collisions")
 COMMANDS = [("info",), *((name,) for name in PLOTTED), *(("histogram", "--quantity", name) for name in QUANTITIES)]
 NOT_LOGS = ("missing", "folder", "empty", "text", "noise", "other", "start", "half")
 

@@ -92,6 +92,7 @@ EXACT = (
     *(f"kinetic energy before, {way}" for way in ("inwards", "outwards")),
     "crossing",
     "slope of the crossing",
+    "mean impact parameter",
     *(f"⟨j²⟩ {way}, {size}" for way in ("along", "across") for size in ("long", "second", "third", "short")),
 )
 """Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""

@@ -82,6 +82,7 @@ CASES = {
         "events = false\n",
         steady=False,
     ),
+    "periodic box, collisions": Case(GAS.format(sides=PERIODIC), SHORT, estimates.counted),
     "periodic box, order": Case(GAS.format(sides=PERIODIC), SHORT, estimates.ordered),
     "periodic mixture": Case(
         f"[box]\nsize = [1, 1]\n{PERIODIC}[[species]]\nname = 'light'\ncount = 25\nradius = 0.03\ntemperature = 1\n"

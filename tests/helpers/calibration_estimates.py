@@ -228,5 +228,16 @@ def scattered(log: Log) -> Named:
             ("S(k, ω)", one.spectrum, 3),
         ):
             yield f"{title}, {name}", Estimate(float(curve.value[index]), float(curve.error[index]), PARTS)
+    for name, moved in zip(("long", "second", "third", "short"), found.van_hove, strict=True):
+        yield f"G_s, {name}", Estimate(float(moved.density.value[8]), float(moved.density.error[8]), PARTS)
     curve, late = found.non_gaussian, len(found.time) // 2
     yield "α₂", Estimate(float(curve.value[late]), float(curve.error[late]), PARTS)
+
+
+def counted(log: Log) -> Named:
+    """Impact parameters of collisions, and numbers of collisions of a disc in a time."""
+    yield "mean impact parameter", histogram(log, "impact-parameter").distributions[0].mean
+    (found,) = histogram(log, "collisions").distributions
+    yield "collisions in 10 free times", found.mean
+    for name, one in found.cumulants.items():
+        yield name.replace("_", " "), one

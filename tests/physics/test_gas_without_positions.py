@@ -72,7 +72,7 @@ def test_velocities_in_equilibrium(log, quantity):
     assert fixed.law_name == "fixed energy, D = 998"
 
 
-@pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time"])
+@pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time", "collisions"])
 def test_time_is_that_of_kinetic_theory(log, quantity):
     """Collision rate and mean free path, and the laws of free flights, which a gas without memory follows exactly."""
     (found,) = histogram(log, quantity).distributions
@@ -81,6 +81,9 @@ def test_time_is_that_of_kinetic_theory(log, quantity):
     if quantity != "waiting-time":
         assert abs(found.mean.deviation) < STANDARD_ERRORS
         assert found.mean.standard_error < 3e-3 * found.mean.value
+    for name, one in found.cumulants.items():  # a Poisson process has 1
+        assert abs(one.deviation) < STANDARD_ERRORS, name
+        assert one.theory > 1 + 4 * one.standard_error
 
 
 def test_acceptance(log):

@@ -11,7 +11,7 @@ from idealgas.log import Flights
 from idealgas.state import Gas
 
 
-class _Intervals:
+class Intervals:
     """Histogram of intervals by the block and the species in which they start, and a sample of every `stride`-th one.
 
     counts: (B, S, bins + 2), numbers of intervals below, in and above the bins. sums: (B, S), sum of the intervals, in
@@ -49,7 +49,7 @@ class _Intervals:
         self._seen += len(values)
 
 
-class FreeFlights(_Intervals):
+class FreeFlights(Intervals):
     """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
     columns = ("disc", "block", "start", "end", "kind", "velocity")
@@ -120,7 +120,7 @@ def _total_since_collision(
             total[i], since[i] = 0.0, end[k]
 
 
-class WaitingTimes(_Intervals):
+class WaitingTimes(Intervals):
     """Time between successive events of the gas, a pair collision being one event."""
 
     columns = ("disc", "block", "end", "partner")

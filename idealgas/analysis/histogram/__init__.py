@@ -1,10 +1,10 @@
 """Measure the distribution of a quantity and test it against theory.
 
 Velocities and energies are weighted with the time that discs spend at them. A waiting time is that between successive
-events of the whole gas. The Kolmogorov-Smirnov tests use independent samples.
+events of the whole gas. Impact parameters are those of collisions, and collisions are counted disc by disc in ten mean
+free times. The Kolmogorov-Smirnov tests use independent samples.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -15,28 +15,28 @@ from idealgas.analysis.core.check import FALSE_ALARM
 from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
-from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux, ratio
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
 from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates, format_estimate
-from idealgas.analysis.histogram.distribution import Distribution, distribution_of
-from idealgas.analysis.histogram.laws import (
-    FEW,
-    FINITE_NUMBER,
-    RECOLLISIONS,
-    expectation,
-    free_flight_rates,
-    velocity_laws,
+from idealgas.analysis.histogram.distribution import BINS, Distribution, distribution_of
+from idealgas.analysis.histogram.intervals import (
+    Found,
+    collision_counts,
+    free_flights,
+    impact_parameters,
+    waiting_times,
 )
+from idealgas.analysis.histogram.laws import expectation, velocity_laws
 from idealgas.analysis.histogram.samples import independent_samples
-from idealgas.analysis.theory import distributions
-from idealgas.analysis.theory.ensemble import classes, composition, ensemble_at
+from idealgas.analysis.theory.ensemble import composition, ensemble_at
 from idealgas.log import Log
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Quantity = Literal["speed", "vx", "vy", "energy", "free-path", "free-time", "waiting-time"]
+Quantity = Literal[
+    "speed", "vx", "vy", "energy", "free-path", "free-time", "waiting-time", "impact-parameter", "collisions"
+]
 QUANTITIES: dict[Quantity, str] = {
     "speed": "length/time",
     "vx": "length/time",
@@ -45,16 +45,20 @@ QUANTITIES: dict[Quantity, str] = {
     "free-path": "length",
     "free-time": "time",
     "waiting-time": "time",
+    "impact-parameter": "no unit",
+    "collisions": "no unit",
 }
 """Quantities whose distribution can be measured, with their units."""
 
-BINS = 120
+INVERSE = {"length/time": "time/length", "no unit": "no unit"}
+"""Units of densities that are not written as 1/unit."""
+
+OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, "collisions": collision_counts}
+"""Functions that measure the distribution of one quantity each."""
+
 LINES = 24  # of the histogram in characters; bins are put together
 SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
-INTERVALS = 10_000  # approximate number of intervals that are tested
 FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
-STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
-TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
 
 
 @dataclass(frozen=True)
@@ -90,13 +94,16 @@ class HistogramAnalysis(Analysis):
             ("Free paths", "free-path"),
             ("Free times", "free-time"),
             ("Waiting times between events", "waiting-time"),
+            ("Impact parameters", "impact-parameter"),
+            ("Numbers of collisions of a disc", "collisions"),
         )
     )
     options = (
         Option(
             "quantity",
             str,
-            "Quantity whose distribution is measured; free flights are those between two collisions with discs.",
+            "Quantity whose distribution is measured. Free flights are those between two collisions with discs, impact "
+            "parameters are over the sum of the radii, and collisions are those of a disc in ten mean free times.",
             default="speed",
             choices=tuple(QUANTITIES),
         ),
@@ -125,10 +132,10 @@ class HistogramAnalysis(Analysis):
             start = log.start_time
         if quantity in VELOCITY_QUANTITIES:
             window, found, no_law = _velocities(log, quantity, start, end, progress)
-        elif quantity == "waiting-time":
-            window, found, no_law = _waiting_times(log, start, end, progress)
+        elif quantity in ("free-path", "free-time"):
+            window, found, no_law = free_flights(log, quantity, start, end, progress)
         else:
-            window, found, no_law = _flights(log, quantity, start, end, progress)
+            window, found, no_law = OTHERS[quantity](log, start, end, progress)
         few = [
             f"The tests of {each.name} have {each.samples} independent samples; with fewer than {FEWEST_SAMPLES} they "
             "can hardly fail."
@@ -148,8 +155,18 @@ class HistogramAnalysis(Analysis):
                 p, samples = Number(test.p_value, ".3g"), Number(found.samples, "d")
                 tests.append((found.name, test.law_name, distance, error, p, samples, spacing))
         means = [(found.name, found.mean) for found in result.distributions]
-        notes = (describe(result.window), *([f"No law here: {result.no_law}."] if result.no_law else []))
+        notes = (
+            describe(result.window),
+            *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
+            *([f"No law here: {result.no_law}."] if result.no_law else []),
+        )
         tables = [estimates(f"Mean {result.quantity} ({result.unit})", means, notes)]
+        cumulants = [
+            (f"{found.name}: {name.replace('_', ' ')}", one)
+            for found in result.distributions
+            for name, one in found.cumulants.items()
+        ]
+        tables += [estimates("Cumulants (no unit)", cumulants)] if cumulants else []
         if tests:
             columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)")
             tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
@@ -166,7 +183,7 @@ class HistogramAnalysis(Analysis):
         """Histogram of each species in characters, with the first of its laws."""
         lines = []
         for found in result.distributions:
-            groups, widths = np.array_split(np.arange(BINS), LINES), np.diff(found.edges)
+            groups, widths = np.array_split(np.arange(len(found.density)), LINES), np.diff(found.edges)
             curves = [found.density, *(test.law.pdf(found.middles) for test in found.tests[:1])]
             measured, *law = [
                 [float(np.average(curve[group], weights=widths[group])) for group in groups] for curve in curves
@@ -195,12 +212,9 @@ class HistogramAnalysis(Analysis):
             last = np.flatnonzero(found.density >= 1e-3 * found.density.max())[-1]
             ax.set_xlim(found.edges[0], found.edges[last + 1])
             ax.set_xlabel(f"{result.quantity} ({result.unit})")
-            ax.set_ylabel(f"density ({'time/length' if result.unit == 'length/time' else f'1/{result.unit}'})")
+            ax.set_ylabel(f"density ({INVERSE.get(result.unit, f'1/{result.unit}')})")
             ax.legend()
         return figure
-
-
-Found = tuple[Window, list[Distribution], str]  # the text is why no law holds, empty if one does
 
 
 def _follows(result: Histogram, found: Distribution) -> str:
@@ -253,59 +267,3 @@ def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bo
     if confined:
         return mean_of_flux(series, np.zeros(len(series)), expected)
     return mean(series, theory=expected)
-
-
-def _flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    discs, path = classes(log.discs), quantity == "free-path"
-    temperature, rates, speed, why_not = free_flight_rates(log, discs, start, end)
-    per_disc = rates.sum(axis=1)
-    rate = discs.shares @ per_disc
-    average = speed / rate if path else 1 / rate
-    high = 10 * average
-    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
-    window = measure(log, [tally], start, end, progress)
-    last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
-    blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
-    finite = FINITE_NUMBER / len(log.discs)
-    law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
-    found = []
-    for s, name in enumerate(log.discs.species_names):
-        kinds = np.flatnonzero(discs.species == s)
-        laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
-        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more of them
-        dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
-        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
-        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
-    return window, found, why_not
-
-
-def _waiting_times(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
-    tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
-    window = measure(log, [tally], start, end, progress)
-    blocks = slice(window.first, len(tally.counts))
-    why_not = nonstationary_reason(log)
-    if log.has_positions and len(log.discs) < FEW:
-        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
-    with np.errstate(divide="ignore", invalid="ignore"):
-        law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
-    possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
-    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None, error)], why_not
-
-
-def _intervals(
-    name: str,
-    tally: FreeFlights | WaitingTimes,
-    s: int,
-    blocks: slice,
-    high: float,
-    possible: Mapping[str, distributions.Law],
-    expected: float | None,
-    law_error: float,
-) -> Distribution:
-    """Distribution of the intervals of species s in some blocks of time."""
-    counts = tally.counts[blocks, s].astype(float)
-    chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
-    average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
-    samples, edges = tally.sample[chosen], np.linspace(0, high, BINS + 1)
-    return distribution_of(name, edges, counts, average, samples, None, possible, law_error)

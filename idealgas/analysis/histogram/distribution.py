@@ -1,15 +1,18 @@
 """Distribution of one quantity in bins with their errors, and its tests against laws."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.fields import OMITTED, Key, reported
+from idealgas.analysis.core.fields import OMITTED, OPTIONAL, Key, reported
 from idealgas.analysis.core.statistics import Estimate, ks_distance, ks_p_value, ratio
 from idealgas.analysis.theory import distributions
 from idealgas.errors import UserError
+
+BINS = 120
+"""Number of bins of a quantity that is not a whole number."""
 
 FEWEST_BLOCKS = 10
 """Effective number of blocks of time with a value in a bin from which on the error of the bin is known."""
@@ -38,7 +41,8 @@ class Distribution:
     name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density, error: (bins,),
     probability density and its standard error, 1/unit; nan for a bin with values in few blocks. mean: of the quantity.
     samples: number of independent samples. correlation_time: time between the instants of independent samples; None for
-    intervals. tests: one for each law.
+    intervals. tests: one for each law. counted_in: time in which collisions are counted; None for other quantities.
+    cumulants: of the number of collisions, over its mean, by name (no unit).
     """
 
     name: str
@@ -49,6 +53,8 @@ class Distribution:
     samples: int
     correlation_time: float | None
     tests: tuple[Test, ...]
+    counted_in: Annotated[float | None, OPTIONAL] = None
+    cumulants: dict[str, Estimate] = field(default_factory=dict)
 
     @property
     def middles(self) -> np.ndarray:

@@ -235,6 +235,21 @@ class FreePathLaw(_FlightLaw):
 
 
 @dataclass(frozen=True)
+class UniformLaw:
+    """Even distribution from 0 to 1."""
+
+    mean = 0.5
+
+    def pdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability density of the values x."""
+        return np.where((np.asarray(x) >= 0) & (np.asarray(x) <= 1), 1.0, 0.0)
+
+    def cdf(self, x: np.ndarray) -> np.ndarray:
+        """Probability of a value of at most x."""
+        return np.clip(x, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
 class WaitingTimeLaw:
     """Distribution of the time between events of the whole gas: exponential if many discs collide independently.
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from idealgas.analysis.core.collision_statistics import CollisionCounts, ImpactParameters
 from idealgas.analysis.core.flights import DensityBins, Moments, VelocityHistogram
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
@@ -246,6 +247,41 @@ def test_waits(log, edges):
     assert tally.counts.sum(axis=(0, 1)).tolist() == [0, *counts]
 
 
+def test_impact_parameters(log, edges):
+    """From positions and velocities after collisions, which conserve |b|."""
+    tally = ImpactParameters((False, False), 10, stride=3, most_samples=200)
+    stream(log, edges, [tally])
+    rows = rows_of(log, edges)
+    found = []
+    for first, second in pairwise(rows):
+        if second[2] == first[1] and second[0] == first[0] and first[2] == second[1]:
+            (x, y), (vx, vy) = (np.subtract(second[k], first[k]) for k in (4, 5))
+            found.append((block_of(edges, first[0]), abs(x * vy - y * vx) / math.hypot(x, y) / math.hypot(vx, vy)))
+    counts = np.zeros_like(tally.counts)
+    for block, b in found:
+        counts[block, 0, min(int(b * 10), 9) + 1] += 1
+    assert tally.counts.tolist() == counts.tolist()
+    assert tally.sample == pytest.approx([b for _, b in found[::3][:200]], rel=1e-9)
+
+
+def test_collision_counts(log, edges):
+    time = (edges[-1] - edges[0]) / 7.5
+    tally = CollisionCounts(time, bins=4, stride=3)
+    stream(log, edges, [tally])
+    found = np.zeros((7, 14), int)
+    for when, disc, partner, *_ in rows_of(log, edges):
+        if partner >= 0 and (v := int((when - edges[0]) / time)) < 7:
+            found[v, disc] += 1
+    assert tally.begins == pytest.approx(edges[0] + time * np.arange(7))
+    for v, numbers in enumerate(found):
+        for s in range(2):
+            own = numbers[log.discs.species == s]
+            assert tally.counts[v, s].tolist() == [0, *[(own == n).sum() for n in range(4)], (own >= 4).sum()]
+            assert tally.sums[v, s].tolist() == [(own**power).sum() for power in range(4)]
+    sampled = [(found[v, disc], v, log.discs.species[disc]) for v in range(7) for disc in range(v % 3, 14, 3)]
+    assert list(zip(tally.sample, tally.sample_index, tally.sample_species, strict=True)) == sampled
+
+
 def test_rows_cut_into_chunks_make_no_difference(log, edges, monkeypatch):
     """Pairs may straddle two chunks."""
 
@@ -256,7 +292,14 @@ def test_rows_cut_into_chunks_make_no_difference(log, edges, monkeypatch):
             yield from chunks(columns, row, min(row + 7, stop))
 
     whole, parts = (
-        [Moments(), Impacts(), FreeFlights(True, np.ones(2), 5, 2, 100), WaitingTimes(np.ones(1), 5, 2, 100)]
+        [
+            Moments(),
+            Impacts(),
+            FreeFlights(True, np.ones(2), 5, 2, 100),
+            WaitingTimes(np.ones(1), 5, 2, 100),
+            CollisionCounts(0.3, 9, 2),
+            ImpactParameters((False, False), 5, 2, 100),
+        ]
         for _ in range(2)
     )
     stream(log, edges, whole)
@@ -267,6 +310,8 @@ def test_rows_cut_into_chunks_make_no_difference(log, edges, monkeypatch):
     assert np.array_equal(whole[1].collisions, parts[1].collisions)
     assert np.array_equal(whole[2].sample, parts[2].sample)
     assert np.array_equal(whole[3].counts, parts[3].counts)
+    assert np.array_equal(whole[4].counts, parts[4].counts)
+    assert np.array_equal(whole[5].sample, parts[5].sample)
 
 
 def test_progress_counts_rows(log):

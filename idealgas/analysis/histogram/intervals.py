@@ -1,0 +1,177 @@
+"""Distributions of what happens between events and in them: free flights, waiting times, collisions."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Progress
+from idealgas.analysis.core.collision_statistics import CollisionCounts, ImpactParameters
+from idealgas.analysis.core.ensemble import nonstationary_reason
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.intervals import FreeFlights, Intervals, WaitingTimes
+from idealgas.analysis.core.statistics import estimate, ratio
+from idealgas.analysis.core.stream import span
+from idealgas.analysis.histogram.distribution import BINS, Distribution, distribution_of
+from idealgas.analysis.histogram.laws import (
+    DENSEST_COUNTS,
+    FEW,
+    FINITE_NUMBER,
+    RECOLLISIONS,
+    count_errors,
+    expectation,
+    free_flight_rates,
+)
+from idealgas.analysis.theory import distributions
+from idealgas.analysis.theory.collision_counts import CollisionCountLaw
+from idealgas.analysis.theory.ensemble import classes
+from idealgas.analysis.theory.values import Theory
+from idealgas.errors import NotApplicableError
+from idealgas.log import Log
+
+INTERVALS = 10_000  # approximate number of intervals that are tested
+STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
+TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
+
+COUNTED = 10.0
+"""Time in which collisions are counted, in mean free times; in short logs it is a 64th of the log."""
+
+MOST_COUNTED = 24
+"""Number of bins of the numbers of collisions."""
+
+Found = tuple[Window, list[Distribution], str]
+"""Window, distributions, and why no law holds; this text is empty if one does."""
+
+
+def free_flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    """Distribution of the free paths or free times of each species."""
+    discs, path = classes(log.discs), quantity == "free-path"
+    temperature, rates, speed, why_not = free_flight_rates(log, discs, start, end)
+    per_disc = rates.sum(axis=1)
+    rate = discs.shares @ per_disc
+    average = speed / rate if path else 1 / rate
+    high = 10 * average
+    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
+    window = measure(log, [tally], start, end, progress)
+    last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
+    blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
+    finite = FINITE_NUMBER / len(log.discs)
+    law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
+    found = []
+    for s, name in enumerate(log.discs.species_names):
+        kinds = np.flatnonzero(discs.species == s)
+        laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
+        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more of them
+        dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
+        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
+        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
+    return window, found, why_not
+
+
+def waiting_times(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    """Distribution of the times between events of the whole gas."""
+    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
+    tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
+    window = measure(log, [tally], start, end, progress)
+    blocks = slice(window.first, len(tally.counts))
+    why_not = nonstationary_reason(log)
+    if log.has_positions and len(log.discs) < FEW:
+        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
+    possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
+    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None, error)], why_not
+
+
+def impact_parameters(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    """Distribution of |b| over the sum of the radii in collisions of all discs.
+
+    Velocities in equilibrium do not depend on positions, so that it is even, at any density.
+    """
+    if not log.has_positions:
+        raise NotApplicableError(f"{log.path}: discs without positions have no impact parameters")
+    tally = ImpactParameters(log.periodic, BINS, max(STRIDE, len(log) // 2 // INTERVALS), 2 * INTERVALS)
+    window = measure(log, [tally], start, end, progress)
+    why_not = expectation(log, start, end).why_not
+    possible = {} if why_not else {"uniform": distributions.UniformLaw()}
+    mean = None if why_not else 0.5
+    return (
+        window,
+        [_intervals("all discs", tally, 0, slice(window.first, len(tally.counts)), 1.0, possible, mean, 0.0)],
+        why_not,
+    )
+
+
+def collision_counts(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+    """Distribution of the number of collisions of a disc in a time, with its cumulants."""
+    discs = classes(log.discs)
+    _, rates, _, why_not = free_flight_rates(log, discs, start, end)
+    if log.has_positions and log.discs.packing_fraction > DENSEST_COUNTS:
+        why_not = why_not or f"above φ = {DENSEST_COUNTS:g} none is known for numbers of collisions"
+    per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
+    rate = discs.shares @ per_disc
+    time = float(min(COUNTED / rate.max(), (last - first) / 64))
+    tally = CollisionCounts(time, MOST_COUNTED, max(STRIDE, int((last - first) / time * len(log.discs) / INTERVALS)))
+    window = measure(log, [tally], start, end, progress)
+    begin = int(tally.begins.searchsorted(window.start))
+    error, *of_cumulants = count_errors(log)
+    edges, found = np.arange(MOST_COUNTED + 1) - 0.5, []
+    for s, name in enumerate(log.discs.species_names):
+        kinds = np.flatnonzero(discs.species == s)
+        laws = [CollisionCountLaw(discs.mass[k], tuple(discs.mass), tuple(rates[k]), time) for k in kinds]
+        law: distributions.Law = (
+            laws[0] if len(laws) == 1 else distributions.MeanLaw(tuple(laws), tuple(discs.number[kinds]))
+        )
+        chosen = (tally.sample_species == s) & (tally.sample_index >= begin)
+        even = np.random.default_rng(0).uniform(-0.5, 0.5, int(chosen.sum()))
+        sums, mean = tally.sums[begin:, s].T, None if why_not else float(rate[s]) * time
+        average = ratio(sums[1], sums[0], theory=mean)
+        one = distribution_of(
+            name,
+            edges,
+            tally.counts[begin:, s],
+            average,
+            tally.sample[chosen] + even,
+            None,
+            {} if why_not else {"dilute gas": law},
+            error,
+        )
+        theories: list[Theory] | list[None] = [None, None]
+        if len(laws) == 1 and not why_not:
+            theories = [Theory(*one, "dilute gas") for one in zip(laws[0].cumulants, of_cumulants, strict=True)]
+        cumulants = {
+            "variance_over_mean": estimate(_variance, *sums[:3], theory=theories[0]),
+            "third_cumulant_over_mean": estimate(_third, *sums, theory=theories[1]),
+        }
+        found.append(replace(one, counted_in=time, cumulants=cumulants))
+    return window, found, why_not
+
+
+def _variance(number: float, first: float, second: float) -> float:
+    """Variance over mean, from sums of powers."""
+    mean = first / number
+    return (second / number - mean**2) / mean
+
+
+def _third(number: float, first: float, second: float, third: float) -> float:
+    """Third cumulant over mean, from sums of powers."""
+    mean = first / number
+    return (third / number - 3 * mean * second / number + 2 * mean**3) / mean
+
+
+def _intervals(
+    name: str,
+    tally: Intervals,
+    s: int,
+    blocks: slice,
+    high: float,
+    possible: Mapping[str, distributions.Law],
+    expected: float | None,
+    law_error: float,
+) -> Distribution:
+    """Distribution of the intervals of species s in some blocks of time."""
+    counts = tally.counts[blocks, s].astype(float)
+    chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
+    average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
+    samples, edges = tally.sample[chosen], np.linspace(0, high, BINS + 1)
+    return distribution_of(name, edges, counts, average, samples, None, possible, law_error)
