@@ -22,6 +22,8 @@ KINDS: "tuple[Kind, ...]" = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 @log_argument
 @click.option("--format", "kind", type=click.Choice(KINDS), help="Format of the file.  [default: by the ending of OUT]")
 @click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
+@click.option("--flights", is_flag=True, help="Write the flights of all discs from event to event (csv, parquet).")
+@click.option("--parts", type=click.IntRange(1), help="Write a folder of so many parquet files, divided in time.")
 @click.option(
     "--frames",
     metavar="N|every=DT",
@@ -36,23 +38,34 @@ KINDS: "tuple[Kind, ...]" = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 )
 @force_option
 @quiet_option
-def export(path: str, kind: "Kind | None", events: bool, frames: str | None, output: str | None, force: bool) -> None:
-    """Write the events of a log, or frames of all discs, to a file for other programs.
+def export(
+    path: str,
+    kind: "Kind | None",
+    events: bool,
+    flights: bool,
+    parts: int | None,
+    frames: str | None,
+    output: str | None,
+    force: bool,
+) -> None:
+    """Write the events or flights of a log, or frames of all discs, to a file for other programs.
 
     gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
     H5MD with a third coordinate, zero.
     """
-    if events == (frames is not None):
-        raise click.UsageError("either --events or --frames is required")
+    if events + flights + (frames is not None) != 1:
+        raise click.UsageError("one of --events, --flights and --frames is required")
     from idealgas.log.export.export import FORMATS, frame_times
     from idealgas.log.export.export import export as write
 
-    kind = kind or _kind_of(output)
+    kind = kind or ("parquet" if parts else _kind_of(output))
     with open_log(path) as log:
         times = None if frames is None else frame_times(log, frames).tolist()
-        target = output or str(Path(path).with_suffix(FORMATS[kind].ending))
-        number = write(log, kind, sys.stdout.buffer if target == "-" else target, times, force)
-    echo(f"{target}: {number:,} {'event rows' if events else 'frames'}", err=target == "-")
+        target = output or str(Path(path).with_suffix("" if parts else FORMATS[kind].ending))
+        file = sys.stdout.buffer if target == "-" and not parts else target
+        number = write(log, kind, file, times, force, "flights" if flights else "events", parts)
+    what = "event rows" if events else "flights" if flights else "frames"
+    echo(f"{target}: {number:,} {what}", err=target == "-")
 
 
 def _kind_of(output: str | None) -> "Kind":

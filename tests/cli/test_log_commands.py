@@ -177,8 +177,14 @@ def test_export_to_a_full_device(copy):
         (("--format", "gsd", "--frames", "3", "-o", "-"), "gsd cannot be written to a pipe (allowed csv, extxyz)"),
         (("--format", "extxyz", "--frames", "no"), "invalid choice of frames"),
         (("--format", "gsd", "--events"), "gsd has no events"),
-        (("--format", "csv"), "either --events or --frames is required"),
-        (("--format", "csv", "--events", "--frames", "3"), "either --events or --frames is required"),
+        (("--format", "csv"), "one of --events, --flights and --frames is required"),
+        (("--format", "csv", "--events", "--frames", "3"), "one of --events, --flights and --frames is required"),
+        (
+            ("--format", "csv", "--events", "--parts", "3"),
+            "parts are at least one file of events or flights in parquet",
+        ),
+        (("--frames", "3", "--parts", "3"), "parts are at least one file of events or flights in parquet"),
+        (("--events", "--parts", "3", "-o", "."), ".: already exists"),
     ],
 )
 def test_export_refuses(copy, arguments, message):

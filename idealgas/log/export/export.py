@@ -12,6 +12,7 @@ from idealgas.errors import unknown
 from idealgas.files import storage_error, written
 from idealgas.log.errors import LogError
 from idealgas.log.export import frames, tables
+from idealgas.log.export.tables import Rows
 from idealgas.log.reader import Log, takes_path
 
 
@@ -20,8 +21,8 @@ class Format(NamedTuple):
 
     Attributes:
         ending: file name extension.
-        write: function that writes frames at some times, or with None all event rows, and returns their number.
-        has_events: whether the format has event rows.
+        write: function that writes frames at some times, all event rows or all flights, and returns their number.
+        has_events: whether the format has event rows and flights.
         streams: whether `write` takes an open binary file, which it writes from start to end, instead of a path.
     """
 
@@ -48,19 +49,23 @@ def export(
     output: str | os.PathLike[str] | BinaryIO,
     times: Sequence[float] | None = None,
     force: bool = False,
+    rows: Rows = "events",
+    parts: int | None = None,
 ) -> int:
-    """Write the states at some times, or all events, to a file.
+    """Write the states at some times, all events or all flights, to a file.
 
     Args:
         log: log to export, or its path.
         kind: name of one of FORMATS.
         output: path, where the file appears when it is complete; or an open binary file, such as a pipe, for a format
             that streams.
-        times: times of the frames in increasing order; None for events.
+        times: times of the frames in increasing order; None for events or flights.
         force: whether an existing file of the same format is overwritten.
+        rows: "events" or "flights", the motion of each disc from one of its events to the next.
+        parts: number of Parquet files in a new folder, into which events or flights are divided in time.
 
     Returns:
-        Number of frames or event rows.
+        Number of frames or rows.
 
     Raises:
         UserError: if there is no such format.
@@ -70,17 +75,23 @@ def export(
     if kind not in FORMATS:
         raise unknown("format", kind, tuple(FORMATS))
     made = FORMATS[kind]
+    if rows not in tables.END_OF:
+        raise unknown("table of rows", rows, tuple(tables.END_OF))
+    if parts is not None and (kind != "parquet" or times is not None or parts < 1):
+        raise LogError(f"parts are at least one file of events or flights in parquet (got {parts}, {kind})")
     if times is None and not made.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
     if times is None:
         log.require_events()
     if times is not None and not made.has_events and not log.has_positions:
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
-    with _target(made, kind, output, force, log) as target:
-        try:
-            return made.write(log, times, target)
-        except ModuleNotFoundError as error:
-            raise LogError(f"{kind} needs {error.name}: pip install 'idealgas-md[export]'") from error
+    try:
+        if parts is not None:
+            return tables.write_parts(log, rows, Path(str(output)), parts)
+        with _target(made, kind, output, force, log) as target:
+            return made.write(log, rows if times is None else times, target)
+    except ModuleNotFoundError as error:
+        raise LogError(f"{kind} needs {error.name}: pip install 'idealgas-md[export]'") from error
 
 
 @contextmanager

@@ -1,37 +1,81 @@
 """CSV and Parquet, written block by block with pyarrow."""
 
+import shutil
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
 
 import numpy as np
 
-from idealgas.log.dataframes import KIND_NAMES, Columns, flat_discs, flat_events
+from idealgas.errors import OutputError
+from idealgas.files import beside, storage_error
+from idealgas.log.dataframes import KIND_NAMES, Columns, flat_discs, flat_events, flat_flights
 from idealgas.log.reader import Log
 
+Rows = Literal["events", "flights"]
+"""Rows of a table."""
 
-def write_csv(log: Log, times: Sequence[float] | None, file: BinaryIO) -> int:
-    """Write CSV with a row for each disc and time, or for each event row."""
+END_OF = {"events": "time", "flights": "end"}
+"""Column with the time of a row, in which rows are in order."""
+
+
+def write_csv(log: Log, times: Sequence[float] | Rows, file: BinaryIO) -> int:
+    """Write CSV with a row for each disc and time, or for each event row or flight."""
     from pyarrow import csv
 
     return _write(log, times, partial(csv.CSVWriter, file))
 
 
-def write_parquet(log: Log, times: Sequence[float] | None, path: Path) -> int:
-    """Write Parquet with a row for each disc and time, or for each event row."""
+def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
+    """Write Parquet with a row for each disc and time, or for each event row or flight."""
     from pyarrow import parquet
 
     return _write(log, times, partial(parquet.ParquetWriter, str(path)))
 
 
-def _write(log: Log, times: Sequence[float] | None, make_writer: Callable[[Any], Any]) -> int:
+def write_parts(log: Log, what: Rows, folder: Path, number: int) -> int:
+    """Write event rows or flights as Parquet files in a new folder, and return their number.
+
+    Each file has the rows that end in one of so many equal parts of the time of the log. The folder appears when it is
+    complete. Raises OutputError if it cannot be made.
+    """
+    import pyarrow
+    from pyarrow import parquet
+
+    if folder.exists():
+        raise OutputError(f"{folder}: already exists")
+    edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
+    place, writer, part, rows = beside(folder), None, 0, 0
+    try:
+        place.mkdir()
+        for columns in _columns(log, what):
+            table = pyarrow.table(columns)
+            cuts = [0, *columns[END_OF[what]].searchsorted(edges, "right").tolist(), len(table)]
+            for k in np.flatnonzero(np.diff(cuts)).tolist():
+                if writer is None or k > part:
+                    if writer is not None:
+                        writer.close()
+                    part, writer = k, parquet.ParquetWriter(str(place / f"part-{k:04}.parquet"), table.schema)
+                writer.write_table(table.slice(cuts[k], cuts[k + 1] - cuts[k]))
+            rows += len(table)
+        if writer is not None:
+            writer.close()
+        place.rename(folder)
+    except OSError as error:
+        raise storage_error(folder, error) from error
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    return rows
+
+
+def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any], Any]) -> int:
     """Write blocks of rows, of which the first one, which may be empty, has the columns."""
     import pyarrow
 
     writer, rows = None, 0
     try:
-        for columns in _event_columns(log) if times is None else _frame_columns(log, times):
+        for columns in _columns(log, times):
             table = pyarrow.table(columns)
             writer = writer or make_writer(table.schema)
             if len(table):
@@ -40,7 +84,21 @@ def _write(log: Log, times: Sequence[float] | None, make_writer: Callable[[Any],
     finally:
         if writer is not None:
             writer.close()
-    return rows if times is None else len(times)
+    return rows if isinstance(times, str) else len(times)
+
+
+def _columns(log: Log, times: Sequence[float] | Rows) -> Iterator[Columns]:
+    if times == "flights":
+        return _flight_columns(log)
+    return _event_columns(log) if isinstance(times, str) else _frame_columns(log, times)
+
+
+def _flight_columns(log: Log) -> Iterator[Columns]:
+    """Whole flights; the kind of one that no event ends is empty."""
+    kinds = np.array([*KIND_NAMES, ""])
+    for columns in flat_flights(log.flights()):
+        del columns["block"]
+        yield columns | {"kind": kinds[columns["kind"]]}
 
 
 def _event_columns(log: Log) -> Iterator[Columns]:

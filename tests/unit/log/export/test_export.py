@@ -10,8 +10,10 @@ from helpers.log_compare import scene_of
 
 from idealgas.errors import OutputError
 from idealgas.log import LogError, open_log
+from idealgas.log.export import tables
 from idealgas.log.export.export import FORMATS, export, frame_times
 from idealgas.log.export.frames import ELEMENTS
+from idealgas.log.flights import NO_EVENT, Flights
 from idealgas.run.simulate import simulate
 from idealgas.scene import SceneError
 
@@ -53,6 +55,42 @@ def test_events_as_a_table(log, kind, tmp_path):
         assert np.array_equal(table[f"v{letter}"], stored.velocity[:, axis])
     assert ("angular_velocity" in table) == ("angular_velocity" in log.columns)
     assert ("image_x" in table) == ("image" in log.columns)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_flights_as_a_table(log, kind, tmp_path):
+    flights = Flights.joined(log.flights())
+    assert export(log, kind, tmp_path / f"flights.{kind}", rows="flights") == len(log) + len(log.discs)
+    table = read_table(tmp_path / f"flights.{kind}")
+    for name in ("disc", "start", "end", "partner"):
+        assert np.array_equal(table[name], getattr(flights, name))
+    assert np.array_equal(table["new_vy"], flights.new_velocity[:, 1])
+    assert np.array_equal(table["kind"] == "", flights.kind == NO_EVENT)
+
+
+@pytest.mark.parametrize("rows", ["events", "flights"])
+def test_parts_of_a_table(log, rows, tmp_path, monkeypatch):
+    """Rows of each part end in its share of the time; together they are the whole table, read in short blocks."""
+    monkeypatch.setattr(tables, "_columns", lambda *found, whole=tables._columns: blocks(whole(*found)))
+    number = export(log, "parquet", tmp_path / "parts", rows=rows, parts=3)
+    assert number == export(log, "parquet", tmp_path / "whole.parquet", rows=rows)
+    files = sorted((tmp_path / "parts").iterdir())
+    assert [file.name for file in files] == [f"part-{k:04}.parquet" for k in range(3)]
+    parts, whole = [read_table(file) for file in files], read_table(tmp_path / "whole.parquet")
+    for name, column in whole.items():
+        assert np.array_equal(np.concatenate([part[name] for part in parts]), column)
+    for k, part in enumerate(parts):
+        end = part["time" if rows == "events" else "end"]
+        assert k * log.end_time / 3 <= end.min() <= end.max() <= (k + 1) * log.end_time / 3 * (1 + 1e-15)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["parts", "whole.parquet"]
+    with pytest.raises(OutputError, match="already exists"):
+        export(log, "parquet", tmp_path / "parts", rows=rows, parts=3)
+
+
+def blocks(columns):
+    for block in columns:
+        for first in range(0, max(len(block["disc"]), 1), 500):
+            yield {name: column[first : first + 500] for name, column in block.items()}
 
 
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
