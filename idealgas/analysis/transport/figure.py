@@ -52,14 +52,16 @@ def _of_states(result: States) -> Figure:
 def _of_log(result: Transport) -> Figure:
     """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time.
 
-    Of a log without events there are the coefficients only.
+    Of a log without events there are the coefficients only, among fixed discs no pair distribution.
     """
     if not result.diffusion:
         figure, (coefficients,) = panels(1)
     else:
-        figure, (correlation, displacement, pairs, coefficients) = panels(2, 2)
+        has_pairs = bool(result.pair_distributions)
+        figure, (correlation, displacement, *pairs, coefficients) = panels(2, 2) if has_pairs else panels(3)
         _draw_diffusion(correlation, displacement, result)
-        _draw_pairs(pairs, result)
+        if has_pairs:
+            _draw_pairs(pairs[0], result)
     _draw_coefficients(coefficients, result)
     for ax in figure.axes:
         ax.legend()

@@ -43,6 +43,7 @@ from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_di
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
 
 FEWEST_SEGMENTS = 8  # of the window, each as long as the longest lag
 LEAST_WINDOW = 16.0  # longest lags; in one of eight, coefficients of the whole gas are too small by up to a fourth
@@ -95,16 +96,19 @@ def transport(
     Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
     displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity,
     thermal conductivity, diffusion of two species in each other and pressure tensor in a periodic box; pair
-    distribution functions. Without events the sums of `log.pressure = true` and `log.heat_flow = true` give the
-    collision rates and what follows from the currents of a periodic gas.
+    distribution functions. Among fixed discs in a periodic box diffusion is measured only. Without events the sums of
+    `log.pressure = true` and `log.heat_flow = true` give the collision rates and what follows from the currents of a
+    periodic gas.
 
     Raises:
         UserError: if no disc moves, if there are no events or too few samples in the window, or for a gas with effects
-            other than periodic sides.
+            other than periodic sides and fixed discs.
     """
     equilibrium, needs = ensemble(log), ("uniform", "conserves_motion")
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
+    if (inside := walls_inside(log.scene)) and all(wall.radius for wall in inside) and all(log.periodic):
+        return _among_fixed_discs(log, equilibrium, start, end, progress, lag)
     impacts: Impacts | SampledImpacts
     if log.has_events:
         moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
@@ -149,6 +153,40 @@ def transport(
             *(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
             *_short_currents(whole, longest / free_time, window.duration / longest),
         ),
+    )
+
+
+def _among_fixed_discs(
+    log: Log,
+    equilibrium: Ensemble,
+    start: float | None,
+    end: float | None,
+    progress: Callable[[int, int], None] | None,
+    lag: float,
+) -> Transport:
+    """Diffusion among fixed discs, where a mean free time is that between hits of any disc, fixed or not."""
+    impacts = Impacts(len(log.walls), log.periodic)
+    window = measure(log, [impacts], start, end, progress, ("conserves_motion",))
+    gas, discs = log.discs, composition(log.discs)
+    met = float((window.of(impacts.hits).sum(axis=1) + 2 * window.of(impacts.collisions).sum(axis=(1, 2))).mean())
+    free_time = len(gas) / met if met else math.inf
+    longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
+    limits = [Limits(1 / free_time, LEAST_LAG * free_time, equilibrium.temperature, ())] * len(discs.name)
+    spreading = diffusion(log, discs, window, longest, limits, (None, [None] * len(limits), equilibrium))
+    return Transport(
+        window=window,
+        packing_fraction=gas.packing_fraction,
+        number=len(gas),
+        free_times=float(spreading[0].lag[-1]) / free_time,
+        walled=False,
+        collision_rates=(),
+        free_paths=(),
+        contacts=(),
+        diffusion=spreading,
+        collective=None,
+        pressure={},
+        pair_distributions=(),
+        caveats=tuple(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
     )
 
 

@@ -20,7 +20,9 @@ from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Colle
 from idealgas.analysis.transport.combine import States
 from idealgas.analysis.transport.measure import Transport
 
-WALLS = "No viscosities and thermal conductivity: they need periodic sides, as walls change the currents of the gas."
+WALLS = (
+    "No viscosities and thermal conductivity: they need periodic sides alone, as walls change the currents of the gas."
+)
 
 
 def transport_tables(result: Transport | States) -> list[Table]:
