@@ -25,6 +25,7 @@ from idealgas.movie.piston_track import piston_track
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
 MOST_FRAMES = 1_000_000
+HISTORY = 200  # states before a single frame that its trails and curves go through
 CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
 
 
@@ -121,6 +122,8 @@ def paint_frame(
 ) -> Path:
     """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
 
+    Trails and curves are those since the start of the log.
+
     Raises:
         UserError: for another ending, or a log that has no such state or no positions or events, as for `animate`.
         OutputError: if the picture cannot be written.
@@ -138,7 +141,9 @@ def paint_frame(
     some = _some_states(log, *times)
     _, thermal = speeds(log, some)
     painter = Painter(log.scene, log.discs, piston_track(log, *times), thermal, times, some, **look)
-    frame = painter.paint(log.state_at(time))
+    grows = look.get("trails") or look.get("panel") == "left-right"
+    for state in log.frames(np.linspace(log.start_time, time, HISTORY) if grows else np.array([time])):
+        frame = painter.paint(state)
     with written(path, FRAME, force) as part:
         Image.fromarray(frame[..., :3]).save(part, format="png")
     return path

@@ -3,6 +3,7 @@
 import os
 import sys
 
+import numpy as np
 import pytest
 from helpers.support import error_of, output_of
 from PIL import Image
@@ -58,6 +59,17 @@ def test_without_ffmpeg_no_mp4_and_nothing_else(folder, tmp_path, monkeypatch):
     line = error_of("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
     assert line == "MP4 needs ffmpeg: pip install 'idealgas-md[film]' (GIF needs nothing)\n"
     assert os.listdir(tmp_path) == []
+
+
+def test_a_single_frame_has_the_trails_before_it(folder, tmp_path):
+    """The path of a disc over 20 units of time is ink, where nothing was before."""
+    dark = []
+    for name, trail in (("alone", ()), ("trail", ("--trail", 0))):
+        picture = tmp_path / f"{name}.png"
+        output_of("animate", folder / "run.h5", "-o", picture, "--frame", 20, "--panel", "none", *trail, *SMALL)
+        with Image.open(picture) as image:
+            dark.append((np.asarray(image.convert("L")) < 60).sum())
+    assert dark[1] > dark[0] + 50
 
 
 @pytest.mark.parametrize("panel", ["density", "left-right", "none"])
