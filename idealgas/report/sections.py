@@ -53,6 +53,8 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
 def main_sections(scene: Scene) -> tuple[str, ...]:
     """Titles of the sections that the effects of a scene call for, which a report shows first."""
     properties = scene.properties
+    if properties.shear:
+        return ("Shear flow",)
     called_for = {
         "Effusion": properties.last_wall_removed_at > 0,
         "Cooling": properties.dissipative,

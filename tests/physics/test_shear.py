@@ -5,19 +5,21 @@ import math
 import numpy as np
 import pytest
 from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT, gas_of, record, same_rows
+from helpers.support import ROOT, gas_of, record, same_rows, within
 
-from idealgas import load_scene, open_log, parse_scene, simulate
+from idealgas import load_scene, open_log, parse_scene, shear, simulate, transport
+from idealgas.analysis import registry
 from idealgas.columns import SIDES, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
+from idealgas.errors import NotApplicableError
 from idealgas.initial.build import make_gas
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.exact_sum import values as values_of
 from idealgas.physics.periodic import Periodic
-from idealgas.physics.shear import make_shear
+from idealgas.physics.shear import flow_at, make_shear
 from idealgas.run.effects import make_effects
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
@@ -124,3 +126,64 @@ def test_sides_may_be_anywhere(tmp_path):
     assert (np.column_stack((moved.disc, moved.partner))[again] == pairs).all()
     assert np.abs(moved.time[again] - times)[:60].max() < 1e-9  # rounding grows by a factor of e in a few collisions
     assert np.abs(moved.velocity[again, 1] - turned)[:60].max() < 1e-7
+
+
+def test_the_stress_heats_the_gas(tmp_path):
+    """Energy relative to the flow grows by -rate A ∫ P_xy dt exactly, by flights and collisions, also through sides."""
+    simulate(load_scene(GOLDEN), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = shear(log, start=0.0)
+        width, height = log.box
+        energy = []
+        for time in (0.0, log.end_time):
+            state = log.state_at(time)
+            vx = state.velocity[:, 0] - flow_at(state.position[:, 1], found.rate, height)
+            energy.append(float(log.discs.mass @ (vx**2 + state.velocity[:, 1] ** 2)) / 2)
+        work = found.rate**2 * width * height * found.viscosities.mean() * log.end_time
+        assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
+        assert found.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
+        for analysis in registry.analyses():
+            if not analysis.takes_shear:
+                with pytest.raises(NotApplicableError, match=r"sheared sides, where|of one species that differ"):
+                    analysis.analyse(log)
+
+
+FLUID = """
+[box]
+size = [{side}, {side}]
+left = "periodic"
+right = "periodic"
+bottom = {below}
+top = {below}
+[[species]]
+name = "gas"
+count = 400
+radius = 0.5
+temperature = 1
+[run]
+collisions_per_disc = 3000
+"""
+
+
+@pytest.mark.parametrize(("phi", "rate"), [(0.1, 0.03), (0.3, 0.08)])
+@pytest.mark.slow
+def test_the_viscosity_is_that_of_the_same_gas_at_rest(tmp_path, phi, rate):
+    """By Helfand's moments of its equilibrium (transport), within 3 standard errors; pressure and slope by theory.
+
+    The flow is slow: 0.06 of the collision rate at first, and less as the gas becomes hotter.
+    """
+    side = math.sqrt(400 * math.pi / 4 / phi)
+    for name, below in (("rest", '"periodic"'), ("flow", f"{{ shear = {rate} }}")):
+        simulate(parse_scene(FLUID.format(side=side, below=below)), tmp_path / f"{name}.h5")
+    at_rest = transport(tmp_path / "rest.h5").collective.coefficients["viscosity"].value
+    found = shear(tmp_path / "flow.h5")
+    flowing = found.viscosity.times(found.temperature.value**-0.5)
+    error = math.hypot(at_rest.standard_error, flowing.standard_error)
+    within("viscosity in units of √(mT)/σ, σ", abs(flowing.value - at_rest.value) / error, 3)
+    assert flowing.standard_error < 0.05 * flowing.value
+    assert error < 0.1 * at_rest.value
+    assert abs(flowing.deviation) < 3  # from Enskog
+    assert abs(found.pressure.deviation) < 3
+    low, high = found.slope.interval(math.erf(3 / math.sqrt(2)))
+    assert low < 1 < high
+    assert found.reduced_rate < 0.03

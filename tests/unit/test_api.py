@@ -71,9 +71,16 @@ run.until = 20
 """
 
 
+SHEARED = """
+box = { size = [8, 8], left = "periodic", right = "periodic", bottom = { shear = 0.2 }, top = { shear = 0.2 } }
+species = [{ name = "gas", count = 30, radius = 0.3, temperature = 1 }]
+run.collisions_per_disc = 40
+"""
+
+
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs by name: of each kind, with sound waves, cooling, a gate, and strokes of a piston."""
+    """Paths of logs by name: of each kind, with sound waves, cooling, a gate, strokes of a piston, and shear."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         name = packed.name.removesuffix(".xz").partition("-")[2]  # without the version of the format
@@ -82,6 +89,7 @@ def logs(tmp_path_factory):
     idealgas.simulate(idealgas.parse_scene(GRAINS), folder / "grains.h5")
     idealgas.simulate(idealgas.parse_scene(GATE), folder / "gate.h5")
     idealgas.simulate(idealgas.parse_scene(STROKES), folder / "strokes.h5")
+    idealgas.simulate(idealgas.parse_scene(SHEARED), folder / "sheared.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 

@@ -90,6 +90,8 @@ def nonstationary_reason(log: Log) -> str:
     Such a gas is driven by a moving wall, or loses or gains energy without a balance.
     """
     scene, properties = log.scene, log.scene.properties
+    if properties.shear and not (properties.lossless and properties.isolated):
+        return ""  # heat bath or collisions take out what shear brings
     if properties.driven:
         return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
     if any(properties.falls) and (properties.frictionless or (properties.lossless and properties.isolated)):
@@ -112,6 +114,8 @@ def nonequilibrium_reason(log: Log) -> str:
         return "gravity drives a flow along periodic sides"
     if properties.vibrates:
         return "a side vibrates"
+    if properties.shear:
+        return "sides shear the gas"
     if properties.one_way:
         return "discs pass a wall in one direction only"
     if len(properties.temperatures) > 1:

@@ -46,10 +46,12 @@ STROKES = (
     "run.collisions_per_disc=",
     "run.until=20",
 )
+SHEARED = ("box.left=periodic", "box.right=periodic", "box.bottom={shear=0.1}", "box.top={shear=0.1}")
 TAKES = {"effusion": SLIT, "sound": WAVES, "scattering": WAVES, "work": STROKES, "cooling": ("restitution.normal=0.9",)}
+TAKES |= {"shear": SHEARED}
 """Overrides for the gas of those analyses that have no answer for a closed box."""
 
-NOT_ALONE = ["Cooling", "Scattering", "Sound", "Effusion", "Work"]
+NOT_ALONE = ["Cooling", "Scattering", "Sound", "Shear flow", "Effusion", "Work"]
 """Sections that a closed box does not have."""
 
 every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=lambda analysis: analysis.key)

@@ -1,0 +1,333 @@
+"""Measure the viscosity of a gas between sheared sides, its temperature, and the profile of its flow."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Section
+from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.ensemble import kind_of_state, nonstationary_reason, not_steady
+from idealgas.analysis.core.equilibration import (
+    Observable,
+    Window,
+    after_changes,
+    detect_equilibration,
+    memory_time,
+)
+from idealgas.analysis.core.fields import OMITTED
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
+from idealgas.analysis.core.stream import add_to, block_edges, frames, stream
+from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
+from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.theory.values import Theory, enskog_error, fluid
+from idealgas.columns import Kind
+from idealgas.errors import NotApplicableError
+from idealgas.log import Flights, Log
+from idealgas.physics.shear import flow_at
+from idealgas.state import Gas
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STRIPS, INSTANTS = 20, 200
+"""Strips of the profile of the flow, and instants at which it is taken."""
+
+FAST = 0.1
+"""Shear rate over the collision rate of a disc above which the viscosity of a dilute gas is less by a part of 2 %."""
+
+DRIFT = 0.1
+"""Relative change of the temperature in the window above which it is no longer that of one state."""
+
+
+@dataclass(frozen=True)
+class ShearFlow(Result):
+    """Shear flow of a gas, with velocities relative to the mean flow.
+
+    window: the time that was used. rate: shear rate, 1/time. reduced_rate: the same over the collision rate of a disc.
+    temperature: mean of m c²/2, energy. viscosity: -P_xy/rate at this temperature T, mass/time, as that over √T of all
+    blocks times √T. pressure: (P_xx + P_yy)/2 at this temperature, energy/length², as that over T times T.
+    normal_stress: (P_xx - P_yy) over the pressure. slope: of the mean velocity against y, over the rate. y, velocity:
+    (20,), middles of strips, length, and mean velocity along x in them, length/time. temperatures, viscosities: (B,),
+    of each block that was read.
+    """
+
+    window: Window
+    rate: float
+    reduced_rate: float
+    temperature: Estimate
+    viscosity: Estimate
+    pressure: Estimate
+    normal_stress: Estimate
+    slope: Estimate
+    y: np.ndarray
+    velocity: np.ndarray
+    temperatures: Annotated[np.ndarray, OMITTED]
+    viscosities: Annotated[np.ndarray, OMITTED]
+
+
+class Carried:
+    """Momentum that discs carry relative to the flow, and the part of their velocity that grows with y.
+
+    stress: (B, 3), integrals of m c_x², m c_x c_y and m c_y² over time. excess: (B,), integral of m y c_x, with y from
+    the middle. moment: (B,), integral of m y².
+    """
+
+    columns = ("disc", "block", "start", "end", "velocity", "position")
+    cut = True
+
+    def __init__(self, rate: float, height: float) -> None:
+        """Take the shear rate and the height of the box."""
+        self._rate, self._height = rate, height
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with a number of blocks."""
+        self._mass, self._sums = gas.mass, np.zeros((5, len(edges) - 1))
+
+    def add(self, flights: Flights) -> None:
+        """Add flights: along each, c_x and y are linear in time."""
+        assert flights.position is not None
+        mass, t = self._mass.take(flights.disc), flights.end - flights.start
+        y, (vx, vy) = flights.position[:, 1], flights.velocity.T
+        height, c, slope = y - 0.5 * self._height, vx - flow_at(y, self._rate, self._height), -self._rate * vy
+        integrals = (
+            _product(c, slope, c, slope, t),
+            _product(c, slope, vy, np.zeros_like(vy), t),
+            vy * vy * t,
+            _product(height, vy, c, slope, t),
+            _product(height, vy, height, vy, t),
+        )
+        for sums, values in zip(self._sums, integrals, strict=True):
+            add_to(sums, flights.block, mass * values)
+
+    def finish(self) -> None:
+        """Make the sums known."""
+        self.stress, self.excess, self.moment = self._sums[:3].T, self._sums[3], self._sums[4]
+
+
+def _product(a: np.ndarray, da: np.ndarray, b: np.ndarray, db: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Integral of (a + da t)(b + db t) from 0 to t."""
+    return t * (a * b + t * ((a * db + b * da) / 2 + t * (da * db / 3)))
+
+
+class PassedOn:
+    """Momentum that discs pass on in collisions, over their distance.
+
+    stress: (B, 3), sums of Δp_x x, Δp_x y and Δp_y y. collisions: (B,), their number.
+    """
+
+    columns = ("disc", "block", "end", "kind", "partner", "end_velocity", "new_velocity", "end_position")
+    cut = False
+
+    def __init__(self, rate: float, box: tuple[float, float]) -> None:
+        """Take the shear rate and the size of the box."""
+        self._rate, self._box = rate, box
+
+    def begin(self, gas: Gas, edges: np.ndarray) -> None:
+        """Start with a number of blocks."""
+        self._mass, self._sums = gas.mass, np.zeros((4, len(edges) - 1))
+
+    def add(self, flights: Flights) -> None:
+        """Add the collisions at the ends of flights, with the second disc of each."""
+        assert flights.end_position is not None
+        width, height = self._box
+        second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
+        x, y = (flights.end_position.take(second, axis=0) - flights.end_position.take(second - 1, axis=0)).T
+        rows = np.rint(y / height)
+        x -= rows * np.remainder(self._rate * height * flights.end[second], width)
+        x -= width * np.rint(x / width)
+        y -= height * rows
+        given = flights.new_velocity.take(second, axis=0) - flights.end_velocity.take(second, axis=0)
+        px, py = self._mass.take(flights.disc[second]) * given.T
+        for sums, values in zip(self._sums, (px * x, px * y, py * y, np.ones_like(x)), strict=True):
+            add_to(sums, flights.block[second], values)
+
+    def finish(self) -> None:
+        """Make the sums known."""
+        self.stress, self.collisions = self._sums[:3].T, self._sums[3]
+
+
+def shear(
+    log: Log,
+    start: float | None = None,
+    end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> ShearFlow:
+    """Measure viscosity, temperature and normal stresses of a gas between sheared sides, between two times of its log.
+
+    The pressure tensor P is that of the velocities c relative to the flow: P A is the mean of Σ m c c and of the
+    momentum that collisions pass on per time, times their distance. The viscosity is -P_xy/rate.
+
+    Args:
+        log: log with events, of a gas between sheared sides.
+        start: start of the window, time; by default from where viscosity/√T, and T where heat is taken out, are steady.
+        end: end of the window, time; by default the end of the log.
+        progress: called as progress(done, total) while events are read.
+
+    Raises:
+        UserError: without sheared sides or events, or if the gas does not become steady.
+    """
+    gas, (width, height), rate = log.discs, log.box, log.scene.properties.shear
+    if not rate:
+        raise NotApplicableError(
+            f"{log.path}: shear requires sheared sides, box.bottom and box.top = {{ shear = rate }}"
+        )
+    edges = block_edges(log, start, end)
+    carried, passed_on = Carried(rate, height), PassedOn(rate, (width, height))
+    stream(log, edges, [carried, passed_on], progress)
+    block = edges[1] - edges[0]
+    pressure = (carried.stress + passed_on.stress) / (width * height * block)
+    temperatures = (carried.stress[:, 0] + carried.stress[:, 2]) / (2 * len(gas) * block)
+    if not (temperatures > 0).all():
+        raise NotApplicableError(f"{log.path}: no disc moves relative to the flow")
+    viscosities = -pressure[:, 1] / rate
+    reduced, heats = viscosities / np.sqrt(temperatures), bool(nonstationary_reason(log))
+    series = [reduced] if heats else [reduced, temperatures]
+    first = _first(log, edges, series) if start is None else 0
+    memory = memory_time(one[first:] for one in series) * block
+    window = Window(edges, first, start is None, kind_of_state(log), memory)
+    p, t = pressure[first:], temperatures[first:]
+    temperature = mean(t)
+    expected, law = _theories(log)
+    collisions = 2 * passed_on.collisions[first:].sum() / (len(gas) * window.duration)
+    isotropic = (p[:, 0] + p[:, 2]) / 2
+    return ShearFlow(
+        window=window,
+        rate=rate,
+        reduced_rate=rate / collisions if collisions else math.inf,
+        temperature=temperature,
+        viscosity=mean(reduced[first:], expected).times(math.sqrt(temperature.value)),
+        pressure=mean(isotropic / t, law).times(temperature.value),
+        normal_stress=ratio(p[:, 0] - p[:, 2], isotropic),
+        slope=estimate(lambda a, b: 1 + a / (rate * b), carried.excess[first:], carried.moment[first:], theory=1.0),
+        y=(np.arange(STRIPS) + 0.5) * height / STRIPS,
+        velocity=_profile(log, np.linspace(window.start, window.end, INSTANTS)),
+        temperatures=temperatures,
+        viscosities=viscosities,
+        caveats=_caveats(t, rate / collisions if collisions else math.inf),
+    )
+
+
+def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
+    """Index of the first block from which on series (B,) are steady."""
+    begin = after_changes(log, edges)
+    first = detect_equilibration(Observable(one[begin:]) for one in series)
+    if first is None:
+        raise not_steady(log, "it still changes in the second half of the log")
+    return begin + first
+
+
+def _theories(log: Log) -> tuple[Theory | None, Theory | None]:
+    """Viscosity by Enskog's theory and pressure, both at T = 1, of equal smooth elastic discs; None for others."""
+    gas, properties = log.discs, log.scene.properties
+    if not (properties.elastic and properties.lossless) or properties.spins:
+        return None, None
+    if len(gas.species_names) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST:
+        return None, None
+    phi, density, z = gas.packing_fraction, len(gas) / gas.area, fluid(gas.packing_fraction)
+    chi = hard_discs.fluid_contact_value(phi)
+    viscosity = hard_discs.enskog_viscosity(2 * gas.radius[0], density, 1.0, gas.mass[0], chi)
+    of_finite = (z.value - 1) / len(gas)  # by which the collisional part differs in a gas of N discs
+    return (
+        Theory(viscosity, (enskog_error("viscosity", phi) + 2 / len(gas)) * viscosity, "Enskog"),
+        Theory(z.value, z.error + of_finite, z.source).times(density),
+    )
+
+
+def _profile(log: Log, times: np.ndarray) -> np.ndarray:
+    """Mean velocity along x (20,), length/time, in strips at some times; nan in strips without discs."""
+    momentum, mass = np.zeros((2, STRIPS))
+    for state in frames(log, times, None):
+        strip = np.clip(state.position[:, 1] / log.box[1] * STRIPS, 0, STRIPS - 1).astype(np.intp)
+        momentum += np.bincount(strip, log.discs.mass * state.velocity[:, 0], STRIPS)
+        mass += np.bincount(strip, log.discs.mass, STRIPS)
+    return np.divide(momentum, mass, out=np.full(STRIPS, math.nan), where=mass > 0)
+
+
+def _caveats(temperatures: np.ndarray, reduced_rate: float) -> tuple[str, ...]:
+    """Sentences on a temperature (B,) that changes, and on a fast shear."""
+    found = []
+    quarter = max(len(temperatures) // 4, 1)
+    before, after = float(temperatures[:quarter].mean()), float(temperatures[-quarter:].mean())
+    if abs(after - before) > DRIFT * temperatures.mean():
+        found.append(
+            f"The temperature changes from {before:.4g} to {after:.4g} in the window, as shear heats the gas: the "
+            "viscosity is that of one state only as it is proportional to √T."
+        )
+    if reduced_rate > FAST:
+        found.append(
+            f"The shear rate is {reduced_rate:.2g} of the collision rate of a disc: the viscosity may be less than "
+            "that of a slow flow, which theory gives."
+        )
+    return tuple(found)
+
+
+def _rows(result: ShearFlow) -> list[tuple[str, Estimate]]:
+    """Everything that was measured, by its name."""
+    return [
+        ("temperature T (energy)", result.temperature),
+        ("viscosity η (mass/time)", result.viscosity),
+        ("pressure (energy/length²)", result.pressure),
+        ("(P_xx − P_yy)/P (no unit)", result.normal_stress),
+        ("slope of the flow over the rate (no unit)", result.slope),
+    ]
+
+
+class ShearAnalysis(Analysis):
+    """Viscosity of a gas in shear flow."""
+
+    position = 95
+    headline = "viscosity"
+    start = "where viscosity/√T is steady"
+    takes_shear = True
+    results = (ShearFlow,)
+    sections = (Section("Shear flow", "Viscosity and temperature in time, and mean velocity against height"),)
+
+    measure = staticmethod(shear)
+
+    @staticmethod
+    def tables(result: ShearFlow) -> list[Table]:
+        """Table of viscosity, temperature, pressure, normal stress and flow."""
+        notes = (
+            f"{describe(result.window)}; shear rate {result.rate:.6g}, {result.reduced_rate:.3g} of the collision rate",
+            "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
+        )
+        return [estimates("Shear flow, velocities relative to the flow", _rows(result), notes)]
+
+    @staticmethod
+    def summary(result: ShearFlow) -> str:
+        """Viscosity and temperature, and whether the viscosity agrees with theory."""
+        found = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
+        why = "known for equal smooth elastic discs only"
+        return f"{found}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
+
+    @staticmethod
+    def figure(result: ShearFlow) -> "Figure":
+        """Picture of viscosity and temperature in time, and of the profile of the flow."""
+        from idealgas.analysis.core.style import COLOURS, GREY, panels
+
+        figure, (above, middle, below) = panels(3)
+        viscosity, edges = result.viscosity, result.window.edges
+        for ax, values, found, name in (
+            (above, result.viscosities, viscosity, "viscosity η (mass/time)"),
+            (middle, result.temperatures, result.temperature, "temperature T (energy)"),
+        ):
+            ax.stairs(values, edges, baseline=None, color=COLOURS[0], linewidth=0.9, label="blocks of time")
+            ax.plot([result.window.start, result.window.end], [found.value] * 2, color=COLOURS[1], label="mean")
+            if found.theory is not None:
+                ax.theory(None, found.theory, found.theory_error, "Enskog")
+            if result.window.first:
+                ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
+            ax.time_axis()
+            ax.set_ylabel(name)
+            ax.legend()
+        below.plot(result.velocity, result.y, "o", ms=4, color=COLOURS[0], label="measured")
+        ends = np.array([0.0, 2 * result.y.mean()])
+        below.theory(flow_at(ends, result.rate, ends[1]), ends, 0.0, "rate · (y − height/2)")
+        below.set_xlabel("mean velocity along x (length/time)")
+        below.set_ylabel("y (length), against the flow")
+        below.legend()
+        return figure
