@@ -218,11 +218,11 @@ def _no_law(paths: float, phi: float) -> tuple[str, ...]:
     """Why ⟨v⟩/π does not hold for a slit so many mean free paths wide, in a chamber of packing fraction phi."""
     if paths > 1:
         return (
-            f"The slit is {paths:.2g} mean free paths wide: discs stream out together, not one by one, and ⟨v⟩/π is no "
-            "theory of that.",
+            f"The slit is {paths:.2g} mean free paths wide: discs stream out together, not one by one, and ⟨v⟩/π does "
+            "not apply.",
         )
     if phi > DENSEST:
-        return (f"The chamber has a packing fraction of {phi:.2g}: discs crowd in the slit, and ⟨v⟩/π is no theory.",)
+        return (f"The chamber has a packing fraction of {phi:.2g}: discs crowd in the slit, and ⟨v⟩/π does not apply.",)
     return ()
 
 

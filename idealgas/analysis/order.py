@@ -274,7 +274,7 @@ class _Distances:
             apart = place[self._chosen, None] - place
             squared += (apart - size * np.round(apart / size) if periodic else apart) ** 2
         bins = np.minimum(np.sqrt(squared) * (self._bins / self._reach), self._bins).astype(np.int64)
-        bins[np.arange(len(self._chosen)), self._chosen] = self._bins  # a disc is no pair with itself
+        bins[np.arange(len(self._chosen)), self._chosen] = self._bins  # a disc does not pair with itself
         products = sum(part[self._chosen, None] * part for part in (local.real, local.imag))
         sums = (np.bincount(bins.ravel(), weights, self._bins + 1) for weights in (products.ravel(), None))
         self._sums.append(np.array([each[: self._bins] for each in sums]))

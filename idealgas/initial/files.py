@@ -17,7 +17,7 @@ State = tuple[dict[str, Any], float]
 """Columns by name, and the overlap that the precision of the file explains, length."""
 
 LABELS = {"time", "disc", "image_x", "image_y", "speed"}
-"""Columns of exported frames that are no part of a state."""
+"""Columns of exported frames that are not part of a state."""
 
 MOST_BYTES = 2**31
 """Largest size of a file, and of an array in it, bytes."""

@@ -106,7 +106,7 @@ def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:
         (trials >= stop.trials, run.trials, trials, "trials"),
     ):
         if passed and asked is not None:
-            where = "lies before that" if asked < there else "is no later end"
+            where = "lies before that" if asked < there else "is not a later end"
             raise LogError(f"{log.path}: already at {there:,.12g} {unit}; {asked:,.12g} {where}")
 
 

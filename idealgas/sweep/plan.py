@@ -194,7 +194,7 @@ def _errors(tables: Tables) -> Iterator[Issue]:
             got = " and ".join(given) or "nothing"
             yield Issue((("axis", i),), "not one list of values", got, "exactly one of values, range and log_range")
         if axis.key == "scene.seed":
-            yield Issue((("axis", i, "key"),), "seeds are no axis", axis.key, "sweep.seed and sweep.replicates")
+            yield Issue((("axis", i, "key"),), "seeds are not an axis", axis.key, "sweep.seed and sweep.replicates")
         if axis.key in seen:
             yield Issue((("axis", i, "key"),), "second axis of this key", axis.key, "one axis for each key")
         seen.add(axis.key)
@@ -281,7 +281,7 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
     """Scale the box of a document so that its discs have the packing fraction phi.
 
     Raises:
-        SceneError: if phi is no packing fraction, or if the scene has parts with positions in the box.
+        SceneError: if phi is not a packing fraction, or if the scene has parts with positions in the box.
     """
     fixed = ["start" if scene.start else "disc"] if len(scene.given) else []
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]

@@ -16,7 +16,7 @@ LORENTZ = ROOT / "configs" / "lorentz.toml"
 
 @pytest.mark.parametrize(
     "gravity",
-    [pytest.param((), marks=pytest.mark.slow, id="falling"), pytest.param(("gravity=", "restitution="), id="straight")],
+    [pytest.param((), id="falling"), pytest.param(("gravity=", "restitution="), marks=pytest.mark.slow, id="straight")],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
     summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, gravity, "run.until=12")

@@ -20,8 +20,8 @@ OSMOSIS = ROOT / "configs" / "osmosis.toml"
 @pytest.mark.parametrize(
     "gravity",
     [
-        pytest.param((), marks=pytest.mark.slow, id="falling"),
-        pytest.param(("gravity=", "box.bottom=reflecting"), id="straight"),
+        pytest.param((), id="falling"),
+        pytest.param(("gravity=", "box.bottom=reflecting"), marks=pytest.mark.slow, id="straight"),
     ],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):

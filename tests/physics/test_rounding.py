@@ -91,7 +91,11 @@ def check(case, seeds, collisions):
     return mean, error
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=[pytest.mark.slow] if case[0] == "slanted, rough" else []) for case in CASES],
+    ids=str,
+)
 def test_no_trend_by_rounding(case):
     check(case, range(1, 5), 200_000)
 

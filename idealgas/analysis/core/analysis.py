@@ -302,7 +302,7 @@ class Analysis:
 
 @contextmanager
 def _arithmetic(what: str) -> Iterator[None]:
-    """Raise UserError where arithmetic fails: a log may have numbers that no run makes, and no result then."""
+    """Raise UserError where arithmetic fails: a log may have numbers that no run produces."""
     import numpy as np
 
     from idealgas.jit import INTERPRETED

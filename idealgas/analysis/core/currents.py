@@ -25,7 +25,7 @@ CARRIED, PASSED_ON = range(2)
 
 
 class Currents:
-    """Time integrals of the currents in each of B blocks; what walls and a heat bath give is no current.
+    """Time integrals of the currents in each of B blocks; what walls and a heat bath give is not included.
 
     flow: (B, 2, 7), parts CARRIED and PASSED_ON of the components XX, XY, YY (energy·time), HEAT_X, HEAT_Y
     (energy·length), APART_X and APART_Y (length), which are carried only, and 0 unless there are two species.

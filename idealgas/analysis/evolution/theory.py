@@ -189,7 +189,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
 
 
 def _crowded(log: Log, length: float) -> bool:
-    """Whether the gas is no fluid in a room of this length below the piston."""
+    """Whether the gas below the piston is denser than a fluid in a room of this length."""
     table, gas = log.scene.piston, log.discs
     across = gas.box[1 if table is None else 1 - table.axis]
     return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)

@@ -125,7 +125,7 @@ def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: flo
 def _average(
     given: np.ndarray, exposed: np.ndarray, balances: np.ndarray | None, theory: float | None = None
 ) -> Estimate:
-    """Mean of momentum given per exposed length; of a changing state over segments, as its change is no error.
+    """Mean of momentum given per exposed length; of a changing state over segments, as its change is not an error.
 
     theory: what balances the force. balances: see `_balances`; None for a changing state. The part of a force that goes
     with them fluctuates much, but its mean is only off by the change of what is stored.

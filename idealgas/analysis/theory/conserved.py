@@ -60,7 +60,7 @@ def degrees_of_freedom(scene: Scene, gas: Gas) -> int:
 
 
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
-    """Velocity (2,) of the whole gas at its start that is no heat, length/time.
+    """Velocity (2,) of the whole gas at its start that is not thermal, length/time.
 
     That is its conserved motion and, along the other axes, a motion of the centre of mass that is too large for chance.
     """

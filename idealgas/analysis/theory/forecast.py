@@ -230,15 +230,16 @@ def _temperature(scene: Scene, gas: Gas) -> float | None:
 
 def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     """Rates of a uniform gas; None if a disc has no room to move."""
-    _, radius, mass, number, _ = discs = classes(gas)
+    discs, periodic = classes(gas), scene.properties.periodic
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, discs)
-    if not _has_room(gas, scene.properties.periodic):
+    if not _has_room(gas, periodic):
         return None
-    per_disc = hard_discs.mixture_collision_rate(radius, mass, number, gas.area, temperature)
+    number = discs.number
+    per_disc = hard_discs.mixture_collision_rate(discs.radius, discs.mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
-    hits = _wall_hit_rate(gas, radius, mass, number, temperature, scene.properties.periodic)
-    rough = _why_rough(gas, radius, mass, number, temperature, scene.properties.periodic, per_disc)
+    hits = _wall_hit_rate(gas, discs, temperature, periodic)
+    rough = _why_rough(gas, discs, temperature, periodic, per_disc)
     thermostat = len(gas) * scene.properties.thermostat_rate
     pairs = float(number @ per_disc) / 2
     return _Rates(discs.shares @ per_disc, pairs, hits, thermostat=thermostat, rough=rough)
@@ -260,19 +261,13 @@ def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
 
 
 def _why_rough(
-    gas: Gas,
-    radius: np.ndarray,
-    mass: np.ndarray,
-    number: np.ndarray,
-    temperature: float,
-    periodic: tuple[bool, bool],
-    per_disc: np.ndarray,
+    gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool], per_disc: np.ndarray
 ) -> str:
     """Why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
-    theory = box_theory(radius, number, gas.box, periodic)
+    theory = box_theory(discs.radius, discs.number, gas.box, periodic)
     if theory.why_not:
         return theory.why_not
-    expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, mass)
+    expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)
     known = expected.sum(axis=1)
     off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # terms of 1/N too
     relative = float((off[known > 0] / known[known > 0]).max(initial=0.0))
@@ -281,17 +276,16 @@ def _why_rough(
 
 def _rates_without_positions(scene: Scene, gas: Gas, temperature: float, discs: Composition) -> _Rates:
     """Rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
-    _, radius, mass, number, _ = discs
-    contacts = hard_discs.contacts_without_positions(radius, number, gas.box)
-    per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, mass)).sum(axis=1)
+    contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, gas.box)
+    per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
     speeds = len(gas) + (scene.run.trials or 0)  # that discs have in a run, each of which may be the largest
-    fastest = math.sqrt(2 * temperature * math.log(speeds) / mass.min())
+    fastest = math.sqrt(2 * temperature * math.log(speeds) / discs.mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
-    return _Rates(discs.shares @ per_disc, float(number @ per_disc) / 2, 0.0, trials, rough=rough)
+    return _Rates(discs.shares @ per_disc, float(discs.number @ per_disc) / 2, 0.0, trials, rough=rough)
 
 
 def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) -> SpeciesForecast:
@@ -310,16 +304,14 @@ def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) 
     )
 
 
-def _wall_hit_rate(
-    gas: Gas, radius: np.ndarray, mass: np.ndarray, number: np.ndarray, temperature: float, periodic: tuple[bool, bool]
-) -> float:
+def _wall_hit_rate(gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool]) -> float:
     """Wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
 
     The density of hard discs at a wall is Z times the mean density.
     """
-    crowding = hard_discs.mixture_compressibility_factor(radius, number, gas.area)
+    crowding = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
     rate = 0.0
-    for r, m, n in zip(radius, mass, number, strict=True):
+    for r, m, n in zip(discs.radius, discs.mass, discs.number, strict=True):
         width, height = (
             length if is_periodic else length - 2 * r for length, is_periodic in zip(gas.box, periodic, strict=True)
         )

@@ -89,7 +89,7 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
             '[[axis]]\nkey = "phi"\nvalues = [1]\nrange = [0, 1, 2]\n' + BASE,
             ["1: axis.0: not one list of values (got values and"],
         ),
-        ('[[axis]]\nkey = "scene.seed"\nvalues = [1]\n' + BASE, ["2: axis.0.key: seeds are no axis"]),
+        ('[[axis]]\nkey = "scene.seed"\nvalues = [1]\n' + BASE, ["2: axis.0.key: seeds are not an axis"]),
         ("sweep.seed = 1\n", ["1: sweep.scene: not one base scene (got nothing"]),
         ('sweep.scene = "x.toml"\n' + BASE, ["1: sweep.scene: not one base scene (got sweep.scene and [base]"]),
         ('sweep.scene = "missing.toml"\n', ["missing.toml: cannot be read"]),

@@ -98,9 +98,10 @@ def test_a_heat_bath_carries_no_weight_on_average(make):
     assert abs(found.forces[-1].y.deviation) < 4
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_disc_that_meets_nothing_presses_on_nothing(make):
     periodic = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
-    log = make("species.count=1", "log.events=false", "log.pressure=true", "log.snapshot_every=0.1", *periodic)
+    log = make("species.count=1", "run.until=4", "log={ events=false, pressure=true, snapshot_every=0.1 }", *periodic)
     found = pressure(log).mechanical
     assert found.walls == ()
     assert found.forces[-1].x.value == 0.0
@@ -122,8 +123,11 @@ def test_a_wall_that_is_never_hit_has_no_error_bar(make):
     assert row[1:3] == ["0", ""]
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_samples_alone_do_not_follow_a_piston(make):
-    log = make("piston={ mass = 8, pressure = 2, position = 6 }", "log.events=false", "log.pressure=true")
+    log = make(
+        "piston={ mass = 8, pressure = 2, position = 6 }", "log={ events=false, pressure=true }", "run.until=0.1"
+    )
     with pytest.raises(UserError, match="has no events, and samples do not follow a piston") as error:
         pressure(log)
     assert not isinstance(error.value, NotApplicableError)  # theory is not what is missing
