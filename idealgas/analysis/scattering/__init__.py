@@ -20,7 +20,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
 from idealgas.analysis.scattering.displacements import Curve, VanHove, curve_of, non_gaussian, van_hove
-from idealgas.analysis.scattering.sums import APART, Sums, distance_edges, read, segments, wave_numbers
+from idealgas.analysis.scattering.sums import APART, BINS, FARTHEST, Sums, read, segments, wave_numbers
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.waves import sound_of_discs
 from idealgas.errors import NotApplicableError, UserError
@@ -123,9 +123,10 @@ class ScatteringAnalysis(Analysis):
             if lags >= FEWEST_LAGS:
                 time = STEP / (k * speed) * np.arange(lags)
                 series = read(log, window, k, float(time[1]), lags)
-                sums = list(segments(log, k, lags, series))
+                edges = np.linspace(0, FARTHEST * math.sqrt(_mean_square(log, float(time[APART]))), BINS + 1)
+                sums = list(segments(log, k, lags, series, edges))
                 waves.append(_wave(log, k, time, sums, speed))
-                displaced.append(van_hove(float(time[APART]), distance_edges(series), sums))
+                displaced.append(van_hove(float(time[APART]), edges, sums))
                 moments.append((time, np.array([one.moments for one in sums])))
             if progress is not None:
                 progress(done, len(numbers))
@@ -275,6 +276,15 @@ def _free_flight(log: Log, path: float, k: float) -> tuple[float | None, float]:
     half = path**2 * temperature / mass * (1 - 1 / len(gas)) / 2
     value = math.exp(-half * 2 * (collisions + math.expm1(-collisions)) / collisions**2)
     return (value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))) if collisions < 1 else (None, 0.0)
+
+
+def _mean_square(log: Log, time: float) -> float:
+    """Mean square displacement after a time by Enskog's D, length²; see `_free_flight`. It only sets bins."""
+    gas, temperature = log.discs, ensemble(log).temperature
+    chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
+    diameter, mass = 2 * float(gas.radius[0]), float(gas.mass[0])
+    rate = temperature / (mass * hard_discs.enskog_diffusion(diameter, len(gas) / gas.area, temperature, mass, chi))
+    return 4 * temperature / mass * (rate * time + math.expm1(-rate * time)) / rate**2
 
 
 def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:

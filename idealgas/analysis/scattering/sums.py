@@ -26,14 +26,14 @@ APART = 16
 """Lag after which distances are counted, in steps."""
 
 BINS, FARTHEST = 30, 3.0
-"""Number of bins of distances, and their end in root-mean-square displacements."""
+"""Number of bins of distances, and their end in root-mean-square displacements by theory."""
 
 
 class Sums(NamedTuple):
     """Correlations (L,) in one segment, and displacements.
 
     moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`. distances: (BINS,), shares of the discs that
-    are at the distances between `distance_edges` from their place APART steps before.
+    are at distances in bins from their place APART steps before.
     """
 
     density: np.ndarray
@@ -96,9 +96,9 @@ def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
     return Series(at, starts, at.searchsorted(begins), axes, waves, places)
 
 
-def segments(log: Log, k: float, lags: int, series: Series) -> Iterator[Sums]:
-    """Sums of each segment of a wave."""
-    starts, edges, number = series.starts, distance_edges(series), len(series.axes)
+def segments(log: Log, k: float, lags: int, series: Series, edges: np.ndarray) -> Iterator[Sums]:
+    """Sums of each segment of a wave; edges: of the bins of distances, length."""
+    starts, number = series.starts, len(series.axes)
     phases = [np.exp(-1j * k * series.places[axis]) for axis in series.axes]
     for first in series.begins:
         some = slice(first, first + starts + lags - 1)
@@ -116,12 +116,6 @@ def squares_after(places: np.ndarray, lag: int, starts: int) -> np.ndarray:
     """Squares (starts, M) of displacements after a number of instants, from places (2, n, M)."""
     x, y = places[:, lag : lag + starts] - places[:, :starts]
     return np.asarray(x * x + y * y)
-
-
-def distance_edges(series: Series) -> np.ndarray:
-    """Edges (BINS + 1,) of bins of distances, up to FARTHEST root-mean-square displacements in the first segment."""
-    square = squares_after(series.places, APART, series.starts).mean()
-    return np.linspace(0, FARTHEST * np.sqrt(square), BINS + 1)
 
 
 def correlation(series: np.ndarray, lags: int) -> np.ndarray:

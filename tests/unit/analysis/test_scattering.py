@@ -7,7 +7,7 @@ import pytest
 
 import idealgas
 from idealgas import open_log, parse_scene, simulate
-from idealgas.analysis.scattering.sums import correlation, distance_edges, read, segments
+from idealgas.analysis.scattering.sums import correlation, read, segments
 from idealgas.errors import NotApplicableError, UserError
 
 GAS = """
@@ -48,7 +48,8 @@ def test_sums_against_states(make, monkeypatch, starts, step):
     most = len(read(log, window, k, step, lags).at) * 15
     monkeypatch.setattr("idealgas.analysis.scattering.sums.MOST_PLACES", most)
     series = read(log, window, k, step, lags)
-    *_, one = segments(log, k, lags, series)
+    edges = np.linspace(0, 2, 31)
+    *_, one = segments(log, k, lags, series, edges)
     apart = int((window.duration / step - lags + 2) / 32)
     assert (series.starts, series.places.shape[2]) == (starts if starts < 64 else apart, 15)
     assert (np.diff(series.at) == 1).all() == (starts == 64)
@@ -70,7 +71,7 @@ def test_sums_against_states(make, monkeypatch, starts, step):
     apart = [unwrapped[t + 16, ::2] - unwrapped[t, ::2] for t in range(series.starts)]
     distance = np.hypot(*np.moveaxis(apart, 2, 0)).ravel()
     assert one.moments[4] == pytest.approx(((distance**2).mean(), (distance**4).mean()))
-    assert one.distances == pytest.approx(np.histogram(distance, distance_edges(series))[0] / len(distance))
+    assert one.distances == pytest.approx(np.histogram(distance, edges)[0] / len(distance))
 
 
 @pytest.fixture(scope="module")
