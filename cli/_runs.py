@@ -80,6 +80,8 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     }
     if summary.thermostat_collisions:
         rows["  thermostat collisions"] = f"{summary.thermostat_collisions:,}"
+    if summary.escaped:
+        rows["  discs that left"] = f"{summary.escaped:,}"
     if summary.steered:
         rows["  discs steered"] = f"{summary.steered:,}"
     if summary.trials:

@@ -12,7 +12,7 @@ from ._terminal import data
 if TYPE_CHECKING:
     from idealgas.columns import EventBatch
 
-KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered")
+KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped")
 LINES = 200  # in one write, which a pipe takes as a whole
 SECONDS = 0.2  # between two looks at a log that is being written
 

@@ -7,6 +7,7 @@ from idealgas.analysis.core.deviations import sensitivity as sensitivity
 from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.entropy import EntropyAnalysis
+from idealgas.analysis.escape import EscapeAnalysis
 from idealgas.analysis.evolution import EvolutionAnalysis
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.histogram import HistogramAnalysis
@@ -51,6 +52,7 @@ from idealgas.sweep.run import run_sweep as run_sweep
 cooling = takes_path(CoolingAnalysis.measure)
 effusion = takes_path(EffusionAnalysis.measure)
 entropy = takes_path(EntropyAnalysis.measure)
+escape = takes_path(EscapeAnalysis.measure)
 evolution = takes_path(EvolutionAnalysis.measure)
 heat_capacity = takes_path(HeatCapacityAnalysis.measure)
 histogram = takes_path(HistogramAnalysis.measure)

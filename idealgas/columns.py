@@ -50,6 +50,8 @@ class Kind(IntEnum):
     """The heat bath of a thermostat."""
     STEERED = 5
     """Nothing: its velocity or its acceleration changed from outside."""
+    ESCAPED = 6
+    """An absorbing wall, through which it left the gas: its last event."""
 
 
 class Column(NamedTuple):

@@ -51,8 +51,8 @@ def status(log: Log) -> Status:
     """Status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
-    squares = mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
-    temperature = float(squares.mean() / 2)
+    squares = (mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1))[state.inside]
+    temperature = float(squares.mean() / 2) if len(squares) else 0.0
     edges = np.linspace(0, HIGHEST, BINS + 1)
     speeds = np.sqrt(squares / temperature) if temperature > 0 else None
     p, z = _pressure(log, seen)

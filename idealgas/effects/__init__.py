@@ -17,6 +17,7 @@ NAMES = (
     "wall",
     "arc",
     "permeable",
+    "absorbing",
     "rotation",
     "restitution",
     "thermal",

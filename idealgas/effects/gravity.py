@@ -66,8 +66,11 @@ def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
 
 
 def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
-    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows."""
-    return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
+    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows.
+
+    Discs that have left the gas have the position nan, and none.
+    """
+    return -float(np.nansum(gas.mass * (gas.position @ np.array(gravity))))
 
 
 EFFECT = EffectSpec(

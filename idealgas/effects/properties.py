@@ -48,7 +48,7 @@ class Properties:
     driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
     with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
     motion. varies: a temperature, pressure, velocity or acceleration changes in time. vibrates: a side does. one_way:
-    discs pass a wall in one direction only.
+    discs pass a wall in one direction only. escapes: discs leave the gas.
 
     inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
     are. acceleration: of all discs between events at the start, length/time². later_accelerations: the same from later
@@ -74,6 +74,7 @@ class Properties:
     varies: bool = _plain(False, operator.or_)
     vibrates: bool = _plain(False, operator.or_)
     one_way: bool = _plain(False, operator.or_)
+    escapes: bool = _plain(False, operator.or_)
     inertia: float | None = _plain(None, _first_not_none)
     periodic: tuple[bool, bool] = _plain((False, False), _merge)
     acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
@@ -110,7 +111,7 @@ class Properties:
     @property
     def conserves_energy(self) -> bool:
         """Whether nothing but heat, from walls or a heat bath, changes the energy of motion and spin."""
-        return self.lossless and self.straight_flight and self.fixed_walls
+        return self.lossless and self.straight_flight and self.fixed_walls and not self.escapes
 
     @property
     def conserves_motion(self) -> bool:

@@ -34,7 +34,8 @@ class Wall(SteppedTable):
 
     Discs of the species `permeable_to` pass a wall as if it were absent. With `permeable_from` they pass from that side
     only: beyond, a disc bounces where it touches the wall, or where its centre is back at it as long as the disc has
-    not come out; the ends are solid.
+    not come out; the ends are solid. Where another wall would reflect a disc, one that is `absorbing` takes it out of
+    the gas.
     """
 
     in_steps = ("temperature",)
@@ -59,6 +60,7 @@ class Wall(SteppedTable):
     permeable_from: Literal[SIDES] | None = Field(  # type: ignore[valid-type]
         default=None, description="the side of the wall from which they pass; both if absent"
     )
+    absorbing: bool = Field(default=False, description="whether it is a hole: discs that touch it leave the gas")
     name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
 
     @property
@@ -77,7 +79,9 @@ class Wall(SteppedTable):
     @property
     def action(self) -> str:
         """Short description for output."""
-        action = "reflecting" if self.temperature is None else f"thermal, temperature {description(self.temperature)}"
+        action = "absorbing" if self.absorbing else "reflecting"
+        if self.temperature is not None:
+            action = f"thermal, temperature {description(self.temperature)}"
         if arc := self.arc:
             action = f"{'circle' if self.start == self.end else 'arc'} of radius {arc.radius:.6g}, {action}"
         if self.is_permeable:
@@ -114,7 +118,7 @@ class LastingWall:
 
     temperature = permeable_from = arc = None
     absences = ()
-    is_permeable = False
+    is_permeable = absorbing = False
 
     def is_there(self, _: float) -> bool:
         """Whether it is present at a time."""
@@ -215,6 +219,9 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
     if wall.is_permeable and wall.solid:
         keys = (("wall", i, "solid"), ("wall", i, "permeable_to"), ("wall", i, "permeable_from"))
         yield Issue(keys, "a solid that lets discs pass", f'"{wall.solid}" and a permeable wall', "one of them")
+    if wall.absorbing and wall.temperature is not None:
+        keys = (("wall", i, "absorbing"), ("wall", i, "temperature"))
+        yield Issue(keys, "an absorbing wall with a temperature", str(wall.temperature), "one of them")
     if times and wall.solid:
         keys = (("wall", i, "solid"), ("wall", i, "opens_at"), ("wall", i, "closes_at"))
         yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "one of them")

@@ -9,10 +9,10 @@ import numpy as np
 from idealgas.columns import BATH, FIRST_SEGMENT, EventBatch
 from idealgas.engine.event_writer import (
     DISC,
+    ESCAPED,
     PISTON,
     THERMOSTAT,
     WALL,
-    WALL_END,
     batch_capacity,
     write_hit,
     write_pair,
@@ -28,6 +28,7 @@ from idealgas.engine.resolve import (
     resolve_thermostat_collision,
 )
 from idealgas.jit import inline, njit
+from idealgas.physics.absorbing import has_left, leave_gas
 from idealgas.physics.arc import wall_contact
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
@@ -187,10 +188,13 @@ def next_event(record, box, effects):
     """
     best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):
+        if has_left(record[i], effects.absorbing):
+            continue
         best = wall_event(record, i, effects, box[0], box[1], best)
         best = thermostat_event(i, effects.thermostat, best)
         for j in range(i + 1, record.shape[0]):
-            best = pair_event(record, i, j, effects, best)
+            if not has_left(record[j], effects.absorbing):
+                best = pair_event(record, i, j, effects, best)
         best = boundary_crossing_event(record, i, effects.periodic, best)
     return stop_event(effects.piston, best)
 
@@ -239,9 +243,10 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             rows += write_hit(batch, rows, clock, i, -1 - partner, WALL, disc, effects)
         elif what == SEGMENT:
             images = images_to_wall(effects.periodic, i, (image_x, image_y))
-            at_end = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
-            wall = -1 - FIRST_SEGMENT - partner
-            rows += write_hit(batch, rows, clock, i, wall, WALL_END if at_end else WALL, disc, effects)
+            kind = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
+            rows += write_hit(batch, rows, clock, i, -1 - FIRST_SEGMENT - partner, kind, disc, effects)
+            if effects.absorbing is not None and kind == ESCAPED:
+                leave_gas(disc, i, effects.rotation)
         elif what == THERMOSTAT:
             resolve_thermostat_collision(disc, i, time, effects.thermostat, effects)
             rows += write_hit(batch, rows, clock, i, BATH, THERMOSTAT, disc, effects)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline, njit
+from idealgas.physics.absorbing import has_left
 from idealgas.physics.periodic import separation
 from idealgas.state import Gas
 
@@ -37,12 +38,13 @@ def overlap_of(a, b, periodic):
 
 
 @njit
-def deepest_overlap_of_all(record, periodic):
+def deepest_overlap_of_all(record, periodic, absorbing):
     """Deepest overlap of all pairs of discs, divided by the sum of their radii; 0 without any."""
     deepest = 0.0
     for i in range(record.shape[0]):
-        for j in range(i):
-            deepest = max(deepest, overlap_of(record[i], record[j], periodic))
+        for j in range(0 if has_left(record[i], absorbing) else i):
+            if not has_left(record[j], absorbing):
+                deepest = max(deepest, overlap_of(record[i], record[j], periodic))
     return deepest
 
 
@@ -50,6 +52,6 @@ def check_invariants(gas: Gas, overlap: float) -> Diagnostics:
     """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
     radius = gas.radius
     reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(gas.position.T, gas.box, strict=True)]
-    outside = float(max((np.array(reach) / (2 * radius)).max(), 0.0))
+    outside = float(max(np.nan_to_num(np.array(reach) / (2 * radius)).max(), 0.0))  # nan of discs that have left
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
     return Diagnostics(gas.kinetic_energy, momentum, overlap, outside)

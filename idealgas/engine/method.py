@@ -94,4 +94,4 @@ class Method(ABC):
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap_of_all(self.discs.record, self._effects.periodic)
+        return deepest_overlap_of_all(self.discs.record, self._effects.periodic, self._effects.absorbing)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import aligned, inline, njit
+from idealgas.physics.absorbing import has_left
 from idealgas.physics.motion import NEVER, advance
 from idealgas.physics.periodic import wrap
 from idealgas.physics.stress import complete_flights
@@ -105,19 +106,20 @@ def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now
 
 
 @njit
-def synchronise(record, ids, time, gravity, periodic, flow, position, velocity):
+def synchronise(record, ids, time, gravity, periodic, flow, absorbing, position, velocity):
     """Move every disc to one local time, wrap its position into the box, and store position and velocity by id.
 
     Where momentum flow is recorded, it then has all up to that time. position, velocity: (N, 2) f8, length and
     length/time.
     """
     if flow is not None:
-        complete_flights(record, time, gravity, flow)
+        complete_flights(record, time, gravity, flow, absorbing)
     for i in range(record.shape[0]):
         disc = record[U(i)]
         own = U(ids[U(i)])
-        advance(disc, time, gravity)
-        wrap(disc, own, periodic)
+        if not has_left(disc, absorbing):
+            advance(disc, time, gravity)
+            wrap(disc, own, periodic)
         position[own, 0], position[own, 1] = disc.x, disc.y
         velocity[own, 0], velocity[own, 1] = disc.vx, disc.vy
 

@@ -3,13 +3,15 @@
 import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, SIDES
+from idealgas.engine.event_writer import ESCAPED, WALL, WALL_END
 from idealgas.jit import inline
 from idealgas.physics.arc import wall_frame
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall, inward_normal
 from idealgas.physics.exact_sum import add
+from idealgas.physics.gravity import potential_energy
 from idealgas.physics.motion import advance
-from idealgas.physics.periodic import enter_opposite_side, wrap
+from idealgas.physics.periodic import enter_opposite_side, place_in_space, wrap
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, is_inner, normal_of_piston
 from idealgas.physics.restitution import record_collision
@@ -121,6 +123,29 @@ def bounce(disc, own, nx, ny, wall, time, effects):
 
 
 @inline
+def absorb(disc, own, wall, time, effects):
+    """Count the last event of a disc, whose record is at the time of contact, at an absorbing wall; see `bounce`.
+
+    The wall takes its whole energy and momentum.
+    """
+    finish(disc, own, time, effects)
+    place = place_in_space(disc, own, effects.periodic)
+    energy = energy_of(disc, own, effects.rotation) + potential_energy(disc.m, place, effects.gravity)
+    record_wall_energy(wall, -energy, 0.0, effects)
+    return -(disc.m * disc.vx), -(disc.m * disc.vy)
+
+
+@inline
+def meet_segment(disc, own, nx, ny, segment, at_end, time, absorbing, effects):
+    """Reflect, emit or absorb a disc at a wall inside the box; return the momentum, see `bounce`, and the kind."""
+    if absorbing is not None and absorbing[U(segment)]:
+        px, py = absorb(disc, own, FIRST_SEGMENT + segment, time, effects)
+        return px, py, ESCAPED
+    px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+    return px, py, WALL_END if at_end else WALL
+
+
+@inline
 def bounce_off_side(disc, own, nx, ny, side, time, vibration, effects):
     """Reflect or emit a disc at a side of the box, which may vibrate; see `bounce`."""
     if vibration is None:
@@ -177,18 +202,18 @@ def face_of(wall, left):
 
 @inline
 def resolve_segment(disc, own, segment, time, images, segments, effects):
-    """Collide a disc with a wall inside the box at a local time; return whether it touches an end of the wall."""
+    """Collide a disc with a wall inside the box at a local time; return the kind of the event."""
     if segments is not None:
         arrive(disc, time, effects)
         passage = passage_of(effects.permeable, own, segment)
         nx, ny, at_end, tx, ty, left = wall_frame(
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
         )
-        px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+        px, py, kind = meet_segment(disc, own, nx, ny, segment, at_end, time, effects.absorbing, effects)
         face = face_of(FIRST_SEGMENT + segment, left > 0.0)
         record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
-        return at_end
-    return False
+        return kind
+    return WALL
 
 
 @inline

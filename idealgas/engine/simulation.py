@@ -62,6 +62,7 @@ class Totals(NamedTuple):
         wall_hits: hits of walls, piston included.
         thermostat_collisions: of discs with a heat bath.
         steered: discs whose velocities or acceleration were changed from outside.
+        escaped: discs that have left the gas through absorbing walls; their last hits are wall hits.
         trials: pairs tried by Monte Carlo.
     """
 
@@ -70,6 +71,7 @@ class Totals(NamedTuple):
     wall_hits: int = 0
     thermostat_collisions: int = 0
     steered: int = 0
+    escaped: int = 0
     trials: int = 0
 
 
@@ -187,6 +189,7 @@ class Simulation:
             self.totals.wall_hits + counted["wall_hits"],
             self.totals.thermostat_collisions + counted["thermostat_collisions"],
             self.totals.steered,
+            0 if self.effects.absorbing is None else int(np.isnan(self.method.discs.record.x).sum()),
             counted["trials"],
         )
 
@@ -223,7 +226,8 @@ class Simulation:
         ids = self.method.discs.id
         position, velocity = np.empty((2, len(record), 2))
         try:
-            synchronise(record, ids, local_time, self.effects.gravity, periodic, flow, position, velocity)
+            gravity, absorbing = self.effects.gravity, self.effects.absorbing
+            synchronise(record, ids, local_time, gravity, periodic, flow, absorbing, position, velocity)
         except SumRangeError as error:
             raise self._dated(error) from error
         if not self.method.has_positions:
@@ -289,7 +293,9 @@ class Simulation:
         self._steer(np.arange(len(self.gas)), reversed_velocity(self.gas.velocity))
 
     def _steer(self, discs: np.ndarray, velocity: np.ndarray) -> None:
-        """Change the velocities to (N, 2), those of some discs (n,), between two epochs."""
+        """Change the velocities to (N, 2), those of some discs (n,), between two epochs; discs that left have none."""
+        if self.effects.absorbing is not None:
+            discs = discs[~np.isnan(self.gas.position[discs, 0])]
         self.gas, self.steered = replace(self.gas, velocity=velocity), np.union1d(self.steered, discs)
 
     def check_invariants(self) -> Diagnostics:

@@ -59,6 +59,7 @@ def check_scene(
     for kind, cause, events, wanted in (
         (Kind.THERMOSTAT, "heat bath", "thermostat collisions", scene.thermostat is not None),
         (Kind.STEERED, "steering", "steered discs", steered),
+        (Kind.ESCAPED, "wall that absorbs", "discs that escape", scene.properties.escapes),
     ):
         if wanted != (kind in kinds):
             raise ValueError(f"{'a' if wanted else 'no'} {cause} (got {'no ' * wanted}{events})")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from idealgas.columns import BLOCK, Column
+from idealgas.columns import BLOCK, Column, Kind
 from idealgas.log.errors import LogError
 from idealgas.log.history import LogHistory
 from idealgas.log.join import Arrays, Join, whole_pairs
@@ -168,7 +168,7 @@ class FlightReader:
         self._log, self._edges = log, times
         self._columns = set(known if columns is None else columns)
         self._made = _made_for(self._columns)
-        self._read = ("time", "disc", *sorted(_read_for(self._made)))
+        self._read = ("time", "disc", *sorted(_read_for(self._made) | ({"kind"} if log.escapes else set())))
         self._falls = log.has_gravity
 
     def batches(self) -> Iterator[Flights]:
@@ -180,17 +180,24 @@ class FlightReader:
     def whole(self) -> Iterator[Arrays]:
         """Yield uncut flights that end with events, in batches. Their block is that of their end."""
         log, (first, last) = self._log, self._edges[[0, -1]]
-        self._join = Join(log.state_at(first), self._read)
+        state = log.state_at(first)
+        self._join, self._left = Join(state, self._read), np.isnan(state.velocity[:, 0])
         for rows in whole_pairs(log.chunks(self._read, log.row_at(first, "right"), log.row_at(last, "right"))):
             if self._discs is not None:
                 chosen = np.flatnonzero(np.isin(rows["disc"], self._discs))
                 rows = {name: values[chosen] for name, values in rows.items()}
+            if log.escapes:
+                self._left[rows["disc"][rows["kind"] == Kind.ESCAPED]] = True
             if len(rows["disc"]):
                 yield self._flights(self._join.pass_on(rows), rows["time"], rows)
 
     def open(self) -> Iterator[Arrays]:
-        """Yield uncut flights that are open at the last edge, one per disc, in batches, after all those of `whole`."""
-        every = np.arange(self._join.discs) if self._discs is None else self._discs
+        """Yield uncut flights that are open at the last edge, one per disc, in batches, after all those of `whole`.
+
+        Discs that have left the gas have none.
+        """
+        every = np.flatnonzero(~self._left)
+        every = every if self._discs is None else np.intersect1d(every, self._discs)
         for some in np.split(every, range(BATCH, len(every), BATCH)):
             yield self._flights(self._join.states(some), np.full(len(some), self._edges[-1]), None)
 

@@ -101,6 +101,11 @@ class LogHeader:
         times, values = zip(*self.scene.gravity.steps, strict=True)
         return np.array(times), np.array(values)
 
+    @property
+    def escapes(self) -> bool:
+        """Whether discs may leave the gas."""
+        return Kind.ESCAPED in self._file.kinds
+
     def _has_time_steps(self) -> bool:
         """Whether discs move in time steps; False if the scene is damaged."""
         try:

@@ -224,7 +224,7 @@ class LogHistory(LogHeader):
                 )
             if replay is None or nearest > base:
                 replay, base = self._replay(nearest), nearest
-            for block in self.chunks(("time", "disc", *replay.state), replay.row, self.row_at(time, "right")):
+            for block in self.chunks(replay.columns, replay.row, self.row_at(time, "right")):
                 replay.follow(block)
             yield self._file.checked(partial(replay.at, time), f"the state at time {time:g}")
 
@@ -233,7 +233,8 @@ class LogHistory(LogHeader):
             start = self.checkpoints[checkpoint]
         else:
             start = Checkpoint(self.start_time, 0, 0, self._start_arrays(), {})
-        return Replay(start, self.columns, self.box, self.periodic, self.gravity_at if self.has_gravity else None)
+        gravity_at = self.gravity_at if self.has_gravity else None
+        return Replay(start, self.columns, self.box, self.periodic, gravity_at, self.escapes)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
         """Discs at the start, as in a checkpoint."""

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, overload
 
 import numpy as np
 
+from idealgas.columns import Kind
 from idealgas.log.log_file import LogFile, Table
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.physics.motion import position_after, velocity_after
@@ -15,7 +16,7 @@ MOST_BOXES = 2.0**30
 
 
 class LogState(NamedTuple):
-    """All discs at one time, in order of id.
+    """All discs at one time, in order of id. Discs that have left the gas have nan.
 
     Attributes:
         time: time of the state.
@@ -30,6 +31,16 @@ class LogState(NamedTuple):
     velocity: np.ndarray
     image: np.ndarray | None = None
     angular_velocity: np.ndarray | None = None
+
+    @property
+    def inside(self) -> np.ndarray:
+        """(N,) bool, whether each disc is in the gas."""
+        return ~np.isnan(self.velocity[:, 0])
+
+    def mean(self, values: np.ndarray, members: np.ndarray | bool = True) -> float:
+        """Mean of values (N,) over the discs in the gas, or those of them that are members; 0 without any."""
+        found = values[self.inside & members]
+        return float(found.mean()) if len(found) else 0.0
 
 
 class Checkpoint(NamedTuple):
@@ -108,7 +119,7 @@ class Replay:
 
     Attributes:
         row: number of the next event row.
-        state: columns of events that `follow` needs in addition to time and disc.
+        columns: columns of events that `follow` needs.
     """
 
     def __init__(
@@ -118,19 +129,24 @@ class Replay:
         box: tuple[float, float],
         periodic: Sequence[bool],
         gravity_at: Callable[[np.ndarray], np.ndarray] | None,
+        escapes: bool,
     ) -> None:
         self.row = start.row
         self._record = {name: start.arrays[name].copy() for name in LogState._fields[1:] if name in start.arrays}
         self._record.setdefault("position", np.full_like(start.velocity, np.nan))
-        self.state = tuple(name for name in self._record if name in columns)
+        self._left = np.isnan(self._record["position"][:, 0]) if escapes else None
+        self._state = tuple(name for name in self._record if name in columns)
+        self.columns = ("time", "disc", *self._state, *(("kind",) if escapes else ()))
         self._time = np.full(len(start.velocity), start.time)
         self._box, self._periodic, self._gravity_at = box, periodic, gravity_at
 
     def follow(self, block: Any) -> None:
         """Advance through a block of event rows."""
         self._time[block.disc] = block.time
-        for name in self.state:
+        for name in self._state:
             self._record[name][block.disc] = getattr(block, name)
+        if self._left is not None:
+            self._left[block.disc[block.kind == Kind.ESCAPED]] = True
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
@@ -140,6 +156,8 @@ class Replay:
         """
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
+        if self._left is not None:
+            position[self._left] = 0.0
         delay = time - self._time
         gravity = None if self._gravity_at is None else self._gravity_at(self._time)
         for axis in range(2):
@@ -155,4 +173,7 @@ class Replay:
                     )
                 now["image"][:, axis] += boxes.astype(np.int32)
             position[:, axis] = coordinate
+        for values in now.values() if self._left is not None else ():
+            if values.dtype.kind == "f":
+                values[self._left] = np.nan
         return LogState(time, **now)

@@ -28,6 +28,7 @@ from idealgas.log.schema import (
     BOX,
     CHANGE_COLUMNS,
     CHECKPOINT_COLUMNS,
+    COUNTED,
     DISC_COLUMNS,
     ENDPOINTS,
     GRAVITY,
@@ -84,7 +85,8 @@ class Rules:
             walls: number of walls.
             kinds: kinds of events of this log, of those that only some logs have.
         """
-        self._others = [PARTNERS[kind] for kind in kinds]
+        self._others = [PARTNERS[kind] for kind in kinds if kind in PARTNERS]
+        self._escapes = Kind.ESCAPED in kinds
         self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {
@@ -92,7 +94,7 @@ class Rules:
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(kind for kind in Kind if kind not in PARTNERS or kind in kinds)),
+            "kind": (0, max(kind for kind in Kind if kind not in COUNTED.values() or kind in kinds)),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -204,8 +206,13 @@ class Rules:
         return (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST)
 
     def _check_positions(self, path: str, data: np.ndarray, start: int) -> None:
-        """Check that positions are in the box, except after the start of a run with time steps."""
+        """Check that positions are in the box, except after the start of a run with time steps.
+
+        Discs that have left the gas have the position nan.
+        """
         width, height = self._box
+        if self._escapes and path.startswith(("checkpoints/", "particles/")):
+            data = np.nan_to_num(data)
         try:
             if width == height:
                 _check_range(data, 0, width, start)

@@ -64,7 +64,7 @@ CHANGE_COLUMNS = (Column("time", "f8", (), "time"), Column("setting", "S256"))
 """Changes that a program made to the scene during the run."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
 """Texts of the run, and of each run that resumed it."""
-COUNTED = {"thermostat_collisions": Kind.THERMOSTAT, "steered": Kind.STEERED}
+COUNTED = {"thermostat_collisions": Kind.THERMOSTAT, "steered": Kind.STEERED, "escaped": Kind.ESCAPED}
 """Kinds of events that only logs have whose checkpoints have these columns."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """Columns of the summary, with a row for each field; the values are JSON."""

@@ -1,5 +1,6 @@
 """A state of a log as the start of another scene: its discs, and the scene that continues from it."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Any, Literal
 
@@ -37,13 +38,16 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         raise UserError(f"{log.path}: its discs have no positions")
     state, discs, scene = log.state_at(time), log.discs, log.scene
     spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
+    here = ~np.isnan(state.position[:, 0])
+    if not here.any():
+        raise UserError(f"{log.path}: all discs have left the gas by t = {time:g}")
     columns: dict[str, Any] = {
-        "position": state.position,
-        "velocity": state.velocity,
-        "radius": discs.radius,
-        "mass": discs.mass,
-        "angular_velocity": spin,
-        "species": [discs.species_names[k] for k in discs.species.tolist()],
+        "position": state.position[here],
+        "velocity": state.velocity[here],
+        "radius": discs.radius[here],
+        "mass": discs.mass[here],
+        "angular_velocity": spin[here],
+        "species": [discs.species_names[k] for k in discs.species[here].tolist()],
     }
     walls = [wall for wall in scene.segments if wall.is_there(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
@@ -58,8 +62,8 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
         UserError: if the log has no positions at this time, or if the piston is not known then.
     """
     time, scene = _instant(log, time), log.scene
-    _columns(log, time)
-    numbers = dict(zip(log.discs.species_names, np.bincount(log.discs.species).tolist(), strict=False))
+    columns, _ = _columns(log, time)
+    numbers = Counter(columns["species"])
     update: dict[str, Any] = {
         "start": Start(log=source, time=time),
         "disc": tuple(disc for disc in scene.disc if disc.fixed),

@@ -8,8 +8,8 @@ from typing import Any, Self
 from idealgas.log.rules import LONGEST
 
 KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
-STEERED = "steered"
-"""Fields whose sum is the number of events; the last is absent where it is 0."""
+STEERED, ESCAPED = OPTIONAL = ("steered", "escaped")
+"""Fields whose sum is the number of events, with `steered`; those that are absent where they are 0."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,7 @@ class Summary:
         shared_slices: number of slices of time that several threads shared.
         aborted_slices: number of these that one thread had to repeat.
         steered: number of events in which a velocity, or gravity, was changed from outside.
+        escaped: number of discs that have left the gas; their last events are wall hits.
     """
 
     completed: bool
@@ -61,17 +62,17 @@ class Summary:
     shared_slices: int
     aborted_slices: int
     steered: int = 0
+    escaped: int = 0
 
     @classmethod
     def of(cls, found: Mapping[str, Any]) -> Self:
-        """Make a summary from the fields of a log; a missing one raises the error of `found`, except `steered`."""
-        return cls(
-            **{field.name: found[field.name] for field in fields(cls) if field.name in found or field.name != STEERED}
-        )
+        """Make a summary from the fields of a log; a missing one raises the error of `found`, unless it may be 0."""
+        names = [field.name for field in fields(cls)]
+        return cls(**{name: found[name] for name in names if name in found or name not in OPTIONAL})
 
     def as_dict(self) -> dict[str, Any]:
-        """Fields by name, ready for JSON; without `steered` where no event is of this kind."""
-        return {name: value for name, value in asdict(self).items() if value or name != STEERED}
+        """Fields by name, ready for JSON; without `steered` and `escaped` where they are 0."""
+        return {name: value for name, value in asdict(self).items() if value or name not in OPTIONAL}
 
 
 def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, Any]:

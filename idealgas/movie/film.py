@@ -157,6 +157,8 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
         raise UserError(f"{log.path}: has a piston, and neighbours are only found in a box with fixed sides")
+    if colouring == "order" and log.escapes:
+        raise UserError(f"{log.path}: discs leave this gas, and neighbours are only found among all of them")
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method})")
     log.require_events()
@@ -169,7 +171,7 @@ def _some_states(log: Log, first: float, last: float) -> list[LogState]:
 def speeds(log: Log, some: Sequence[LogState]) -> tuple[float, float]:
     """Largest root-mean-square speed of states, and the same relative to a conserved motion of the whole gas."""
     typical, thermal = (
-        max(np.sqrt(((state.velocity - u) ** 2).sum(axis=1).mean()) for state in some)
+        max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in some)
         for u in (0.0, centre_of_mass_velocity(log))
     )
     return float(typical), float(thermal)

@@ -221,9 +221,9 @@ class Painter:
     def paint(self, state: LogState) -> np.ndarray:
         """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
         speed = np.hypot(*(state.velocity - self._flow).T)
-        self._place(state.position, speed)
+        self._place(state.position, speed, np.flatnonzero(state.inside))
         beside = () if self._panel is None else self._panel.update(state, speed)
-        energy = self._gas.mass @ (state.velocity**2).sum(axis=1) / 2
+        energy = np.nansum(self._gas.mass * (state.velocity**2).sum(axis=1)) / 2
         self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
         self._canvas.restore_region(self._still)
         for artist in (
@@ -313,11 +313,10 @@ class Painter:
             return order_colours(bond_order(position, self._gas.box, tuple(self._periodic)).value)
         return self._shades[np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)]
 
-    def _place(self, position: np.ndarray, speed: np.ndarray) -> None:
-        """Draw the discs at their positions, and their periodic images at periodic sides."""
-        colours = self._colours(position, speed)
-        radius, box = self._gas.radius, np.array(self._gas.box)
-        which = np.arange(len(radius))
+    def _place(self, position: np.ndarray, speed: np.ndarray, which: np.ndarray) -> None:
+        """Draw the discs `which` (n,) at their positions, and their periodic images at periodic sides."""
+        colours = self._colours(position, np.nan_to_num(speed))
+        radius, box, position = self._gas.radius, np.array(self._gas.box), position[which]
         for axis in np.flatnonzero(self._periodic):
             for side in (-1, 1):
                 reach = (

@@ -57,8 +57,9 @@ class SpeedPanel:
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
         """Bars of the speeds, and the curve at their temperature."""
-        self._bars.set_data(np.histogram(speed, self._edges)[0] / (len(speed) * self._edges[1]))
-        self._curve.set_ydata(self._density(float(self._gas.mass @ speed**2) / 2 / len(speed)))
+        here = speed[state.inside]
+        self._bars.set_data(np.histogram(here, self._edges)[0] / (max(len(here), 1) * self._edges[1]))
+        self._curve.set_ydata(self._density(state.mean(self._gas.mass * speed**2) / 2))
         return self._bars, self._curve
 
     def _density(self, temperature: float) -> np.ndarray:
@@ -81,7 +82,7 @@ class DensityPanel:
         self._edges = np.linspace(0, length, BINS + 1)
         self._area = gas.area / BINS
         mean = len(gas) / gas.area
-        positions = [gas.position, *(state.position for state in some)]
+        positions = [gas.position, *(state.position[state.inside] for state in some)]
         highest = max(float(self._density(position).max()) for position in positions)
         axes.set(xlim=(0, length), ylim=(0, 1.1 * max(highest, 2 * mean)), ylabel="density (discs/length²)")
         axes.set_xlabel(f"{'xy'[self._axis]} (length)")
@@ -91,7 +92,7 @@ class DensityPanel:
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
         """Bars of the density."""
-        self._bars.set_data(self._density(state.position))
+        self._bars.set_data(self._density(state.position[state.inside]))
         return (self._bars,)
 
     def _density(self, position: np.ndarray) -> np.ndarray:
@@ -115,7 +116,7 @@ class SidesPanel:
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
         """Curve up to this state."""
-        self._points.append((state.time, float((state.position[:, 0] > self._middle).mean())))
+        self._points.append((state.time, state.mean(state.position[:, 0] > self._middle)))
         self._curve.set_data(*zip(*self._points, strict=True))
         self._now.set_data(*zip(self._points[-1], strict=True))
         return self._curve, self._now

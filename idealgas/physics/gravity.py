@@ -23,3 +23,11 @@ def acceleration_along(gravity, along_y):
     if gravity is not None:
         return gravity.y if along_y else gravity.x
     return 0.0
+
+
+@inline
+def potential_energy(mass, place, gravity):
+    """Potential energy, mass length²/time², at a place (x, y), length, in space; 0 without gravity."""
+    if gravity is not None:
+        return -(mass * (gravity.x * place[0] + gravity.y * place[1]))
+    return 0.0

@@ -164,6 +164,17 @@ def enter_opposite_side(disc, own, rows, periodic):
 
 
 @inline
+def place_in_space(disc, own, periodic):
+    """Position (x, y), length, of a wrapped record in space; see `unwrapped`."""
+    if periodic is not None:
+        return (
+            disc.x + periodic.image[U(own), 0] * periodic.Lx,
+            disc.y + periodic.image[U(own), 1] * periodic.Ly,
+        )
+    return disc.x, disc.y
+
+
+@inline
 def boundary_crossings_along(periodic, own, along_y):
     """Boundary crossings of a disc along an axis since its record's time, and whether that axis is periodic."""
     if periodic is not None:

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from idealgas.jit import aligned, inline, njit
+from idealgas.physics.absorbing import mass_in_gas
 from idealgas.physics.exact_sum import BATCH, add, add_all
 from idealgas.physics.periodic import shift_by_images
 
@@ -234,7 +235,7 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 
 
 @njit
-def complete_flights(record, time, gravity, flow):
+def complete_flights(record, time, gravity, flow, absorbing):
     """Add the buffered collisions, then the flights of all discs from their records to a local time."""
     flush(flow)
     terms = flow.buffer.terms
@@ -242,21 +243,22 @@ def complete_flights(record, time, gravity, flow):
         number = min(BATCH, record.shape[0] - first)
         for k in range(number):
             disc = record[U(first + k)]
-            xx, xy, yy = kinetic_flow(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
+            mass = mass_in_gas(disc, absorbing)
+            xx, xy, yy = kinetic_flow(mass, disc.vx, disc.vy, time - disc.t, gravity)
             terms[U(0)].column[U(k)] = xx
             terms[U(1)].column[U(k)] = xy
             terms[U(2)].column[U(k)] = yy
         add_terms(flow.tensor, terms, 0, 3, number)
-        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy)
+        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy, absorbing)
 
 
 @inline
-def complete_heat(heat, terms, record, first, number, time, vx, vy):
+def complete_heat(heat, terms, record, first, number, time, vx, vy, absorbing):
     """Add the kinetic heat flux of a number of discs from their records to a local time, if it is recorded."""
     if heat is not None:
         for k in range(number):
             disc = record[U(first + k)]
-            x, y = kinetic_heat_flow(disc.m, disc.vx - vx, disc.vy - vy, time - disc.t)
+            x, y = kinetic_heat_flow(mass_in_gas(disc, absorbing), disc.vx - vx, disc.vy - vy, time - disc.t)
             terms[U(0)].column[U(k)] = x
             terms[U(1)].column[U(k)] = y
         add_terms(heat, terms, 0, 2, number)

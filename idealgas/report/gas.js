@@ -92,9 +92,11 @@ class Gas {
 
   // The disc nearest to a place.
   nearest(x, y) {
-    let best = 0;
-    const away = i => Math.hypot(this.x[i] - x, this.y[i] - y);
-    for (let i = 1; i < this.number; i++) if (away(i) < away(best)) best = i;
+    let best = 0, least = Infinity;
+    for (let i = 0; i < this.number; i++) {
+      const away = Math.hypot(this.x[i] - x, this.y[i] - y);
+      if (away < least) [best, least] = [i, away];
+    }
     return best;
   }
 
@@ -105,7 +107,7 @@ class Gas {
     return this.order.subarray(k * this.number, (k + 1) * this.number);
   }
 
-  // Speed relative to a conserved motion of the whole gas.
+  // Speed relative to a conserved motion of the whole gas; NaN of a disc that has left.
   speed(i) {
     const [x, y] = this.head.flow;
     return Math.hypot(this.vx[i] - x, this.vy[i] - y);

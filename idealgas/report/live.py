@@ -183,8 +183,9 @@ class Live:
 
 def _temperature(log: Log, at: float) -> float:
     """Kinetic energy per disc, without a conserved motion of the whole gas."""
-    velocity = log.state_at(at).velocity - centre_of_mass_velocity(log)
-    return float((log.discs.mass * (velocity**2).sum(axis=1)).mean() / 2)
+    state = log.state_at(at)
+    velocity = state.velocity - centre_of_mass_velocity(log)
+    return state.mean(log.discs.mass * (velocity**2).sum(axis=1)) / 2
 
 
 # ── the server ──

@@ -34,6 +34,7 @@ SUMMARY = {
     "wall_hits": "wall hits",
     "thermostat_collisions": "thermostat collisions",
     "steered": "velocities changed from outside",
+    "escaped": "discs that left the gas",
     "trials": "trials of pairs",
     "rows": "event rows",
     "epochs": "epochs",

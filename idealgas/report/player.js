@@ -76,6 +76,7 @@ class Player {
   inWords(i) {
     if (i === null) return "";
     const { since } = this.gas.flight(i, 1), speed = Math.hypot(this.gas.vx[i], this.gas.vy[i]);
+    if (Number.isNaN(speed)) return `disc ${i} left the gas at t = ${since.toPrecision(6)}`;
     return `disc ${i}: speed ${speed.toPrecision(4)}, in free flight since t = ${since.toPrecision(6)}`;
   }
 

@@ -16,6 +16,7 @@ from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.theory.ensemble import classes
+from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.movie.order_colours import order_colours
@@ -66,7 +67,8 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         last = float(np.nextafter(cut.time[0], first))
     state = log.state_at(first)
     flow = centre_of_mass_velocity(log)
-    thermal = _rms_speed(state.velocity - flow)
+    moving = state.velocity[state.inside]
+    thermal = _rms_speed(moving - flow)
     kinds = classes(gas)
     piston, knots = _piston(log, first, last)
     shades = colormaps[COLOUR_MAP]
@@ -78,7 +80,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         "start": first,
         "end": last,
         "ticks": TICKS,
-        "speed": crossing(gas.box, state.velocity),
+        "speed": crossing(gas.box, moving),
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
         "brightest": BRIGHTEST * thermal,
@@ -119,7 +121,7 @@ def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
 
 def _rms_speed(velocity: np.ndarray) -> float:
     """Root-mean-square speed of velocities (N, 2), 1 if nothing moves."""
-    return float(np.sqrt((velocity**2).sum(axis=1).mean())) or 1.0
+    return float(np.sqrt((velocity**2).sum() / max(len(velocity), 1))) or 1.0
 
 
 def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
@@ -147,12 +149,15 @@ def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
 def _events(log: Log, first: float, last: float, start: int) -> dict[str, np.ndarray]:
     """Columns of the events between two times."""
     names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
-    blocks = list(log.chunks(names, start, log.row_at(last, "right")))
+    blocks = list(log.chunks((*names, *(("kind",) if log.escapes else ())), start, log.row_at(last, "right")))
     empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
     columns = {
         name: np.concatenate([empty.get(name, np.empty(0)), *(getattr(block, name) for block in blocks)])
         for name in names
     }
+    if log.escapes:
+        left = np.concatenate([block.kind for block in blocks]) == Kind.ESCAPED if blocks else []
+        columns["velocity"][left] = columns["position"][left] = np.nan
     columns |= {"tick": _ticks(columns.pop("time"), first, last), "disc": columns["disc"].astype("<u4")}
     return {f"event_{name}": column for name, column in columns.items()}
 
@@ -165,7 +170,7 @@ def _order_shades() -> np.ndarray:
 
 def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
     """Numbers (F, N) of the shades of all discs at F instants, evenly spaced; nothing where neighbours are not told."""
-    if not log.scene.properties.fixed_walls or len(log.discs) > MOST_NEIGHBOURHOODS:
+    if not log.scene.properties.fixed_walls or log.escapes or len(log.discs) > MOST_NEIGHBOURHOODS:
         return {}
     number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
     try:

@@ -199,9 +199,12 @@ class SpeedView {
 
   temperature() {
     const { gas } = this;
-    let energy = 0;
-    for (let i = 0; i < gas.number; i++) energy += gas.mass[i] * gas.speed(i) ** 2 / 2;
-    return energy / gas.number;
+    let energy = 0, number = 0;
+    for (let i = 0; i < gas.number; i++) {
+      const own = gas.mass[i] * gas.speed(i) ** 2 / 2;
+      if (own >= 0) [energy, number] = [energy + own, number + 1];
+    }
+    return energy / (number || 1);
   }
 
   law(temperature) {

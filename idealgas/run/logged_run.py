@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -159,6 +159,8 @@ class LoggedRun:
             if self._scene.log.snapshot_every:
                 self._snapshot()
             self._begin_epoch()
+        elif reason := self._stall.stall_reason():
+            self._give_up(reason)
         self._slice(0)
 
     def _slice(self, events: int) -> None:
@@ -215,11 +217,15 @@ class LoggedRun:
         if stall.checkpoint_due(self._scene.log.checkpoint_every) or reason or changed:
             self._checkpoint()
         if reason:
-            self._log.close()
-            raise UserError(
-                f"{self._log.path}: {reason}, up to t = {simulation.time:g}, so the end of the run may never come; "
-                "the log can be read, and resumed (--until gives it an end in time)"
-            )
+            self._give_up(reason)
+
+    def _give_up(self, reason: str) -> NoReturn:
+        """Close the log of a run that stalls."""
+        self._log.close()
+        raise UserError(
+            f"{self._log.path}: {reason}, up to t = {self._simulation.time:g}, so the end of the run may never come; "
+            "the log can be read, and resumed (--until gives it an end in time)"
+        )
 
     def _log_steered(self) -> None:
         """Write the rows of the discs whose velocities were changed at the start of this epoch."""

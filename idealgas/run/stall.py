@@ -86,6 +86,8 @@ class StallDetector:
         """Why the run cannot be expected to reach its stop; empty if it can."""
         if not self._endless:
             return ""
+        if np.isnan(self._simulation.gas.position[:, 0]).all() and self._simulation.method.has_positions:
+            return "all discs have left the gas"
         hopeless = self._expected < HOPELESS * self._empty
         if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):
             return f"no event in {self._empty} epochs"

@@ -71,6 +71,10 @@ class SteeredRun(LoggedRun):
         gas, effects = self._simulation.state()
         arrays = by_name(snapshot_state(gas, effects, self._simulation.method.has_positions))
         arrays.setdefault("position", np.full_like(gas.velocity, np.nan))
+        if effects.absorbing is not None:  # as in the states of a log
+            for name in arrays.keys() & {"velocity", "angular_velocity"}:
+                arrays[name] = arrays[name].copy()
+                arrays[name][np.isnan(gas.position[:, 0])] = np.nan
         return LogState(self.time, **arrays)
 
     def set_velocities(self, velocity: ArrayLike, discs: ArrayLike | None = None) -> None:
@@ -91,6 +95,8 @@ class SteeredRun(LoggedRun):
             raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
         if given.shape != (len(ids), 2) or not (np.abs(given) <= LARGEST).all():
             raise UserError(f"velocity: not ({len(ids)}, 2) numbers up to {LARGEST:g} (got {given.shape})")
+        if len(left := ids[np.isnan(self.state().velocity[ids.astype(int), 0])]):
+            raise UserError(f"discs: disc {left[0]} has left the gas")
         self._arrive()
         self._stall.end_epoch()
         self._simulation.set_velocities(ids.astype(int), given)

@@ -61,7 +61,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     walls: list[tuple[float, float, float, float, bool]] = []
     arcs = []
     schedule: list[tuple[float, int, int, float]] = []
-    if names & {"segments", "permeable"}:
+    if names & {"segments", "permeable", "absorbing"}:
         walls += [(9.0, 1.0, 10.0, 4.0, True), (9.5, 7.0, 10.5, 7.0, True)]
     if "arcs" in names:
         arcs = [None] * len(walls) + [arc_through(*ARC)]
@@ -88,6 +88,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "permeable": lambda: Permeable(gas.species.copy(), passage),
+        "absorbing": lambda: np.arange(len(walls)) == 1,
         "arcs": lambda: make_arcs([*arcs, *[None] * (len(walls) - len(arcs))]),
         "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
         "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),

@@ -34,6 +34,7 @@ EFFECTS = (
     "vibration",
     "fixed",
     "permeable",
+    "absorbing",
     "arcs",
     "steering",
 )
@@ -246,8 +247,11 @@ def tables_of(draw) -> dict[str, Any]:
     if len(walls):
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
         gates = draw(st.booleans())
+        holes = [{}, {"absorbing": True}] if "absorbing" in called else [{}]
         tables["wall"] = [
-            wall | (draw_gate(draw) if gates and "permeable_from" not in wall else {}) | (hot if k == 0 else {})
+            wall
+            | (draw_gate(draw) if gates and "permeable_from" not in wall else {})
+            | (hot if hot and k == 0 else pick(draw, *holes))
             for k, wall in enumerate(tables_of_walls)
         ]
     if "gravity" in called:

@@ -32,6 +32,7 @@ class InvariantChecker(Paths):
     def see(self, rows: EventBatch, simulation: Simulation) -> None:
         """The rows of one event, and the simulation as the event left it."""
         time = float(rows.time[0])
+        assert not self.gone[rows.disc].any(), "a disc that has left"
         assert all(np.isfinite(column).all() for column in rows if column is not None)
         assert (rows.time == time).all()
         assert time >= self.now
@@ -47,6 +48,8 @@ class InvariantChecker(Paths):
             self.meet(rows, velocity[discs], time)
         elif rows.kind[0] == Kind.THERMOSTAT:
             assert rows.partner[0] == BATH
+        elif rows.kind[0] == Kind.ESCAPED:
+            self.escape(rows, velocity[discs[0]], time)
         else:
             self.bounce(int(rows.kind[0]), int(rows.partner[0]), rows, velocity[discs[0]], simulation, time)
         self.position[discs], self.velocity[discs] = after, rows.velocity
@@ -56,6 +59,10 @@ class InvariantChecker(Paths):
             self.last[discs] = time
         if rows.angular_velocity is not None:
             self.omega[discs] = rows.angular_velocity
+        if rows.kind[0] == Kind.ESCAPED:
+            self.gone[discs] = True
+            self.velocity[discs] = self.omega[discs] = 0.0
+            self.reach[self.gone[self.first] | self.gone[self.second]] = -math.inf
         self.events += 1
         self.max_errors.events += 1
         self.compare(time, simulation)
@@ -67,7 +74,7 @@ class InvariantChecker(Paths):
         self.look(time, simulation)
         for disc in range(len(gas)):
             self.fly(disc, time)
-        after = gas.position + effects.periodic.image * self.size
+        after = np.where(self.gone[:, None], self.position, gas.position + effects.periodic.image * self.size)
         self.note("place", np.abs(after - place).max(), self.known)
         self.position, self.velocity = after, gas.velocity.copy()
         self.pull = np.zeros(2) if effects.gravity is None else np.array(effects.gravity)
@@ -242,6 +249,24 @@ class InvariantChecker(Paths):
         else:
             self.parts(incoming, outgoing, rebounds, bound, grazing, "wall")
 
+    def escape(self, rows: EventBatch, before: np.ndarray, time: float) -> None:
+        """A disc touches an absorbing wall, and leaves the gas as it is.
+
+        Over one that has closed on it, or that it has passed from the other side, it leaves where it comes back.
+        """
+        disc, wall = int(rows.disc[0]), -5 - int(rows.partner[0])
+        gate, radius = self.gates[wall], self.gas.radius[disc]
+        assert gate.absorbing
+        assert gate.is_there(time)
+        assert self.passage[wall, disc] != OPEN
+        _, away = self.near(rows.position[0], gate)
+        distance = np.hypot(*away.T).min()
+        deep = self.passage[wall, disc] != SOLID or any(closes <= time for _, closes in gate.absences)
+        error = max(distance - radius, 0.0) if deep else abs(distance - radius)
+        self.note("contact", error, self.touches + self.sunk[disc])
+        speed = np.hypot(*before) + np.hypot(*self.pull) * time
+        assert np.abs(rows.velocity[0] - before).max() <= FEW * U * (1 + self.epochs) * speed, "velocity"
+
     def near(self, place, wall) -> tuple[np.ndarray, np.ndarray]:
         """For each image of a place: where along a wall its foot is, as a share, and how it stands from there.
 
@@ -263,7 +288,9 @@ class InvariantChecker(Paths):
         gas, effects = simulation.state()
         place, velocity = self.at(time)
         speed = self.fastest + np.hypot(*self.pull) * time
-        assert np.abs(self.wrapped(gas.position - place)).max() <= self.known, "state"
+        assert (np.isnan(gas.position).all(axis=1) == self.gone).all(), "left"
+        apart = self.wrapped(gas.position - place)[~self.gone]
+        assert np.abs(apart).max(initial=0.0) <= self.known, "state"
         assert np.abs(gas.velocity - velocity).max() <= FEW * U * (1 + self.epochs) * speed, "state"
         if self.piston is not None:
             self.behind_piston(place, effects.piston, time - simulation.time)
@@ -284,5 +311,6 @@ class InvariantChecker(Paths):
         """No disc is beyond the piston, which is in the box."""
         edge, _ = piston_motion(piston[0], local_time)
         axis = self.piston.axis
-        assert (self.outward * (edge - place[:, axis]) >= self.gas.radius - self.known).all(), "beyond the piston"
+        behind = self.outward * (edge - place[:, axis]) >= self.gas.radius - self.known
+        assert (behind | self.gone).all(), "beyond the piston"
         assert -self.known <= edge <= self.size[axis] + self.known, "piston beyond its stop"

@@ -44,7 +44,12 @@ def differences(one: Path, other: Path) -> list[str]:
     """Names of what is not equal bit for bit in two logs."""
     a, b = contents(one), contents(other)
     assert a.keys() == b.keys()
-    return [name for name in a if not np.array_equal(a[name], b[name])]
+    return [name for name in a if not _equal(a[name], b[name])]
+
+
+def _equal(a: np.ndarray | str | dict, b: np.ndarray | str | dict) -> bool:
+    """Whether two values are equal, also where they are nan."""
+    return np.array_equal(a, b, equal_nan=isinstance(a, np.ndarray) and a.dtype.kind == "f")
 
 
 def same_by_brute_force_and_resumed(folder: Path, path: Path, overrides: Sequence[str], *ends: str) -> Summary:

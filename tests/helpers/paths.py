@@ -55,7 +55,7 @@ class Paths:
         self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
         self.rotation, self.restitution = effects.rotation, effects.restitution
         self.since, self.last = np.zeros(n), np.full(n, -math.inf)
-        self.hit, self.sunk = np.zeros(n, int), np.zeros(n)
+        self.hit, self.sunk, self.gone = np.zeros(n, int), np.zeros(n), np.zeros(n, bool)
         self.position, self.velocity = gas.position.copy(), gas.velocity.copy()  # unwrapped
         self.omega = np.zeros(n) if effects.rotation is None else effects.rotation.omega.copy()
         self.inertia = np.zeros(n) if effects.rotation is None else effects.rotation.inertia
@@ -69,8 +69,8 @@ class Paths:
         self.lowest, self.scale = self.start.balance, self.start.scale
 
     def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Unwrapped positions and velocities of all discs."""
-        dt = (time - self.since)[:, None]
+        """Unwrapped positions and velocities of all discs; those that have left the gas stay where they left it."""
+        dt = ((time - self.since) * ~self.gone)[:, None]
         return self.position + self.velocity * dt + 0.5 * self.pull * dt**2, self.velocity + self.pull * dt
 
     def resolution(self, duration: float) -> float:
@@ -106,6 +106,8 @@ class Paths:
 
     def fly(self, disc: int, time: float) -> None:
         """The way of a disc since its last event keeps clear of the walls and inside the box."""
+        if self.gone[disc]:
+            return
         velocity, duration = self.velocity[disc], time - self.since[disc]
         radius = self.gas.radius[disc]
         times = np.linspace(0, duration, SAMPLES)

@@ -78,6 +78,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
         segments=aligned(0, SEGMENT),
         arcs=aligned(walls, ARC),
+        absorbing=np.zeros(walls, bool),
         permeable=Permeable(np.zeros(n, np.uint16), np.zeros((walls, 1), np.uint8)),
         rotation=Rotation(np.zeros(n), 0.5 * gas.mass * gas.radius**2, -1.0, -1.0),
         restitution=Restitution(1.0, 1.0, 0.0, np.full(n, -math.inf)),

@@ -139,6 +139,9 @@ class Analysis:
     takes_shear: ClassVar[bool] = False
     """Whether the analysis subtracts the mean flow between sheared sides and follows the images that they move."""
 
+    takes_escapes: ClassVar[bool] = False
+    """Whether the analysis applies to a gas that discs leave."""
+
     restore: ClassVar[Callable[..., Any] | None] = None
     """Function restore(found, label): result from the plain values that a sweep stored; None if sweeps are not read."""
 
@@ -196,6 +199,8 @@ class Analysis:
             raise NotApplicableError(f"{log.path}: not applicable to {differ}")
         if not cls.takes_shear and log.scene.properties.shear:
             raise NotApplicableError(f"{log.path}: not applicable between sheared sides, where the gas flows")
+        if log.escapes and not cls.takes_escapes:
+            raise NotApplicableError(f"{log.path}: not applicable to a gas that discs leave")
         with _arithmetic(f"{log.path}: {cls.key}"):
             found = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow: tuple[str, ...] = ()

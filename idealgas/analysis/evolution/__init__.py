@@ -100,6 +100,7 @@ class EvolutionAnalysis(Analysis):
     """Evolution in time."""
 
     position = 20
+    takes_escapes = True
     headline = "rest"
     results = (Evolution,)
     sections = (
@@ -284,7 +285,8 @@ Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series, Series]
 def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]], inside: np.ndarray) -> Frames:
     """Evolution from the samples stored during the run, for a log without events."""
     time, kinetic = observables["kinetic_energy"]
-    n, spin = len(log.discs), None
+    n, spin = len(log.discs) - observables["escaped"][1][inside] if log.escapes else len(log.discs), None
+    n = np.maximum(n, 1)
     if "rotational_energy" in observables:
         spin = 2 * observables["rotational_energy"][1][inside] / n
     return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}, {}
@@ -301,11 +303,11 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
     apart = {name: np.empty(len(time)) for name in members}
     for k, state in enumerate(frames(log, time, progress)):
         energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
-        temperature[k] = energy.mean()
+        temperature[k] = state.mean(energy)
         for name, own in members.items():
-            apart[name][k] = energy[own].mean()
+            apart[name][k] = state.mean(energy, own)
         if inertia is not None and state.angular_velocity is not None:
-            spin[k] = (inertia * state.angular_velocity**2).mean()
+            spin[k] = state.mean(inertia * state.angular_velocity**2)
         if wall:
             axis, place = wall
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number

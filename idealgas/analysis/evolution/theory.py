@@ -113,7 +113,7 @@ def expected_law(
         if properties.vibrates or (log.scene.piston.mass and properties.varies):
             return None
         return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
-    if properties.later_accelerations:
+    if properties.later_accelerations or properties.escapes:
         return None
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)

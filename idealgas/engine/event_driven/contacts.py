@@ -17,6 +17,7 @@ from idealgas.engine.event_driven.prediction import (
 from idealgas.engine.event_driven.state import copy_image, image_of
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, njit, noinline
+from idealgas.physics.absorbing import has_left
 from idealgas.physics.arc import misses_wall, wall_contact
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
@@ -206,9 +207,10 @@ def deepest_around(record, state, i, periodic):
 
 
 @njit
-def deepest_overlap(record, state, periodic):
+def deepest_overlap(record, state, periodic, absorbing):
     """Deepest overlap of all pairs of discs, divided by the sum of their radii; all records are at one time."""
     deepest = 0.0
     for i in range(record.shape[0]):
-        deepest = max(deepest, deepest_around(record, state, i, periodic))
+        if not has_left(record[U(i)], absorbing):
+            deepest = max(deepest, deepest_around(record, state, i, periodic))
     return deepest

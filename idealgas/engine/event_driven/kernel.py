@@ -9,14 +9,20 @@ from enum import IntEnum
 import numpy as np
 
 from idealgas.columns import BATH, FIRST_SEGMENT
-from idealgas.engine.event_driven.cells import cell_index, clear_cells, enter, find_cell, own_cells
+from idealgas.engine.event_driven.cells import cell_index, clear_cells, enter, find_cell, leave, own_cells
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, move_to_cell, predict_crossing
 from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
-from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, contact_is_next, images_of, segment_of
+from idealgas.engine.event_driven.prediction import (
+    SIDE_OF_BOX,
+    contact_is_next,
+    images_of,
+    predict_nothing,
+    segment_of,
+)
 from idealgas.engine.event_driven.prefetch import prefetch_next
 from idealgas.engine.event_driven.scheduler import clear, has_other_event, is_resolved, remove, resolve_ties
-from idealgas.engine.event_writer import PISTON, THERMOSTAT, WALL, WALL_END, batch_capacity, write_hit, write_pair
+from idealgas.engine.event_writer import ESCAPED, PISTON, THERMOSTAT, WALL, batch_capacity, write_hit, write_pair
 from idealgas.engine.parallel.subdomain import DONE
 from idealgas.engine.parallel.synchronization import (
     count_simultaneous,
@@ -35,6 +41,7 @@ from idealgas.engine.resolve import (
     resolve_thermostat_collision,
 )
 from idealgas.jit import inline, njit
+from idealgas.physics.absorbing import has_left, leave_gas
 
 U = np.uintp
 
@@ -56,23 +63,38 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
 
     change: a `Repredict`, or the code of the crossing by which the disc entered its cell.
     """
-    predict_contact(record, ids, state, i, change, now, effects)
-    if change != Repredict.STALE:
-        predict_crossing(record, ids, state, i, now, effects)
+    if has_left(record[U(i)], effects.absorbing):
+        predict_nothing(state.prediction[U(i)])
+    else:
+        predict_contact(record, ids, state, i, change, now, effects)
+        if change != Repredict.STALE:
+            predict_crossing(record, ids, state, i, now, effects)
     push_to_owner(record, ids, state, i, subdomain)
     if change > Repredict.STALE:
-        offer_to_piston(record, ids, state, i, effects.piston, effects.gravity)
+        offer_to_piston(record, ids, state, i, effects.piston, effects)
+
+
+@inline
+def take_out(record, ids, state, i, kind, absorbing, rotation):
+    """Take disc i out of its cell and of the gas if its event of this kind was the last."""
+    if absorbing is not None and kind == ESCAPED:
+        cells = own_cells(state.cells, state.coarse, record[U(i)])
+        leave(cells, i, cell_index(cells, record[U(i)]))
+        leave_gas(record[U(i)], ids[U(i)], rotation)
 
 
 @njit
-def place(record, ids, position, velocity, state):
+def place(record, ids, position, velocity, state, absorbing):
     """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and clear the scheduler."""
     clear_cells(state.cells, state.coarse)
     for i in range(record.shape[0]):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
         cells = own_cells(state.cells, state.coarse, record[U(i)])
-        find_cell(cells, record[U(i)])
-        enter(cells, i, cell_index(cells, record[U(i)]))
+        if has_left(record[U(i)], absorbing):
+            record[U(i)].column = record[U(i)].row = 1
+        else:
+            find_cell(cells, record[U(i)])
+            enter(cells, i, cell_index(cells, record[U(i)]))
     clear(state.tree)
 
 
@@ -93,7 +115,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     capacity = batch_capacity(batch)
     if state.unpredicted[0]:
         state.unpredicted[0] = False
-        predict_piston(record, ids, state, effects.piston, effects.gravity)
+        predict_piston(record, ids, state, effects.piston, effects)
         for k in range(record.shape[0]):
             if if_owned(record, k, subdomain) >= 0:
                 predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, subdomain)
@@ -148,7 +170,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - wall, PISTON, record[U(i)], effects)
             elif not at_contact:
                 resolve_stop(time, effects.piston)
-            predict_piston(record, ids, state, effects.piston, effects.gravity)
+            predict_piston(record, ids, state, effects.piston, effects)
             if not hit:
                 change = np.int64(Repredict.STALE)
                 i = np.int64(-1)
@@ -160,11 +182,12 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             collisions += 1
         elif at_contact:
             segment = segment_of(prediction.partner)
-            at_end = resolve_segment(
+            kind = resolve_segment(
                 record[U(i)], ids[U(i)], segment, time, images_of(prediction), effects.segments, effects
             )
-            wall, kind = -1 - FIRST_SEGMENT - segment, WALL_END if at_end else WALL
+            wall = -1 - FIRST_SEGMENT - segment
             rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], wall, kind, record[U(i)], effects)
+            take_out(record, ids, state, i, kind, effects.absorbing, effects.rotation)
         elif is_thermostat_collision(prediction.crossing_code, effects.thermostat):
             thermostat_collisions += 1
             resolve_thermostat_collision(record[U(i)], ids[U(i)], time, effects.thermostat, effects)

@@ -74,7 +74,7 @@ class EventDriven(Method):
         walls, coarse_walls = self._wall_cells(effects)
         self._state = self._state._replace(walls=walls, coarse_walls=coarse_walls)
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
-        place(self.discs.record, self.discs.id, position, velocity, self._state)
+        place(self.discs.record, self.discs.id, position, velocity, self._state, effects.absorbing)
         self._state.unpredicted[0] = True
         slabs = self._shared.number
         self._decomposition = (
@@ -95,7 +95,7 @@ class EventDriven(Method):
     def _sort(self, gas: Gas) -> None:
         """Sort the discs in memory by cell."""
         cells = self._state.cells
-        column, row = cell_of(gas.position, cells)
+        column, row = cell_of(np.nan_to_num(gas.position), cells)  # nan of discs that have left
         self.discs = make_discs(gas, np.argsort(row * cells.columns + column, kind="stable"))
 
     @property
@@ -132,4 +132,4 @@ class EventDriven(Method):
 
     def deepest_overlap(self) -> float:
         """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap(self.discs.record, self._state, self._effects.periodic)
+        return deepest_overlap(self.discs.record, self._state, self._effects.periodic, self._effects.absorbing)

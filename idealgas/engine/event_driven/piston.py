@@ -5,6 +5,7 @@ import numpy as np
 from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX, precedes, wall_rank
 from idealgas.engine.event_driven.scheduler import update
 from idealgas.jit import inline
+from idealgas.physics.absorbing import has_left
 from idealgas.physics.piston import misses_piston_until, piston_contact, stop_contact
 
 U = np.uintp
@@ -19,11 +20,13 @@ def is_piston(i, ids, piston):
 
 
 @inline
-def keep_if_earlier(record, ids, prediction, j, piston, gravity):
+def keep_if_earlier(record, ids, prediction, j, piston, effects):
     """Store disc j's contact with the piston as the piston's next if it is the earliest; return whether it is."""
-    if misses_piston_until(record[U(j)], piston, gravity, prediction.contact):
+    if has_left(record[U(j)], effects.absorbing):
         return False
-    time = piston_contact(record[U(j)], piston, gravity)
+    if misses_piston_until(record[U(j)], piston, effects.gravity, prediction.contact):
+        return False
+    time = piston_contact(record[U(j)], piston, effects.gravity)
     earlier = time < prediction.contact
     if time == prediction.contact:
         rank = wall_rank(piston.wall)
@@ -36,7 +39,7 @@ def keep_if_earlier(record, ids, prediction, j, piston, gravity):
 
 
 @inline
-def predict_piston(record, ids, state, piston, gravity):
+def predict_piston(record, ids, state, piston, effects):
     """Predict the piston's next event, a contact with a disc or a side of the box, and enter it in the schedule."""
     if piston is not None:
         leaf = ids.shape[0]
@@ -45,16 +48,16 @@ def predict_piston(record, ids, state, piston, gravity):
         prediction.contact = NO_CONTACT
         prediction.partner = -1
         for j in range(leaf):
-            keep_if_earlier(record, ids, prediction, j, p, gravity)
+            keep_if_earlier(record, ids, prediction, j, p, effects)
         prediction.crossing = stop_contact(p)
         prediction.crossing_code = SIDE_OF_BOX + p.wall
         update(state.tree, state.prediction, ids, leaf)
 
 
 @inline
-def offer_to_piston(record, ids, state, i, piston, gravity):
+def offer_to_piston(record, ids, state, i, piston, effects):
     """Update the piston's next contact after disc i's record has changed."""
     if piston is not None:
         leaf = ids.shape[0]
-        if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[0], gravity):
+        if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[0], effects):
             update(state.tree, state.prediction, ids, leaf)

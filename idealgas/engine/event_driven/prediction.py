@@ -86,6 +86,15 @@ def partner_rank(ids, partner):
 
 
 @inline
+def predict_nothing(prediction):
+    """Store that a disc has no events."""
+    prediction.contact = NO_CONTACT
+    prediction.partner = -1
+    prediction.crossing = NEVER
+    prediction.crossing_code = SIDE_OF_BOX
+
+
+@inline
 def contact_is_next(prediction, ids, i):
     """Whether a disc's next event is its contact, not its crossing.
 

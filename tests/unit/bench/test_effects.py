@@ -19,7 +19,7 @@ def test_one_at_a_time(name):
     scene = effect_scene(name, 1)
     *needed, own = scene.effects
     assert name.startswith(own)
-    walls = ["wall segments"] if own in ("permeable walls", "arcs") else []
+    walls = ["wall segments"] if own in ("permeable walls", "absorbing walls", "arcs") else []
     assert needed == (["periodic sides"] if own == "sheared sides" else walls)
     assert sum(s.count for s in scene.species) == SAMPLE_DISCS
 

@@ -46,7 +46,15 @@ def test_events(log):
     (stored,) = log.chunks()
     frame = log.to_pandas()
     assert list(frame.columns) == COMMON + log.further
-    assert list(frame["kind"].cat.categories) == ["disc", "wall", "wall_end", "piston", "thermostat", "steered"]
+    assert list(frame["kind"].cat.categories) == [
+        "disc",
+        "wall",
+        "wall_end",
+        "piston",
+        "thermostat",
+        "steered",
+        "escaped",
+    ]
     check_rows(frame, stored)
 
 

@@ -6,6 +6,7 @@ from helpers.effect_samples import make_flow
 from helpers.support import gas_of
 from scipy.integrate import quad
 
+from idealgas.columns import Kind
 from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments
 from idealgas.engine.records import DISC
@@ -100,7 +101,7 @@ def test_flights_in_the_air():
     flow = flow_of()
     record = discs((0, 0, 1, 2, 0.5, 1, 1), (0, 0, -3, 1, 0.25, 1, 2))
     copy = copy_of(flow)
-    complete_flights(record, 1.0, None, copy)
+    complete_flights(record, 1.0, None, copy, None)
     assert values(copy.tensor[KINETIC]).tolist() == [0.5 + 13.5, 1.0 - 4.5, 2.0 + 1.5]
     assert not values(flow.tensor).any()
     assert copy_of(None) is None
@@ -120,8 +121,8 @@ def test_sides_are_pushed_outwards(side, velocity, normal_impulse):
 
 
 @pytest.mark.parametrize("face", [0, 1])
-@pytest.mark.parametrize("at_end", [False, True])
-def test_both_faces_of_a_segment(face, at_end):
+@pytest.mark.parametrize(("at_end", "kind"), [(False, Kind.WALL), (True, Kind.WALL_END)])
+def test_both_faces_of_a_segment(face, at_end, kind):
     """A slanted wall: what both faces receive, normal and along, is what the disc loses."""
     segments = make_segments(np.array([[1.0, 1.0]]), np.array([[4.0, 5.0]]))
     tangent = np.array([0.6, 0.8])
@@ -131,7 +132,7 @@ def test_both_faces_of_a_segment(face, at_end):
     flow = flow_of(6)
     velocity = -left + 0.25 * tangent
     (disc,) = discs((*place, *velocity, 0, 1, 2))
-    assert resolve_segment(disc, 0, 0, 0.0, (0, 0), segments, Effects(flow=flow, segments=segments)) == at_end
+    assert resolve_segment(disc, 0, 0, 0.0, (0, 0), segments, Effects(flow=flow, segments=segments)) == kind
     given = -2 * (np.array([disc.vx, disc.vy]) - velocity)
     k = 4 + face
     assert flow.hits.tolist() == [int(j == k) for j in range(6)]

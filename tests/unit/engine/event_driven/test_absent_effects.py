@@ -19,6 +19,7 @@ MARKERS = {
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "arcs": {"arc.arc_contact", "arc.arc_frame"},
     "permeable walls": {"permeable.closed_face_delay", "permeable.touches_face"},
+    "absorbing walls": {"resolve.absorb", "absorbing.leave_gas"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},
     "vibrating sides": {"vibration.vibrating_contact", "vibration.side_velocity"},

@@ -1,0 +1,261 @@
+"""Measure how discs leave the gas through holes: the number left in time, and escapes per length of path.
+
+Theory is the limit of small holes in an ergodic box: at the rate v ℓ/(π A) a disc of speed v leaves through holes of
+the length ℓ in walls around the area A.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.stream import span
+from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
+from idealgas.analysis.theory.values import NoTheoryError, Theory
+from idealgas.columns import FIRST_SEGMENT, Kind
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.log import Log, LogState
+from idealgas.scene.walls import number_walls
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+INSTANTS = 257
+"""Number of instants of the series."""
+
+RARE, OFTEN = 0.1, 10.0
+"""Collisions of a disc with others per escape up to which speeds last, and from which on the gas is in equilibrium."""
+
+BILLIARD = (
+    "Discs hardly meet: theory then needs walls that bring every path to the hole, such as ones that bulge inwards; a "
+    "circle or a rectangle does not."
+)
+"""Caveat of discs that walls alone divert."""
+
+NEAR = 1e-9
+"""Distance from a wall, in units of the box, at which its sides are told apart."""
+
+PLACES = (np.arange(8) + 0.5) / 8
+"""Places along a wall, as shares of it, at which is found out whether gas touches it."""
+
+
+@dataclass(frozen=True)
+class Escape(Result):
+    """Escape of discs through the holes of one log.
+
+    Attributes:
+        discs: number of discs at the start of the window.
+        escaped: number of them that left.
+        time: (INSTANTS,), times.
+        left: (INSTANTS,), number of discs in the gas.
+        expected: (INSTANTS,), its mean by theory; None without one.
+        spread: (INSTANTS,), its standard deviation, with the error of theory; None without theory.
+        per_path: escapes per length that discs fly, 1/length; None under gravity.
+        mean_time: time that discs spend in the gas per escape: if these are independent of the time already spent, the
+            mean escape time, also where not all discs have left.
+    """
+
+    discs: int
+    escaped: int
+    time: np.ndarray
+    left: np.ndarray
+    expected: np.ndarray | None
+    spread: np.ndarray | None
+    per_path: Estimate | None
+    mean_time: Estimate
+
+
+class EscapeAnalysis(Analysis):
+    """Escape through holes."""
+
+    position = 112
+    headline = "per_path"
+    takes_escapes = True
+    results = (Escape,)
+    sections = (Section("Escape", "Number of discs left against time, beside theory"),)
+    start = "the log's start"
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Escape:
+        """Measure how fast discs leave the gas through absorbing walls.
+
+        Errors are those of a Poisson number of escapes. Theory is given for discs of one radius in a box with walls at
+        rest, without gravity; the length of the holes and the area are those for the centres of the discs.
+
+        Raises:
+            UserError: if no wall absorbs discs, or if the log has no events or no escapes in the window.
+        """
+        if not log.escapes:
+            raise NotApplicableError(f"{log.path}: no wall absorbs discs")
+        log.require_events()
+        first, last = span(log, start, end)
+        at, spent, path, collisions = _flights(log, first, last, progress)
+        if not len(at):
+            raise UserError(f"{log.path}: no disc leaves the gas between t = {first:g} and {last:g}")
+        state, escaped = log.state_at(first), len(at)
+        number, time = int(state.inside.sum()), np.linspace(first, last, INSTANTS)
+        caveats: tuple[str, ...] = ()
+        theory = expected = spread = None
+        try:
+            theory = _theory(log)
+            expected, spread = _expected(log, state, theory, time - first, collisions / escaped)
+        except NoTheoryError as error:
+            caveats = (f"No theory{' of the number left' * (theory is not None)}: {error}.",)
+        if theory is not None and collisions < escaped:
+            caveats = (BILLIARD, *caveats)
+        per_path = None if log.has_gravity else _per(escaped, path, theory)
+        speed = np.hypot(*state.velocity[state.inside].T)
+        alike = theory is not None and np.ptp(speed) <= NEAR * speed.max() and collisions < RARE * escaped
+        mean_time = _mean_time(escaped, spent, theory.times(float(speed.mean())) if theory and alike else None)
+        left = number - at.searchsorted(time, "right")
+        return Escape(number, escaped, time, left, expected, spread, per_path, mean_time, caveats=caveats)
+
+    @staticmethod
+    def tables(result: Escape) -> list[Table]:
+        """Tables of the rates and of the number left."""
+        rows = {"escapes per path (1/length)": result.per_path, "mean escape time (time)": result.mean_time}
+        found = [(name, one) for name, one in rows.items() if one is not None]
+        notes = [f"{result.escaped} of {result.discs} discs left"]
+        series = {"t": result.time, "discs left": result.left, "theory": result.expected, "± (s.d.)": result.spread}
+        return [estimates("Escape", found, notes), time_series("Number left", series)]
+
+    @staticmethod
+    def summary(result: Escape) -> str:
+        """How many discs left, and whether they did at the rate of theory."""
+        found = result.per_path or result.mean_time
+        what = "escapes per length of path" if result.per_path else "time per escape"
+        said = agreement([(what, found)])
+        return f"{result.escaped} of {result.discs} discs leave, {format_estimate(found)} {what}; {said}."
+
+    @staticmethod
+    def figure(result: Escape) -> "Figure":
+        """Picture of the number of discs left, logarithmic once a tenth of them is left, beside theory."""
+        from idealgas.analysis.core.style import COLOURS, panels
+
+        figure, (ax,) = panels(1)
+        ax.step(result.time, result.left, where="post", color=COLOURS[0], label="discs left")
+        if result.expected is not None:
+            ax.theory(result.time, result.expected, result.spread, "theory")
+        if 0 < result.left[-1] < result.discs / 10:
+            ax.set_yscale("log")
+        ax.set_ylabel("discs in the gas (no unit)")
+        ax.time_axis()
+        ax.legend()
+        return figure
+
+
+def _flights(log: Log, first: float, last: float, progress: Progress | None) -> tuple[np.ndarray, float, float, int]:
+    """Times of the escapes in order, time and length that all discs fly, and numbers of collisions of two, twice."""
+    at, spent, path, collisions, done = [np.empty(0)], [0.0], [0.0], 0, 0
+    rows = log.row_at(last, "right") - log.row_at(first, "right")
+    for flights in log.flights([first, last], columns=("start", "end", "kind", "velocity")):
+        duration = flights.end - flights.start
+        spent.append(float(duration.sum()))
+        path.append(float(np.hypot(*flights.velocity.T) @ duration))
+        at.append(flights.end[flights.kind == Kind.ESCAPED])
+        collisions += int((flights.kind == Kind.DISC).sum())
+        done += len(duration)
+        if progress is not None:
+            progress(min(done, rows), rows)
+    return np.concatenate(at), math.fsum(spent), math.fsum(path), collisions
+
+
+def _per(escaped: int, whole: float, theory: Theory | None) -> Estimate:
+    """Number of escapes per a whole, with its error."""
+    value, error = (None, 0.0) if theory is None else (theory.value, theory.error)
+    return Estimate(escaped / whole, math.sqrt(escaped) / whole, math.inf, value, error)
+
+
+def _mean_time(escaped: int, spent: float, rate: Theory | None) -> Estimate:
+    """Time spent per escape, with its error; rate: by theory, 1/time."""
+    value, error = (None, 0.0) if rate is None else (1 / rate.value, rate.error / rate.value**2)
+    return Estimate(spent / escaped, spent / escaped**1.5, math.inf, value, error)
+
+
+# ── theory ──
+
+
+def _theory(log: Log) -> Theory:
+    """Escapes per length of path ℓ/(π A), 1/length. Raises NoTheoryError where it does not apply.
+
+    Its error is ℓ/P of the whole wall P that discs touch, by which a hole depletes the gas before it, R/ℓ for the ends
+    of the holes, and 2φ for the density at the wall.
+    """
+    scene, gas, radius = log.scene, log.discs, float(log.discs.radius[0])
+    if np.ptp(gas.radius) > 0:
+        raise NoTheoryError("discs have several radii")
+    if not (scene.properties.straight_flight and scene.properties.fixed_walls):
+        raise NoTheoryError("discs fall, or walls move")
+    if any(wall.absorbing and (wall.absences or wall.is_permeable) for wall in scene.walls):
+        raise NoTheoryError("a hole opens or closes, or lets discs pass")
+    faces = np.array(list(_faces(log, radius)))
+    length, whole = float(faces[faces[:, 0] > 0, 1].sum()), float(faces[:, 1].sum())
+    area = gas.area - radius * float(faces[:, 2].sum())
+    if not length > 0 or not area > 0:
+        raise NoTheoryError("discs do not reach a hole")
+    rate = length / (math.pi * area)
+    doubt = length / whole + radius / length + 2 * gas.packing_fraction
+    return Theory(rate, rate * doubt, "ℓ/(π A) of a small hole")
+
+
+def _faces(log: Log, radius: float) -> Iterator[tuple[float, float, float]]:
+    """Each face of a wall that gas touches: 1 if it is a hole, lengths of the line of touching centres and half-way."""
+    scene, size = log.scene, np.array(log.box)
+    for k, wall in enumerate(number_walls(scene)):
+        if k < FIRST_SEGMENT and scene.box.sides[k] == "periodic":
+            continue
+        hole = float(k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing)
+        if wall.radius:
+            yield hole, 2 * math.pi * (wall.radius + radius), 2 * math.pi * (wall.radius + radius / 2)
+            continue
+        start, along = np.array(wall.start), np.subtract(wall.end, wall.start)
+        length, angle = float(np.hypot(*along)), 0.0
+        if arc := wall.arc:
+            length, angle = arc.length, arc.angle
+            turn = np.exp(1j * angle * (PLACES - 0.5)) * complex(arc.mx, arc.my)
+            normal = np.column_stack((turn.real, turn.imag))
+            places = start + (arc.x, arc.y) + arc.radius * normal
+        else:
+            normal, places = np.array([-along[1], along[0]]) / length, start + PLACES[:, None] * along
+        for side in (-1.0, 1.0):
+            beside = places + side * NEAR * float(size.max()) * normal
+            share = (((beside > 0) & (beside < size)).all(axis=1) & ~scene.solids.contain(beside)).mean()
+            yield hole, share * (length + side * angle * radius), share * (length + side * angle * radius / 2)
+
+
+def _expected(
+    log: Log, state: LogState, rate: Theory, time: np.ndarray, collisions: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation (INSTANTS,) of the number of discs left, after times from a state on.
+
+    Discs that hardly meet keep their speeds. Those of a gas in equilibrium at one temperature leave at the rate of its
+    mean speed; without heat from outside it cools, as a disc that leaves takes 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
+    """
+    properties, mass = log.scene.properties, float(log.discs.mass[0])
+    here = state.inside
+    speed = np.hypot(*state.velocity[here].T)
+    if RARE < collisions < OFTEN or len(properties.temperatures) > 1 or properties.varies:
+        raise NoTheoryError("discs neither keep their speeds nor come to equilibrium before they leave")
+    if collisions >= OFTEN and (np.ptp(log.discs.mass) > 0 or properties.dissipative or properties.spins):
+        raise NoTheoryError("the temperature of a mixture, or with losses or spins, is not known while discs leave")
+    heat = next(iter(properties.temperatures), None)
+    if collisions >= OFTEN:
+        temperature = float(mass * (speed**2).mean() / 2) if heat is None else heat
+        speed = np.array([math.sqrt(math.pi * temperature / (2 * mass))])
+
+    def share(per_path: float) -> np.ndarray:
+        away = per_path * np.multiply.outer(time, speed)
+        lasting = (1 + away / 4) ** -4.0 if collisions >= OFTEN and heat is None else np.exp(-away)
+        return np.asarray(lasting.mean(axis=1))
+
+    number, mean = int(here.sum()), share(rate.value)
+    doubt = np.abs(share(rate.value - rate.error) - share(rate.value + rate.error)) / 2
+    return number * mean, np.hypot(np.sqrt(number * mean * (1 - mean)), number * doubt)

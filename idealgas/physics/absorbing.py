@@ -1,0 +1,35 @@
+"""Walls that absorb discs: one that touches such a wall leaves the gas.
+
+From then on it has no position, its coordinates are nan; it is at rest, in no cell and in no event.
+"""
+
+import math
+
+import numpy as np
+
+from idealgas.jit import inline
+
+U = np.uintp
+
+
+@inline
+def has_left(disc, absorbing):
+    """Whether a disc has left the gas. absorbing: (segments,) bool, whether each absorbs discs; None if none does."""
+    if absorbing is not None:
+        return disc.x != disc.x
+    return False
+
+
+@inline
+def mass_in_gas(disc, absorbing):
+    """Mass of a disc; 0 if it has left the gas."""
+    return 0.0 if has_left(disc, absorbing) else disc.m
+
+
+@inline
+def leave_gas(disc, own, rotation):
+    """Make a disc's record that of one that has left the gas."""
+    disc.x = disc.y = math.nan
+    disc.vx = disc.vy = 0.0
+    if rotation is not None:
+        rotation.omega[U(own)] = 0.0

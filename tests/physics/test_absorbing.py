@@ -1,0 +1,160 @@
+"""Holes: the same by all methods, resumed and continued; what leaves is accounted for, and counts no more."""
+
+import math
+
+import numpy as np
+import pytest
+from helpers.log_compare import same_by_brute_force_and_resumed
+from helpers.support import ROOT, output_of
+
+from idealgas import evolution, load_scene, open_log, open_run, parse_scene, resume, simulate, temperature
+from idealgas.columns import Kind
+from idealgas.errors import NotApplicableError, UserError
+from idealgas.movie.film import paint_frame
+from idealgas.report.player import player
+
+GOLDEN = ROOT / "tests" / "cases" / "golden" / "absorbing.toml"
+TWO = """
+box.size = [10, 10]
+run.until = 10
+wall = [{ from = [5, 4], to = [5, 6], absorbing = true, name = "hole" }]
+disc = [
+    { position = [2, 5], velocity = [1, 0], radius = 0.5, mass = 2 },
+    { position = [2, 8], velocity = [1, 0], radius = 0.5 },
+]
+"""
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        pytest.param((), marks=pytest.mark.slow, id="falling"),
+        pytest.param(("gravity=", "rotation=", "box.bottom=reflecting"), id="straight"),
+    ],
+)
+def test_the_same_by_brute_force_and_resumed(tmp_path, others):
+    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, others, "run.until=4", "run.until=11")
+    with open_log(tmp_path / "whole.h5") as log:
+        partner, kind = (np.concatenate([getattr(b, name) for b in log.chunks()]) for name in ("partner", "kind"))
+        assert (np.bincount(-5 - partner[kind == Kind.ESCAPED], minlength=4) > 0).tolist() == [True, False, True, True]
+        assert summary.escaped == (kind == Kind.ESCAPED).sum() == (~log.state_at(log.end_time).inside).sum()
+
+
+@pytest.fixture
+def two(tmp_path, uncompiled):
+    """A disc that leaves at t = 2.5, where its edge touches the hole, and one that flies by."""
+    path = tmp_path / "two.h5"
+    simulate(parse_scene(TWO), path)
+    with open_log(path) as log:
+        yield log
+
+
+def test_the_last_event_of_a_disc(two):
+    (rows,) = two.chunks()
+    own = rows.disc == 0
+    assert (rows.time[own].tolist(), rows.kind[own].tolist(), rows.partner[own].tolist()) == ([2.5], [6], [-5])
+    assert (rows.position[own].tolist(), rows.velocity[own].tolist()) == ([[4.5, 5.0]], [[1.0, 0.0]])
+    assert two.summary["escaped"] == 1
+    assert [flight.tolist() for flight in next(two.flights(discs=[0]))[2:4]] == [[0.0], [2.5]]
+
+
+def test_it_is_nowhere_after_that(two):
+    before, after = two.frames([2.4, 2.6])
+    assert before.inside.all()
+    assert after.inside.tolist() == [False, True]
+    assert np.isnan(after.position[0]).all()
+    assert after.position[1].tolist() == pytest.approx([4.6, 8.0])
+
+
+def test_its_energy_is_on_the_account(two):
+    assert two.observables["wall_energy"][1][-1].tolist() == [0, 0, 0, 0, -1.0]
+    assert two.observables["energy"][1][[0, -1]].tolist() == [1.5, 0.5]
+    assert two.observables["escaped"][1][[0, -1]].tolist() == [0, 1]
+    assert two.summary["energy_drift"] == 0
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_with_height_and_spin(tmp_path):
+    """It takes m g h + I ω²/2: from y = 5 at rest down to y = 1.5 with g = 2, m = 1, I ω² = 0.5 · 0.25 · 16."""
+    text = """
+        box.size = [10, 10]
+        run.until = 3
+        gravity.acceleration = [0, -2]
+        rotation.roughness = 1
+        wall = [{ from = [2, 1], to = [8, 1], absorbing = true }]
+        disc = [
+            { position = [5, 5], radius = 0.5, angular_velocity = 4 },
+            { position = [9, 5], radius = 0.5 },
+        ]
+    """
+    summary = simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert log.observables["wall_energy"][1][-1][4] == pytest.approx(-(5 * 2 + 1.0), rel=1e-14)
+        assert next(log.chunks()).time[0] == pytest.approx(math.sqrt(3.5), rel=1e-14)
+    assert abs(summary.energy_drift) < 1e-15
+
+
+def test_analyses_count_those_that_are_left_or_refuse(two):
+    assert evolution(two).temperature[[0, -1]].tolist() == [0.75, 0.5]
+    with pytest.raises(NotApplicableError, match="not applicable to a gas that discs leave"):
+        temperature(two, start=0.0)
+
+
+def test_pictures_leave_it_out(two, tmp_path):
+    paint_frame(two, tmp_path / "frame.png", 9.0)
+    found = player(two, start=3.0)
+    assert found.head["speed"] == pytest.approx(10 / 5)
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_a_start_from_a_state_has_those_that_are_left(tmp_path):
+    """Ids are new, in the old order: from a checkpoint the events of the run that goes on, bit for bit."""
+    text = """
+        scene.seed = 3
+        box.size = [8, 6]
+        run.events = 1000
+        wall = [{ from = [4, 2], to = [4, 2.5], absorbing = true }]
+        species = [{ name = "gas", count = 40, radius = 0.2, temperature = 1 }]
+    """
+    simulate(parse_scene(text), tmp_path / "old.h5")
+    with open_log(tmp_path / "old.h5") as log:
+        k = len(log.checkpoints) // 2
+        at, row = log.checkpoints.times[k].item(), log.checkpoints.rows[k].item()
+        here, (expected,) = np.flatnonzero(log.state_at(at).inside), log.chunks(None, row)
+    assert 10 < len(here) < 40
+    output_of("scene", tmp_path / "old.h5", "--at", repr(at), "-o", tmp_path / "next.toml")
+    simulate(load_scene(tmp_path / "next.toml", ["run.events=50"]), tmp_path / "new.h5")
+    with open_log(tmp_path / "new.h5") as log:
+        (found,) = log.chunks()
+    rows = slice(0, len(found.disc))
+    assert np.array_equal(here[found.disc], expected.disc[rows])
+    assert np.array_equal(found.position, expected.position[rows])
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_a_program_cannot_move_it(tmp_path):
+    with open_run(parse_scene(TWO + "[steering]\n"), tmp_path / "run.h5") as run:
+        run.advance(until=3.0)
+        assert run.state().inside.tolist() == [False, True]
+        with pytest.raises(UserError, match="disc 0 has left the gas"):
+            run.set_velocities([[0.0, 0.0]] * 2)
+        run.set_velocities([[0.0, 2.0]], [1])
+        run.reverse()
+        assert abs(run.finish().energy_drift) < 1e-15
+    with open_log(tmp_path / "run.h5") as log:
+        (rows,) = log.chunks()
+        assert rows.disc[rows.kind == Kind.STEERED].tolist() == [1, 1]
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_a_run_that_all_discs_leave(tmp_path):
+    """It ends in time; a number of events that cannot come is one line, again and again, until it has such an end."""
+    both = TWO.replace("[2, 8]", "[2, 6.1]")
+    summary = simulate(parse_scene(both), tmp_path / "run.h5")
+    assert (summary.escaped, summary.events, summary.end_time) == (2, 2, 10)
+    path, endless = tmp_path / "endless.h5", parse_scene(both, overrides=["run.until=", "run.events=9"])
+    with pytest.raises(UserError, match="all discs have left the gas, up to t = "):
+        simulate(endless, path)
+    with pytest.raises(UserError, match="all discs have left the gas, up to t = "):
+        resume(path)
+    assert resume(path, ["run.events=", "run.until=1e4"]).end_time == 1e4
