@@ -54,6 +54,12 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     return markdown.replace("<!-- analyses -->", "\n".join(_analyses()))
 
 
+def on_post_page(output: str, **_: Any) -> str:
+    """Name the search for programs that read a page aloud."""
+    search = 'data-md-component="search" role="dialog"'
+    return output.replace(search, f'{search} aria-label="Search"')
+
+
 def _linked(source: str, repository: str) -> str:
     """Text of a page with its links: to pages of the site, to pictures, or to other files in the repository."""
 

@@ -63,3 +63,6 @@ def test_the_site_is_built_without_a_warning(tmp_path, monkeypatch):
     assert done.returncode == 0, done.stderr
     assert not re.search("^WARNING", done.stderr, re.MULTILINE)
     assert (tmp_path / "site" / "gallery" / "index.html").stat().st_size > 20_000
+    page = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
+    assert 'role="dialog" aria-label="Search"' in page
+    assert "extra.css" in page
