@@ -161,12 +161,6 @@ def shear(
     The pressure tensor P is that of the velocities c relative to the flow: P A is the mean of Σ m c c and of the
     momentum that collisions pass on per time, times their distance. The viscosity is -P_xy/rate.
 
-    Args:
-        log: log with events, of a gas between sheared sides.
-        start: start of the window, time; by default from where viscosity/√T, and T where heat is taken out, are steady.
-        end: end of the window, time; by default the end of the log.
-        progress: called as progress(done, total) while events are read.
-
     Raises:
         UserError: without sheared sides or events, or if the gas does not become steady.
     """

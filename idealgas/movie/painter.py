@@ -6,7 +6,7 @@ What never changes is drawn once; a frame restores it and draws only discs, wall
 import math
 from collections.abc import Sequence
 from itertools import compress, product
-from typing import Any, Literal, NamedTuple, TypedDict
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 from matplotlib import colormaps, rc_context
@@ -27,6 +27,7 @@ from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
 from idealgas.analysis.theory.conserved import centre_of_mass_velocity
 from idealgas.errors import UserError
 from idealgas.log import LogState
+from idealgas.movie.layout import LEFT, NAME, TOP, Rectangle, frame_size, layout, lengths, view
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, Panel, SidesPanel, SpeedPanel
 from idealgas.movie.piston_track import PistonTrack
@@ -64,74 +65,11 @@ SMALLEST = 4.0
 CROSSING = 5.0
 """Default seconds of film in which a disc of typical speed crosses the box."""
 
-BEYOND = 1.25
-"""Length of the shown room along the way of a piston, relative to the largest one of the gas."""
-
-LEFT, RIGHT, BOTTOM, TOP, NAME = 64, 22, 58, 48, 60  # margins, and the name of a piston, pixels of the usual size
-PANEL = 0.3
-"""Smallest share of a frame for the panel beside or below the box."""
-
-SIZES = ((960, 540), (720, 720), (540, 960))
-"""Sizes of a frame, pixels."""
-
-Rectangle = tuple[float, float, float, float]
-
 Colouring = Literal["speed", "species", "order"]
 """What the colour of a disc shows: its speed, its species, or the order ψ₆ of its neighbours."""
 
 Shown = Literal["speeds", "density", "left-right", "none"]
 """What the panel beside the discs shows."""
-
-
-class Layout(NamedTuple):
-    """Rectangles (left, bottom, width, height) of box and panel in pixels, and scale in pixels per unit of length."""
-
-    box: Rectangle
-    panel: Rectangle | None
-    scale: float
-
-
-def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = True) -> Layout:
-    """Layout with a panel beside the box, or below it if the box is larger then."""
-    width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
-    if not panel:
-        scale = min(width / box[0], height / box[1])
-        w, h = scale * box[0], scale * box[1]
-        return Layout((LEFT + (width - w) / 2, BOTTOM + (height - h) / 2, w, h), None, scale)
-    aside, below = PANEL * size[0], PANEL * size[1]
-    beside = min((width - LEFT - aside) / box[0], height / box[1])
-    above = min(width / box[0], (height - BOTTOM - below) / box[1])
-    scale = max(beside, above)
-    w, h = scale * box[0], scale * box[1]
-    if beside >= above:
-        other = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
-        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), other, scale)
-    other = (LEFT, BOTTOM, width, height - BOTTOM - h)
-    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), other, scale)
-
-
-def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Shown part of a box along x and y, length: the box, but of the room beyond a piston only BEYOND the gas."""
-    shown = [(0.0, box[0]), (0.0, box[1])]
-    if piston is not None:
-        low, high = shown[piston.axis]
-        if piston.outward > 0:
-            high = min(high, BEYOND * float(piston.place.max()))
-        elif piston.outward < 0:
-            low = max(low, high - BEYOND * (high - float(piston.place.min())))
-        shown[piston.axis] = low, high
-    return shown[0], shown[1]
-
-
-def _lengths(shown: tuple[tuple[float, float], tuple[float, float]]) -> tuple[float, float]:
-    """Lengths of the shown part of a box along x and y."""
-    (left, right), (low, high) = shown
-    return right - left, high - low
-
-
-def _size(shown: tuple[tuple[float, float], tuple[float, float]], panel: bool) -> tuple[int, int]:
-    """Size of a frame, of SIZES: the first one, unless the shown part of a box is much larger in another."""
-    return max(SIZES, key=lambda size: layout(size, _lengths(shown), panel).scale * (1.2 if size == SIZES[0] else 1.0))
 
 
 class Look(TypedDict, total=False):
@@ -188,7 +126,7 @@ class Painter:
         self._colouring, self._shows = colouring, panel
         self._panel: Panel | None = None
         self._view = view(gas.box, piston)
-        self.size = size or _size(self._view, panel != "none")
+        self.size = size or frame_size(self._view, panel != "none")
         self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}
         self._periodic = np.array(scene.properties.periodic)
         self._kinds = np.array(COLOURS)[gas.species % len(COLOURS)]
@@ -205,7 +143,7 @@ class Painter:
         page = size[0] / zoom, size[1] / zoom
         self._figure = Figure(figsize=(page[0] / DPI, page[1] / DPI), dpi=DPI * zoom)
         self._canvas = FigureCanvasAgg(self._figure)
-        place = layout(page, _lengths(self._view), self._shows != "none")
+        place = layout(page, lengths(self._view), self._shows != "none")
         self._diameter = np.maximum(2 * self._gas.radius, SMALLEST / (place.scale * min(zoom, 1)))
         has_edge = self._diameter * place.scale * zoom > EDGED
         self._edge = np.where(has_edge & (not self._dark), EDGE, 1.0)[:, None]

@@ -18,7 +18,8 @@ from idealgas.log import LogState, open_log
 from idealgas.movie import film
 from idealgas.movie.film import animate
 from idealgas.movie.gif import GifWriter
-from idealgas.movie.painter import LEFT, Painter, layout, view
+from idealgas.movie.layout import LEFT, layout, view
+from idealgas.movie.painter import Painter
 from idealgas.movie.panels import DensityPanel, SidesPanel
 from idealgas.movie.piston_track import PistonTrack
 from idealgas.run.simulate import simulate
