@@ -314,8 +314,8 @@ def test_wrong_tables_from_python_are_scene_errors():
 
 
 def test_many_given_discs_start_within_seconds(tmp_path):
-    """4·10⁴ discs: load, check and start."""
-    n, rng = 200, np.random.default_rng(1)
+    """10⁵ discs: load, check and start."""
+    n, rng = 317, np.random.default_rng(1)
     position = np.stack(np.meshgrid(np.arange(n), np.arange(n)), -1).reshape(-1, 2) + 0.5
     np.savez(
         tmp_path / "many.npz", position=position, velocity=rng.normal(size=position.shape), radius=np.full(n * n, 0.3)
@@ -323,7 +323,7 @@ def test_many_given_discs_start_within_seconds(tmp_path):
     (tmp_path / "many.toml").write_text(f"box.size = [{n}, {n}]\nrun.events = 10\n[start]\nfile = 'many.npz'\n")
     started = time.process_time()
     simulate(load_scene(tmp_path / "many.toml"), tmp_path / "many.h5")
-    assert time.process_time() - started < 6  # 2 on a free machine, with machine code to load
+    assert time.process_time() - started < 10  # 5 on a free machine, with machine code to load
 
 
 def test_a_scene_of_a_log_with_explicit_discs_names_their_species(tmp_path):
