@@ -92,6 +92,9 @@ def test_poiseuille_flow_with_slip(tmp_path):
         simulate(load_scene(ROOT / "configs" / "poiseuille.toml", [f"scene.seed={seed}"]), path)
         with open_log(path) as log:
             found.append(profile(log, start=400))
+            if seed == 1:
+                assert "steady from 357 on" in " ".join(profile(log, start=0).caveats)
+    assert not any("The flow relaxes" in sentence for one in found for sentence in one.caveats)
     assert {(one.axis, one.flow) for one in found} == {("y", "x")}
     strips = np.array([[e.value for e in one.species[0].velocity] for one in found])
     theory, off = np.array([(e.theory, e.theory_error) for e in found[0].species[0].velocity]).T

@@ -146,10 +146,11 @@ class ProfileAnalysis(Analysis):
         strip = float(edges[1] - edges[0]) * log.box[1 - axis]
         spinning = log.inertia is not None
         species = tuple(
-            _of_species(name, sums[:, s], edges, strip, expected, s, spinning, flow)
+            _of_species(name, sums[:, s], edges, strip, expected, s, spinning, flow and flow.velocity)
             for s, name in enumerate(composition(log.discs).name)
         )
         caveats = (*_unknown_strips(species), *_limits(log, axis, float(edges[1] - edges[0]), species, expected))
+        caveats += tuple(flow.caveats(window)) if flow else ()
         law = expected.law if expected else LAW if flow else None
         axes = "xy"[axis], None if along_flow is None else "xy"[along_flow]
         return Profile(window, *axes, edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)

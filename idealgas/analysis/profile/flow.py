@@ -1,9 +1,12 @@
 """Theory of the flow that gravity along periodic sides drives between two thermal sides: Poiseuille flow with slip."""
 
 import math
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.profile.theory import JUMP, POINTS
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error
@@ -29,7 +32,26 @@ LARGEST_ERROR = 0.1
 """Largest error relative to the velocity in the middle: above, the gap is too narrow or the flow heats the gas."""
 
 
-def expected_flow(log: Log, axis: int, edges: np.ndarray) -> list[Theory] | None:
+STEADY, LEAST_WINDOW = 4.0, 10.0
+"""Time from which a flow is steady, to 2 %, and least length of a window, in relaxation times."""
+
+
+class Flow(NamedTuple):
+    """Flow by theory. velocity: along the other axis, by strip. relaxation: its time, H²/π²ν with the gap H."""
+
+    velocity: list[Theory]
+    relaxation: float
+
+    def caveats(self, window: Window) -> Iterator[str]:
+        """Sentence on a window in which the flow develops, or that is too short for its fluctuations."""
+        if window.start < STEADY * self.relaxation or window.duration < LEAST_WINDOW * self.relaxation:
+            yield (
+                f"The flow relaxes in t = {self.relaxation:.3g}: it is steady from {STEADY * self.relaxation:.3g} on, "
+                f"and its errors are right in a window of {LEAST_WINDOW * self.relaxation:.3g}."
+            )
+
+
+def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     """Velocity along the other axis in strips between edges (K + 1,) along an axis; None if unknown.
 
     The stress of the flow of density ρ carries its weight: u = ρg/2η (y (H - y) + sH), with y from 0 to H where centres
@@ -68,4 +90,5 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> list[Theory] | None
     middle = off * abs(fastest) + abs(curvature) * missing.min()
     if middle > LARGEST_ERROR * abs(fastest):
         return None
-    return [Theory(*one, LAW) for one in zip(value.tolist(), error.tolist(), strict=True)]
+    velocity = [Theory(*one, LAW) for one in zip(value.tolist(), error.tolist(), strict=True)]
+    return Flow(velocity, (gap / math.pi) ** 2 * mass * density / viscosity)
