@@ -200,7 +200,9 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
     assert differences(one, cut_off) == []
 
 
-@pytest.mark.parametrize("effects", ["steps", "vibration", "fixed", "permeable", "absorbing", "steering", "arcs", "flow"])
+@pytest.mark.parametrize(
+    "effects", ["steps", "vibration", "fixed", "permeable", "absorbing", "steering", "arcs", "flow"]
+)
 @pytest.mark.slow
 def test_moving_and_fixed_obstacles_have_the_log_of_one_thread(effects):
     counts = sum((compare(lambda s=seed: tall_scene(effects, s), seed, (2, 4)) for seed in range(2)), Counter())
