@@ -149,7 +149,12 @@ class ScatteringAnalysis(Analysis):
                 (f"F_s at t = {one.time[1]:.3g} (no unit)", one.early),
             )
         ]
-        notes = [describe(result.window), "theory: (1 − S/N) T/m; free flight and the first collision"]
+        notes = [
+            describe(result.window),
+            "theory: (1 − S/N) T/m; free flight and the first collision",
+            "errors by 32 segments; those of currents along k of the longest wave, of S(k, ω) of the shortest, and of "
+            "currents across k may be a fifth too small",
+        ]
         tables = [estimates("Waves of density and current", rows, notes)]
         for one in result.waves:
             curves = {"F": one.density, "F_s": one.self_part, "along": one.longitudinal, "across": one.transverse}

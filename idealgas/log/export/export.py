@@ -87,7 +87,7 @@ def export(
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
     try:
         if parts is not None:
-            return tables.write_parts(log, rows, Path(str(output)), parts)
+            return tables.write_parts(log, rows, Path(str(output)), parts, force)
         with _target(made, kind, output, force, log) as target:
             return made.write(log, rows if times is None else times, target)
     except ModuleNotFoundError as error:

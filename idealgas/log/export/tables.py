@@ -34,16 +34,16 @@ def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
     return _write(log, times, partial(parquet.ParquetWriter, str(path)))
 
 
-def write_parts(log: Log, what: Rows, folder: Path, number: int) -> int:
+def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = False) -> int:
     """Write event rows or flights as Parquet files in a new folder, and return their number.
 
     Each file has the rows that end in one of so many equal parts of the time of the log. The folder appears when it is
-    complete. Raises OutputError if it cannot be made.
+    complete; one that holds only such files is replaced with `force`. Raises OutputError if it cannot be made.
     """
     import pyarrow
     from pyarrow import parquet
 
-    if folder.exists():
+    if folder.exists() and not (force and folder.is_dir() and all(map(_is_part, folder.iterdir()))):
         raise OutputError(f"{folder}: already exists")
     edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
     place, writer, part, rows = beside(folder), None, 0, 0
@@ -61,12 +61,18 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int) -> int:
             rows += len(table)
         if writer is not None:
             writer.close()
+        if folder.exists():
+            shutil.rmtree(folder)
         place.rename(folder)
     except OSError as error:
         raise storage_error(folder, error) from error
     finally:
         shutil.rmtree(place, ignore_errors=True)
     return rows
+
+
+def _is_part(path: Path) -> bool:
+    return path.match("part-*.parquet")
 
 
 def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any], Any]) -> int:

@@ -85,6 +85,11 @@ def test_parts_of_a_table(log, rows, tmp_path, monkeypatch):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["parts", "whole.parquet"]
     with pytest.raises(OutputError, match="already exists"):
         export(log, "parquet", tmp_path / "parts", rows=rows, parts=3)
+    assert export(log, "parquet", tmp_path / "parts", rows=rows, parts=2, force=True) == number
+    assert len(list((tmp_path / "parts").iterdir())) == 2
+    (tmp_path / "parts" / "mine.txt").touch()
+    with pytest.raises(OutputError, match="already exists"):
+        export(log, "parquet", tmp_path / "parts", rows=rows, parts=2, force=True)
 
 
 def blocks(columns):
