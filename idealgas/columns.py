@@ -44,6 +44,7 @@ class Kind(IntEnum):
 
     DISC = 0
     WALL = 1
+    """Or a sheared side, through which it enters at the opposite one."""
     WALL_END = 2
     PISTON = 3
     THERMOSTAT = 4

@@ -187,3 +187,26 @@ def test_the_viscosity_is_that_of_the_same_gas_at_rest(tmp_path, phi, rate):
     low, high = found.slope.interval(math.erf(3 / math.sqrt(2)))
     assert low < 1 < high
     assert found.reduced_rate < 0.03
+
+
+@pytest.mark.slow
+def test_normal_stress_of_a_dilute_granular_gas(tmp_path):
+    """(P_xx - P_yy)/P = 2ζ/(β + ζ) where collisions take what shear brings: ζ = (1 - e²)/2, β = (1 + e)(3 + e)/8.
+
+    Moments of Boltzmann's equation, for two dimensions: Santos, Garzó & Dufty, Phys. Rev. E 69, 061303 (2004).
+    """
+    side = math.sqrt(400 * math.pi / 4 / 0.01)
+    scene = FLUID.format(side=side, below="{ shear = 0.0148 }")
+    simulate(
+        parse_scene(scene, overrides=["restitution.normal=0.9", "run.collisions_per_disc=300"]), tmp_path / "run.h5"
+    )
+    found = shear(tmp_path / "run.h5")
+    decay, exchange = (1 - 0.9**2) / 2, 1.9 * 3.9 / 8
+    expected = 2 * decay / (exchange + decay)
+    assert found.window.state == "steady state"
+    assert found.normal_stress.standard_error < 0.06 * expected
+    within(
+        "normal stress of a granular gas, σ",
+        abs(found.normal_stress.value - expected) / found.normal_stress.standard_error,
+        3,
+    )
