@@ -37,6 +37,10 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
     if not log.has_positions:
         raise UserError(f"{log.path}: its discs have no positions")
     state, discs, scene = log.state_at(time), log.discs, log.scene
+    if (rate := scene.properties.shear) and not _in_step(time, rate, scene.box.size):
+        width, height = scene.box.size
+        allowed = f"multiples of {width / (rate * height):.6g}, when images are above each other"
+        raise UserError(f"{log.path}: no start between sheared sides from t = {time:g} (allowed {allowed})")
     spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
     here = ~np.isnan(state.position[:, 0])
     if not here.any():
@@ -51,6 +55,12 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
     }
     walls = [wall for wall in scene.segments if wall.is_there(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
+
+
+def _in_step(time: float, rate: float, size: tuple[float, float]) -> bool:
+    """Whether the image above a sheared box is ahead by whole widths of the box at a time, but for rounding."""
+    widths = rate * size[1] * time / size[0]
+    return abs(widths - round(widths)) <= 1e-12 * max(widths, 1.0)
 
 
 def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:

@@ -14,8 +14,9 @@ from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.errors import NotApplicableError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.initial.build import make_gas
+from idealgas.log.start import continued_scene
 from idealgas.physics.exact_sum import make_sums
 from idealgas.physics.exact_sum import values as values_of
 from idealgas.physics.periodic import Periodic
@@ -142,6 +143,9 @@ def test_the_stress_heats_the_gas(tmp_path):
         work = found.rate**2 * width * height * found.viscosities.mean() * log.end_time
         assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
         assert found.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
+        with pytest.raises(UserError, match=r"no start between sheared sides from t = 1 \(allowed multiples of 3.21"):
+            continued_scene(log, 1.0, "run.h5")
+        assert "run.h5" in continued_scene(log, 9 / 2.8, "run.h5")
         for analysis in registry.analyses():
             if not analysis.takes_shear:
                 with pytest.raises(NotApplicableError, match=r"sheared sides, where|of one species that differ"):
