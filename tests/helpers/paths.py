@@ -48,7 +48,8 @@ class Paths:
             passage = effects.permeable.passage
         self.passage = np.asarray(passage)[:, gas.species]
         self.straight = np.array([w.arc is None for w in scene.wall], bool)
-        self.gates, self.fixed = scene.wall, scene.walls[len(scene.wall) :]
+        self.gates = scene.wall
+        self.fixed = [wall for wall in scene.walls[len(scene.wall) :] if wall.radius]  # not an inner piston
         self.piston = scene.piston
         self.outward = scene.piston.outward_from(gas.position, gas.box) if scene.piston else np.zeros(n)
         self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
