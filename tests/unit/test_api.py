@@ -78,9 +78,17 @@ run.collisions_per_disc = 40
 """
 
 
+HOLE = """
+box.size = [8, 8]
+wall = [{ from = [4, 0], to = [4, 2], absorbing = true }]
+species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1 }]
+run.until = 20
+"""
+
+
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory):
-    """Paths of logs by name: of each kind, with sound waves, cooling, a gate, strokes of a piston, and shear."""
+    """Paths of logs by name: of each kind, with waves, cooling, a gate, strokes of a piston, shear, and a hole."""
     folder = tmp_path_factory.mktemp("logs")
     for packed in LOGS.glob(f"*{PACKED}"):
         name = packed.name.removesuffix(".xz").partition("-")[2]  # without the version of the format
@@ -90,6 +98,7 @@ def logs(tmp_path_factory):
     idealgas.simulate(idealgas.parse_scene(GATE), folder / "gate.h5")
     idealgas.simulate(idealgas.parse_scene(STROKES), folder / "strokes.h5")
     idealgas.simulate(idealgas.parse_scene(SHEARED), folder / "sheared.h5")
+    idealgas.simulate(idealgas.parse_scene(HOLE), folder / "hole.h5")
     return {path.stem: path for path in sorted(folder.glob("*.h5"))}
 
 
