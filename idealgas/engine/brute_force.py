@@ -32,7 +32,8 @@ from idealgas.physics.absorbing import has_left, leave_gas
 from idealgas.physics.arc import wall_contact
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
-from idealgas.physics.motion import NEVER
+from idealgas.physics.gravity import acceleration_along
+from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_inner, is_piston_side, piston_contact, stop_contact
@@ -150,20 +151,37 @@ def sheared_range(shear, most, others):
 
 
 @inline
-def boundary_crossing_event(record, i, periodic, best):
+def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
+    """Local time of a disc's next crossing of a periodic side along an axis, and whether it is forward.
+
+    Under gravity it is computed from the disc's state at the local time `now`, up to which crossings are counted.
+    """
+    position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
+    if gravity is not None:
+        pull = acceleration_along(gravity, along_y)
+        if pull != 0.0:
+            dt = max(now - disc.t, 0.0)
+            here = position_after(position, velocity, pull, dt) - crossings * length
+            speed = velocity_after(velocity, pull, dt)
+            down, up = time_to_plane(here, speed, pull), time_to_plane(length - here, -speed, -pull)
+            return disc.t + dt + min(down, up), up < down
+    forward = velocity > 0.0
+    return disc.t + arrival_delay(position, velocity, (crossings + (1 if forward else 0)) * length), forward
+
+
+@inline
+def boundary_crossing_event(record, i, effects, now, best):
     """The earlier of the event `best` and disc i's next crossing of a periodic side.
 
     A crossing changes no record, but the images in which the disc has to be searched for contacts.
     """
+    periodic = effects.periodic
     if periodic is not None:
-        disc = record[i]
         for axis in range(2):
-            boundary_crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
+            crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
             if is_periodic:
                 length = periodic.Ly if axis == 1 else periodic.Lx
-                position, velocity = (disc.y, disc.vy) if axis == 1 else (disc.x, disc.vx)
-                forward = velocity > 0.0
-                time = disc.t + arrival_delay(position, velocity, (boundary_crossings + (1 if forward else 0)) * length)
+                time, forward = boundary_crossing_along(record[i], axis == 1, crossings, length, effects.gravity, now)
                 if time < best[0]:
                     best = (time, BOUNDARY_CROSSING, i, axis, 1 if forward else -1, 0)
     return best
@@ -180,11 +198,12 @@ def stop_event(piston, best):
 
 
 @inline
-def next_event(record, box, effects):
+def next_event(record, box, effects, now):
     """Earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
 
-    For a BOUNDARY_CROSSING the partner is the axis, and image_x the direction. Events are compared in the order that
-    decides between simultaneous ones: the smaller id first, then walls, then the heat bath, then the other id.
+    now: local time up to which everything has happened. For a BOUNDARY_CROSSING the partner is the axis, and
+    image_x the direction. Events are compared in the order that decides between simultaneous ones: the smaller id
+    first, then walls, then the heat bath, then the other id.
     """
     best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):
@@ -195,7 +214,7 @@ def next_event(record, box, effects):
         for j in range(i + 1, record.shape[0]):
             if not has_left(record[j], effects.absorbing):
                 best = pair_event(record, i, j, effects, best)
-        best = boundary_crossing_event(record, i, effects.periodic, best)
+        best = boundary_crossing_event(record, i, effects, now, best)
     return stop_event(effects.piston, best)
 
 
@@ -216,15 +235,16 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
     events = 0
     collisions = 0
     thermostat_collisions = 0
-    now = counters[0].time
+    now = happened = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
     reached = False
     capacity = batch_capacity(batch)
     while events < limits.events and collisions < limits.collisions and rows < capacity:
-        time, what, i, partner, image_x, image_y = next_event(record, box, effects)
+        time, what, i, partner, image_x, image_y = next_event(record, box, effects, happened)
         if time > limits.until:
             reached = True
             break
+        happened = time
         if what == BOUNDARY_CROSSING:
             cross_boundary(effects.periodic, i, partner, image_x)
             continue
