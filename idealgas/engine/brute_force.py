@@ -170,18 +170,17 @@ def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
 
 
 @inline
-def boundary_crossing_event(record, i, effects, now, best):
+def boundary_crossing_event(record, i, periodic, gravity, now, best):
     """The earlier of the event `best` and disc i's next crossing of a periodic side.
 
     A crossing changes no record, but the images in which the disc has to be searched for contacts.
     """
-    periodic = effects.periodic
     if periodic is not None:
         for axis in range(2):
             crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
             if is_periodic:
                 length = periodic.Ly if axis == 1 else periodic.Lx
-                time, forward = boundary_crossing_along(record[i], axis == 1, crossings, length, effects.gravity, now)
+                time, forward = boundary_crossing_along(record[i], axis == 1, crossings, length, gravity, now)
                 if time < best[0]:
                     best = (time, BOUNDARY_CROSSING, i, axis, 1 if forward else -1, 0)
     return best
@@ -214,7 +213,7 @@ def next_event(record, box, effects, now):
         for j in range(i + 1, record.shape[0]):
             if not has_left(record[j], effects.absorbing):
                 best = pair_event(record, i, j, effects, best)
-        best = boundary_crossing_event(record, i, effects, now, best)
+        best = boundary_crossing_event(record, i, effects.periodic, effects.gravity, now, best)
     return stop_event(effects.piston, best)
 
 

@@ -127,7 +127,8 @@ def _massive_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
     if scene.properties.later_accelerations:
         both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", "mass"))
         yield Issue(both, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
-    if piston.pressure is None:
+    if piston.inner:
+        yield from _resting_issues(scene, piston)
         return
     times = [time for time, _ in steps_of(piston.pressure)]
     accelerations = (piston.acceleration(scene.box.size, scene.properties.acceleration, time) for time in times)
@@ -136,6 +137,15 @@ def _massive_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
         keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"
         yield Issue(keys, "nothing presses the piston on the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
+
+
+def _resting_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
+    """Check that gravity does not press an inner piston at rest on a side of the box."""
+    size, start = scene.box.size, piston.start(scene.box.size)
+    pull = piston.acceleration(size, scene.properties.acceleration)
+    if not piston.velocity and ((start == 0 and pull < 0) or (start == size[piston.axis] and pull > 0)):
+        keys: tuple[Key, ...] = (("piston", "position"), ("gravity", "acceleration"))
+        yield Issue(keys, "a piston at rest on a side", f"{start:g}", f"0 < position < {size[piston.axis]}")
 
 
 def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
