@@ -58,11 +58,13 @@ def export(
     from idealgas.log.export.export import FORMATS, frame_times
     from idealgas.log.export.export import export as write
 
+    if parts and output == "-":
+        raise UserError("--parts: a folder cannot be standard output (allowed -o FOLDER)")
     kind = kind or ("parquet" if parts else _kind_of(output))
     with open_log(path) as log:
         times = None if frames is None else frame_times(log, frames).tolist()
         target = output or str(Path(path).with_suffix("" if parts else FORMATS[kind].ending))
-        file = sys.stdout.buffer if target == "-" and not parts else target
+        file = sys.stdout.buffer if target == "-" else target
         number = write(log, kind, file, times, force, "flights" if flights else "events", parts)
     what = "event rows" if events else "flights" if flights else "frames"
     echo(f"{target}: {number:,} {what}", err=target == "-")

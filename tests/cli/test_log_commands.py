@@ -185,6 +185,7 @@ def test_export_to_a_full_device(copy):
         ),
         (("--frames", "3", "--parts", "3"), "parts are at least one file of events or flights in parquet"),
         (("--events", "--parts", "3", "-o", "."), ".: already exists"),
+        (("--events", "--parts", "3", "-o", "-"), "--parts: a folder cannot be standard output (allowed -o FOLDER)"),
     ],
 )
 def test_export_refuses(copy, arguments, message):

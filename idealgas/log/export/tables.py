@@ -37,8 +37,9 @@ def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
 def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = False) -> int:
     """Write event rows or flights as Parquet files in a new folder, and return their number.
 
-    Each file has the rows that end in one of so many equal parts of the time of the log. The folder appears when it is
-    complete; one that holds only such files is replaced with `force`. Raises OutputError if it cannot be made.
+    Each file has the columns, and the rows that end in one of so many equal parts of the time of the log. The folder
+    appears when it is complete; one that holds only such files is replaced with `force`. Raises OutputError if it
+    cannot be made.
     """
     import pyarrow
     from pyarrow import parquet
@@ -46,29 +47,48 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
     if folder.exists() and not (force and folder.is_dir() and all(map(_is_part, folder.iterdir()))):
         raise OutputError(f"{folder}: already exists")
     edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
-    place, writer, part, rows = beside(folder), None, 0, 0
+    place, writers, rows = beside(folder), list[Any](), 0
+
+    def open_up_to(part: int, schema: Any) -> None:
+        for k in range(len(writers), part + 1):
+            if writers:
+                writers[-1].close()
+            writers.append(parquet.ParquetWriter(str(place / f"part-{k:04}.parquet"), schema))
+
     try:
         place.mkdir()
         for columns in _columns(log, what):
             table = pyarrow.table(columns)
             cuts = [0, *columns[END_OF[what]].searchsorted(edges, "right").tolist(), len(table)]
             for k in np.flatnonzero(np.diff(cuts)).tolist():
-                if writer is None or k > part:
-                    if writer is not None:
-                        writer.close()
-                    part, writer = k, parquet.ParquetWriter(str(place / f"part-{k:04}.parquet"), table.schema)
-                writer.write_table(table.slice(cuts[k], cuts[k + 1] - cuts[k]))
+                open_up_to(k, table.schema)
+                writers[-1].write_table(table.slice(cuts[k], cuts[k + 1] - cuts[k]))
             rows += len(table)
-        if writer is not None:
-            writer.close()
-        if folder.exists():
-            shutil.rmtree(folder)
-        place.rename(folder)
+        open_up_to(number - 1, table.schema)
+        writers[-1].close()
+        _replace(place, folder.resolve())
     except OSError as error:
         raise storage_error(folder, error) from error
     finally:
+        if writers:
+            writers[-1].close()
         shutil.rmtree(place, ignore_errors=True)
     return rows
+
+
+def _replace(place: Path, folder: Path) -> None:
+    """Give a complete folder its name; a previous one with this name is removed last."""
+    if not folder.exists():
+        place.rename(folder)
+        return
+    previous = beside(folder)
+    folder.rename(previous)
+    try:
+        place.rename(folder)
+    except OSError:
+        previous.rename(folder)
+        raise
+    shutil.rmtree(previous)
 
 
 def _is_part(path: Path) -> bool:

@@ -92,6 +92,27 @@ def test_parts_of_a_table(log, rows, tmp_path, monkeypatch):
         export(log, "parquet", tmp_path / "parts", rows=rows, parts=2, force=True)
 
 
+def test_parts_without_rows_have_the_columns(log, tmp_path, monkeypatch):
+    """Also those of a log without rows; what was there stays until the new folder is complete."""
+    whole = tables._columns
+    nothing = ({name: column[:0] for name, column in block.items()} for block in whole(log, "events"))
+    monkeypatch.setattr(tables, "_columns", lambda *found: nothing)
+    assert export(log, "parquet", tmp_path / "parts", parts=3) == 0
+    files = sorted((tmp_path / "parts").iterdir())
+    assert len(files) == 3
+    assert all(len(read_table(file)["time"]) == 0 for file in files)
+
+    def broken(*found):
+        yield next(whole(log, "events"))
+        raise OSError("disk")
+
+    monkeypatch.setattr(tables, "_columns", broken)
+    with pytest.raises(OutputError, match="disk"):
+        export(log, "parquet", tmp_path / "parts", parts=2, force=True)
+    assert sorted((tmp_path / "parts").iterdir()) == files
+    assert [path.name for path in tmp_path.iterdir()] == ["parts"]
+
+
 def blocks(columns):
     for block in columns:
         for first in range(0, max(len(block["disc"]), 1), 500):
