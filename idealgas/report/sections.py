@@ -55,6 +55,8 @@ def main_sections(scene: Scene) -> tuple[str, ...]:
     properties = scene.properties
     if properties.shear:
         return ("Shear flow",)
+    if properties.escapes:
+        return ("Escape", "Evolution")
     called_for = {
         "Effusion": properties.last_wall_removed_at > 0,
         "Cooling": properties.dissipative,
