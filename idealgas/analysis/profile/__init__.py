@@ -197,7 +197,7 @@ class ProfileAnalysis(Analysis):
                 if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
                     ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
                     found.append(f"The {name} of {entry.species} is {ends}.")
-        same = "No density or temperature differs clearly between the first and the last strip."
+        same = "Nothing differs clearly between the first and the last strip."
         law = f"theory, {result.law}"
         together = ", ".join(f"p = {test.p_value:.2g} ({name})" for name, test in _tests(result))
         return f"{' '.join(found) or same} In strips: {agreement(rows, law)}{together and f'; together: {together}'}."

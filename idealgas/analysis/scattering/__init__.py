@@ -152,8 +152,9 @@ class ScatteringAnalysis(Analysis):
         notes = [
             describe(result.window),
             "theory: (1 − S/N) T/m; free flight and the first collision",
-            "errors by 32 segments; those of currents along k of the longest wave, of S(k, ω) of the shortest, and of "
-            "currents across k may be a fifth too small",
+            "errors by 32 segments; too small, by the rms of deviation over error in 150 runs, are those of the "
+            "current along k of the longest wave (1.23), S(k, ω) of the shortest wave (1.23) and the current across k "
+            "of the third wave (1.19)",
         ]
         tables = [estimates("Waves of density and current", rows, notes)]
         for one in result.waves:

@@ -21,7 +21,8 @@ from idealgas.analysis.transport.combine import States
 from idealgas.analysis.transport.measure import Transport
 
 WALLS = (
-    "No viscosities and thermal conductivity: they need periodic sides alone, as walls change the currents of the gas."
+    "No viscosities and thermal conductivity: they need periodic sides and nothing else in the box, as walls change "
+    "the currents of the gas."
 )
 
 
