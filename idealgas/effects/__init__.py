@@ -13,7 +13,6 @@ from idealgas.effects.effect import EffectSpec
 NAMES = (
     "gravity",
     "periodic",
-    "shear",
     "wall",
     "arc",
     "permeable",
@@ -22,6 +21,7 @@ NAMES = (
     "restitution",
     "thermal",
     "vibration",
+    "shear",
     "piston",
     "thermostat",
     "steering",

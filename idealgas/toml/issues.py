@@ -97,7 +97,9 @@ def _described(key: Key, model: type[BaseModel]) -> str:
     """Description of a key in the model, or of the array that contains it."""
     while isinstance(key[-1], int):
         key = key[:-1]
-    return _keys(table_at(key[:-1], model))[str(key[-1])].description or ""
+    name = str(key[-1])
+    tables = (_keys(table) for table in _tables_at(key[:-1], model))
+    return next((keys[name].description for keys in tables if name in keys), None) or ""
 
 
 def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:

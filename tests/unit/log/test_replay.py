@@ -106,7 +106,7 @@ def test_h5dump_reads_it(tmp_path: Path, compression):
 
 def test_a_flight_through_too_many_boxes_is_refused():
     discs = {"position": np.full((1, 2), 0.5), "velocity": np.array([[3e9, 0.0]]), "image": np.zeros((1, 2), np.int32)}
-    replay = Replay(Checkpoint(0.0, 0, 0, discs, {}), (), (1.0, 1.0), (True, True), None)
+    replay = Replay(Checkpoint(0.0, 0, 0, discs, {}), (), (1.0, 1.0), (True, True), None, False)
     assert replay.at(0.1).image[0, 0] == 3e8
     with pytest.raises(ValueError, match=r"flies through 3e\+09 boxes"):
         replay.at(1.0)

@@ -20,7 +20,7 @@ LENGTH = 9.0
 def sides(amplitude, frequency, time=0.0):
     side = VibratingSide.model_validate({"vibrating": {"amplitude": amplitude, "frequency": frequency}})
     vibration = _make(SimpleNamespace(sides=(side,) * 4), None)
-    begin_epoch(vibration, time)
+    begin_epoch(vibration, time, 0.0)
     return vibration
 
 

@@ -55,7 +55,8 @@ def test_gravity():
 def test_periodic_sides():
     periodic = effects_of("box.bottom=periodic", "box.top=periodic")[1].periodic
     assert periodic[:4] == (False, True, 20.0, 10.0)
-    for counts in periodic[4:]:
+    assert periodic.shear is None
+    for counts in periodic[4:6]:
         assert (counts.shape, counts.dtype, counts.any()) == ((51, 2), np.int32, False)
 
 
