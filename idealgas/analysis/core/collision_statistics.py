@@ -4,6 +4,7 @@ import numpy as np
 
 from idealgas.analysis.core.impacts import contacts
 from idealgas.analysis.core.intervals import Intervals
+from idealgas.analysis.core.stream import MOST_BLOCKS
 from idealgas.columns import Kind
 from idealgas.log import Flights
 from idealgas.state import Gas
@@ -38,9 +39,10 @@ class ImpactParameters(Intervals):
 class CollisionCounts:
     """Numbers of collisions of each disc with discs in successive times t, by species, and a sample of them.
 
-    begins: (V,), starts of the V times. counts: (V, S, bins + 2), numbers of discs with 0 to bins - 1 collisions, after
-    a column of zeros, and with more. sums: (V, S, POWERS), Σ n^p over discs, for powers p from 0. sample, sample_index,
-    sample_species: (n,), numbers of collisions, and index and species of their time and disc.
+    The times are put together in G groups of the same number of successive ones, at most MOST_BLOCKS. begins: (G,),
+    starts of the groups. counts: (G, S, bins + 2), numbers of discs with 0 to bins - 1 collisions, after a column of
+    zeros, and with more. sums: (G, S, POWERS), Σ n^p over discs, for powers p from 0. sample, sample_index,
+    sample_species: (n,), numbers of collisions, and index and species of their group and disc.
     """
 
     columns = ("disc", "end", "kind")
@@ -52,8 +54,11 @@ class CollisionCounts:
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
-        number, species = int((edges[-1] - edges[0]) / self.time), len(gas.species_names)
-        self.begins = edges[0] + self.time * np.arange(number)
+        times, species = int((edges[-1] - edges[0]) / self.time), len(gas.species_names)
+        self._together = max(-(-times // MOST_BLOCKS), 1)
+        number = times // self._together
+        self._start, self._times = edges[0], number * self._together
+        self.begins = self._start + self.time * self._together * np.arange(number)
         self.counts = np.zeros((number, species, self.bins + 2), np.int64)
         self.sums = np.zeros((number, species, POWERS))
         self._species, self._now, self._index = gas.species.astype(np.intp), np.zeros(len(gas)), 0
@@ -62,7 +67,7 @@ class CollisionCounts:
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
         some = flights.kind == Kind.DISC
-        disc, index = flights.disc[some], ((flights.end[some] - self.begins[:1]) / self.time).astype(np.intp)
+        disc, index = flights.disc[some], ((flights.end[some] - self._start) / self.time).astype(np.intp)
         ends = np.append(np.flatnonzero(np.diff(index)) + 1, len(index))
         first = 0
         for end in ends.tolist() if len(index) else ():
@@ -73,7 +78,7 @@ class CollisionCounts:
 
     def finish(self) -> None:
         """Close the last times, and make the sample known."""
-        while self._index < len(self.begins):
+        while self._index < self._times:
             self._close()
         columns = np.concatenate(self._samples, axis=1) if self._samples else np.empty((3, 0))
         self.sample, self.sample_index, self.sample_species = columns[0], columns[1].astype(int), columns[2].astype(int)
@@ -81,12 +86,14 @@ class CollisionCounts:
     def _close(self) -> None:
         """Count the discs by their numbers of collisions since the time began."""
         now, v = self._now, self._index
-        if v < len(self.begins):
+        if v < self._times:
+            group = v // self._together
             species, bins = self.counts.shape[1], self.bins + 2
             place = self._species * bins + np.minimum(now, self.bins).astype(np.intp) + 1
-            self.counts[v] = np.bincount(place, minlength=species * bins).reshape(species, bins)
+            self.counts[group] += np.bincount(place, minlength=species * bins).reshape(species, bins)
             for power in range(POWERS):
-                self.sums[v, :, power] = np.bincount(self._species, now**power, species)
+                self.sums[group, :, power] += np.bincount(self._species, now**power, species)
             some = slice(v % self.stride, None, self.stride)
-            self._samples.append(np.array([now[some], np.full(len(now[some]), v), self._species[some]]))
+            if len(sampled := now[some]):
+                self._samples.append(np.array([sampled, np.full(len(sampled), group), self._species[some]]))
         self._now, self._index = np.zeros_like(now), v + 1

@@ -282,6 +282,22 @@ def test_collision_counts(log, edges):
     assert list(zip(tally.sample, tally.sample_index, tally.sample_species, strict=True)) == sampled
 
 
+def test_collision_counts_of_times_together(log, edges, monkeypatch):
+    """Seven times in at most four groups: three of two each."""
+    time = (edges[-1] - edges[0]) / 7.5
+    single = CollisionCounts(time, bins=4, stride=3)
+    stream(log, edges, [single])
+    monkeypatch.setattr("idealgas.analysis.core.collision_statistics.MOST_BLOCKS", 4)
+    grouped = CollisionCounts(time, bins=4, stride=3)
+    stream(log, edges, [grouped])
+    assert grouped.begins == pytest.approx(single.begins[:6:2])
+    assert np.array_equal(grouped.counts, single.counts[:6:2] + single.counts[1:6:2])
+    assert np.array_equal(grouped.sums, single.sums[:6:2] + single.sums[1:6:2])
+    some = single.sample_index < 6
+    assert np.array_equal(grouped.sample, single.sample[some])
+    assert np.array_equal(grouped.sample_index, single.sample_index[some] // 2)
+
+
 def test_rows_cut_into_chunks_make_no_difference(log, edges, monkeypatch):
     """Pairs may straddle two chunks."""
 
