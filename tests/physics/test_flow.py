@@ -8,6 +8,7 @@ from helpers.support import ROOT
 from idealgas import heat_capacity, load_scene, open_log, parse_scene, pressure, profile, simulate, temperature
 from idealgas.analysis.core.caveats import of_log
 from idealgas.analysis.core.ensemble import conserved_momentum, kind_of_state
+from idealgas.analysis.profile.flow import expected_flow
 from idealgas.errors import UserError
 
 PERIODIC = 'left = "periodic"\nright = "periodic"\n'
@@ -78,6 +79,16 @@ def test_thermal_walls_carry_the_weight_along_them(tmp_path):
         assert "makes the gas flow" in " ".join(of_log(log))
         with pytest.raises(UserError, match="no known equilibrium"):
             heat_capacity(log)
+
+
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize("bath", [(), ("thermostat.temperature=1", "thermostat.rate=0.1")], ids=["walls", "bath"])
+def test_a_heat_bath_slows_the_flow(tmp_path, bath):
+    """It takes momentum along the sides, which Poiseuille's law does not contain."""
+    scene = load_scene(ROOT / "configs" / "poiseuille.toml", ["run.events=1", *bath])
+    simulate(scene, tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert (expected_flow(log, 1, np.linspace(0.5, log.box[1] - 0.5, 5)) is None) == bool(bath)
 
 
 @pytest.mark.slow

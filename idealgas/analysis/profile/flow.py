@@ -31,7 +31,6 @@ beside a side the gas is slower by 0.31 ℓ times the gradient: Cercignani, J. M
 LARGEST_ERROR = 0.1
 """Largest error relative to the velocity in the middle: above, the gap is too narrow or the flow heats the gas."""
 
-
 STEADY, LEAST_WINDOW = 4.0, 10.0
 """Time from which a flow is steady, to 2 %, and least length of a window, in relaxation times."""
 
@@ -62,7 +61,7 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     emits = [properties.emits[side] for side in sides_across(axis)]
     plain = properties.lossless and properties.fixed_walls and properties.empty and not properties.spins
     alike = len(gas.species_names) == 1 and not gas.unlike
-    driven = properties.falls[1 - axis] and not log.gravity[axis] and not properties.varies
+    driven = properties.falls[1 - axis] and not log.gravity[axis] and not properties.varies and properties.bath is None
     if not (plain and alike and driven) or None in emits or len(properties.temperatures) > 1:
         return None
     temperature, mass, radius = min(properties.temperatures), float(gas.mass[0]), float(gas.radius[0])
