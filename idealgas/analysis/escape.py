@@ -5,7 +5,7 @@ the length ℓ in walls around the area A.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,9 +19,11 @@ from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
 from idealgas.analysis.theory.values import NoTheoryError, Theory
 from idealgas.columns import FIRST_SEGMENT, Kind
+from idealgas.effects.periodic import PERIODIC
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log, LogState
-from idealgas.scene.walls import number_walls
+from idealgas.physics.arc_geometry import bounds, nearest_points
+from idealgas.scene.walls import NumberedWall, number_walls
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,7 +44,7 @@ NEAR = 1e-9
 """Distance from a wall, in units of the box, at which its sides are told apart."""
 
 PLACES = (np.arange(8) + 0.5) / 8
-"""Places along a wall, as shares of it, at which is found out whether gas touches it."""
+"""Places along a wall, as shares of it, at which is found out whether discs touch it."""
 
 
 @dataclass(frozen=True)
@@ -108,12 +110,13 @@ class EscapeAnalysis(Analysis):
             theory = _theory(log)
             expected, spread = _expected(log, state, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
-            caveats = (f"No theory{' of the number left' * (theory is not None)}: {error}.",)
+            what = "No theory" if theory is None else "No theory of the number left"
+            caveats = (f"{what}: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
         per_path = None if log.has_gravity else _per(escaped, path, theory)
         speed = np.hypot(*state.velocity[state.inside].T)
-        alike = theory is not None and np.ptp(speed) <= NEAR * speed.max() and collisions < RARE * escaped
+        alike = expected is not None and np.ptp(speed) <= NEAR * speed.max() and collisions < RARE * escaped
         mean_time = _mean_time(escaped, spent, theory.times(float(speed.mean())) if theory and alike else None)
         left = number - at.searchsorted(time, "right")
         return Escape(number, escaped, time, left, expected, spread, per_path, mean_time, caveats=caveats)
@@ -207,11 +210,12 @@ def _theory(log: Log) -> Theory:
 
 
 def _faces(log: Log, radius: float) -> Iterator[tuple[float, float, float]]:
-    """Each face of a wall that gas touches: 1 if it is a hole, lengths of the line of touching centres and half-way."""
+    """Each face of a wall that discs reach: 1 if it is a hole, lengths of the line of touching centres and half-way."""
     scene, size = log.scene, np.array(log.box)
-    for k, wall in enumerate(number_walls(scene)):
-        if k < FIRST_SEGMENT and scene.box.sides[k] == "periodic":
-            continue
+    near = NEAR * float(size.max())
+    walls = {k: wall for k, wall in enumerate(number_walls(scene)) if wall.action != PERIODIC}
+    fit = _fitting(log, list(walls.values()), radius, near)
+    for k, wall in walls.items():
         hole = float(k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing)
         if wall.radius:
             yield hole, 2 * math.pi * (wall.radius + radius), 2 * math.pi * (wall.radius + radius / 2)
@@ -226,9 +230,28 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[float, float, float]]:
         else:
             normal, places = np.array([-along[1], along[0]]) / length, start + PLACES[:, None] * along
         for side in (-1.0, 1.0):
-            beside = places + side * NEAR * float(size.max()) * normal
-            share = (((beside > 0) & (beside < size)).all(axis=1) & ~scene.solids.contain(beside)).mean()
+            gas = ~scene.solids.contain(places + side * near * normal)
+            share = (gas & fit(places + side * max(radius, 2 * near) * normal)).mean()
             yield hole, share * (length + side * angle * radius), share * (length + side * angle * radius / 2)
+
+
+def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Function of centres (M, 2): whether discs of a radius are there without overlap of walls by more than `near`."""
+    solid = [wall for wall in walls if not (wall.absences or wall.is_permeable)]
+    low, high = (np.array(ends) for ends in zip(*(bounds(w.start, w.end, w.arc) for w in solid), strict=True))
+    reach = radius + max(wall.radius for wall in solid)
+    margin = np.where(log.periodic, -math.inf, radius - near)
+
+    def fit(centres: np.ndarray) -> np.ndarray:
+        found = ((centres > margin) & (centres < log.box - margin)).all(axis=1)
+        close = (low < centres.max(axis=0) + reach) & (high > centres.min(axis=0) - reach)
+        for k in np.flatnonzero(close.all(axis=1)).tolist():
+            wall = solid[k]
+            away = centres - nearest_points(centres, wall.start, wall.end, wall.arc)
+            found &= np.hypot(*away.T) - wall.radius > radius - near
+        return np.asarray(found)
+
+    return fit
 
 
 def _expected(
@@ -246,6 +269,8 @@ def _expected(
         raise NoTheoryError("discs neither keep their speeds nor come to equilibrium before they leave")
     if collisions >= OFTEN and (np.ptp(log.discs.mass) > 0 or properties.dissipative or properties.spins):
         raise NoTheoryError("the temperature of a mixture, or with losses or spins, is not known while discs leave")
+    if collisions < OFTEN and (properties.temperatures or properties.dissipative or properties.spins):
+        raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly meet")
     heat = next(iter(properties.temperatures), None)
     if collisions >= OFTEN:
         temperature = float(mass * (speed**2).mean() / 2) if heat is None else heat

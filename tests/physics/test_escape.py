@@ -85,6 +85,31 @@ def test_a_trap_in_a_box(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
+def test_a_hole_just_inside_a_side(tmp_path):
+    """Discs reach it from one side only, and do not reach the side behind it: ℓ = 2, A = (10 - 2R)²."""
+    text = """
+        box.size = [10, 10]
+        run.until = 20
+        wall = [{ from = [4, 0.001], to = [6, 0.001], absorbing = true }]
+        species = [{ name = "gas", count = 30, radius = 0.2, temperature = 1 }]
+    """
+    found = escape_of(tmp_path, parse_scene(text))
+    assert found.per_path.theory == pytest.approx(2 / (math.pi * 9.6**2), rel=2e-3)
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_speeds_that_walls_or_a_heat_bath_change(tmp_path):
+    """Discs that hardly meet: the rate per path is known, but neither the number left nor the mean time."""
+    scene = ROUND.format(until=200, count=10, radius=1e-6).replace("temperature = 2", "speed = 1")
+    found = escape_of(tmp_path, parse_scene(scene + "[thermostat]\ntemperature = 2\nrate = 0.1"))
+    assert found.per_path.theory is not None
+    assert found.expected is None
+    assert found.mean_time.theory is None
+    reason = "walls or a heat bath change the speeds of discs that hardly meet"
+    assert f"No theory of the number left: {reason}." in found.caveats
+
+
+@pytest.mark.usefixtures("uncompiled")
 def test_what_has_no_theory(tmp_path):
     scene = ROUND.format(until=12, count=25, radius=0.2)
     gate = scene.replace('solid = "outside", ', "").replace("absorbing = true", "absorbing = true, opens_at = 11")
