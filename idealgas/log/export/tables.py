@@ -114,9 +114,9 @@ def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any],
 
 
 def _columns(log: Log, times: Sequence[float] | Rows) -> Iterator[Columns]:
-    if times == "flights":
-        return _flight_columns(log)
-    return _event_columns(log) if isinstance(times, str) else _frame_columns(log, times)
+    if not isinstance(times, str):
+        return _frame_columns(log, times)
+    return _flight_columns(log) if times == "flights" else _event_columns(log)
 
 
 def _flight_columns(log: Log) -> Iterator[Columns]:
