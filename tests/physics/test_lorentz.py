@@ -80,7 +80,7 @@ def test_diffusion_by_both_routes(lorentz):
     """Displacement and velocity correlation give one D, within 4 s.e. of both.
 
     In gaps this wide D is larger than that of a random walk between pockets: Klages & Dellago, J. Stat. Phys. 101, 145
-    (2000). Narrow gaps are those of configs/classics/machta-zwanzig-1983.toml.
+    (2000).
     """
     found = transport(lorentz)
     (entry,) = found.diffusion
