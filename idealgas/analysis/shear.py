@@ -185,13 +185,14 @@ def shear(
     window = Window(edges, first, start is None, kind_of_state(log), memory)
     p, t = pressure[first:], temperatures[first:]
     temperature = mean(t)
-    expected, law = _theories(log)
     collisions = 2 * passed_on.collisions[first:].sum() / (len(gas) * window.duration)
+    reduced_rate = rate / collisions if collisions else math.inf
+    expected, law = _theories(log, reduced_rate)
     isotropic = (p[:, 0] + p[:, 2]) / 2
     return ShearFlow(
         window=window,
         rate=rate,
-        reduced_rate=rate / collisions if collisions else math.inf,
+        reduced_rate=reduced_rate,
         temperature=temperature,
         viscosity=mean(reduced[first:], expected).times(math.sqrt(temperature.value)),
         pressure=mean(isotropic / t, law).times(temperature.value),
@@ -201,7 +202,7 @@ def shear(
         velocity=_profile(log, np.linspace(window.start, window.end, INSTANTS)),
         temperatures=temperatures,
         viscosities=viscosities,
-        caveats=_caveats(t, rate / collisions if collisions else math.inf),
+        caveats=_caveats(t, heats, reduced_rate, expected is not None),
     )
 
 
@@ -214,8 +215,12 @@ def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
     return begin + first
 
 
-def _theories(log: Log) -> tuple[Theory | None, Theory | None]:
-    """Viscosity by Enskog's theory and pressure, both at T = 1, of equal smooth elastic discs; None for others."""
+def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | None]:
+    """Viscosity by Enskog's theory and pressure, both at T = 1, of equal smooth elastic discs; None for others.
+
+    Of the viscosity a shear rate of a times the collision rate takes a part of 2a², and a heat bath of x times that
+    rate a part of x: both are parts of its error, and a stronger heat bath than FAST leaves it unknown.
+    """
     gas, properties = log.discs, log.scene.properties
     if not (properties.elastic and properties.lossless) or properties.spins:
         return None, None
@@ -224,9 +229,11 @@ def _theories(log: Log) -> tuple[Theory | None, Theory | None]:
     phi, density, z = gas.packing_fraction, len(gas) / gas.area, fluid(gas.packing_fraction)
     chi = hard_discs.fluid_contact_value(phi)
     viscosity = hard_discs.enskog_viscosity(2 * gas.radius[0], density, 1.0, gas.mass[0], chi)
+    bath = reduced_rate * properties.thermostat_rate / properties.shear
     of_finite = (z.value - 1) / len(gas)  # by which the collisional part differs in a gas of N discs
+    error = enskog_error("viscosity", phi) + bath + 2 * reduced_rate**2
     return (
-        Theory(viscosity, (enskog_error("viscosity", phi) + 2 / len(gas)) * viscosity, "Enskog"),
+        Theory(viscosity, error * viscosity, "Enskog") if bath <= FAST and reduced_rate < math.inf else None,
         Theory(z.value, z.error + of_finite, z.source).times(density),
     )
 
@@ -241,20 +248,24 @@ def _profile(log: Log, times: np.ndarray) -> np.ndarray:
     return np.divide(momentum, mass, out=np.full(STRIPS, math.nan), where=mass > 0)
 
 
-def _caveats(temperatures: np.ndarray, reduced_rate: float) -> tuple[str, ...]:
-    """Sentences on a temperature (B,) that changes, and on a fast shear."""
+def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: bool) -> tuple[str, ...]:
+    """Sentences on a temperature (B,) that changes, as shear heats the gas or not, and on a fast shear.
+
+    known: whether theory gives the viscosity.
+    """
     found = []
     quarter = max(len(temperatures) // 4, 1)
     before, after = float(temperatures[:quarter].mean()), float(temperatures[-quarter:].mean())
     if abs(after - before) > DRIFT * temperatures.mean():
+        reason, when = (", as shear heats the gas", "as") if heats else ("", "if")
         found.append(
-            f"The temperature changes from {before:.4g} to {after:.4g} in the window, as shear heats the gas: the "
-            "viscosity is that of one state only as it is proportional to √T."
+            f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity is that of "
+            f"one state only {when} it is proportional to √T."
         )
     if reduced_rate > FAST:
         found.append(
             f"The shear rate is {reduced_rate:.2g} of the collision rate of a disc: the viscosity may be less than "
-            "that of a slow flow, which theory gives."
+            f"that of a slow flow{', which theory gives' if known else ''}."
         )
     return tuple(found)
 
@@ -295,7 +306,7 @@ class ShearAnalysis(Analysis):
     def summary(result: ShearFlow) -> str:
         """Viscosity and temperature, and whether the viscosity agrees with theory."""
         found = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
-        why = "known for equal smooth elastic discs only"
+        why = "known for equal smooth elastic discs in no or a weak heat bath only"
         return f"{found}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
 
     @staticmethod

@@ -9,6 +9,7 @@ from helpers.support import ROOT, gas_of, record, same_rows, within
 
 from idealgas import load_scene, open_log, parse_scene, shear, simulate, transport
 from idealgas.analysis import registry
+from idealgas.analysis.theory.values import enskog_error
 from idealgas.columns import SIDES, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
@@ -27,6 +28,11 @@ GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
 OTHERS = ("restitution.normal=0.9", "rotation.roughness=0.3", "thermostat.temperature=1", "thermostat.rate=0.1")
 
 
+def simulated(scene, tmp_path):
+    simulate(scene, tmp_path / "run.h5", force=True)
+    return tmp_path / "run.h5"
+
+
 @pytest.mark.parametrize("others", [(), OTHERS], ids=["elastic", "rough in a heat bath"])
 @pytest.mark.slow
 def test_the_same_by_brute_force_and_resumed(tmp_path, others):
@@ -37,6 +43,29 @@ def test_the_same_by_brute_force_and_resumed(tmp_path, others):
     assert abs(summary.energy_drift) < 1e-12  # work of the sides: u times the momentum through them
     assert summary.deepest_overlap < 16 * 2.0**-53 * 9 / 0.4  # roundings of a coordinate over the sum of the radii
     assert (summary.threads, summary.epochs > 3) == (1, True)
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_what_a_heat_bath_does_to_the_theory(tmp_path):
+    """At x times the collision rate it takes a part of about x of the viscosity, and the rate a part of 2a²."""
+    small = ("species.gas.count=30", "box.size=[8.9, 8.9]")
+    found = shear(simulated(load_scene(ROOT / "configs" / "shear.toml", [*small, "run.until=6"]), tmp_path), start=0)
+    a, phi = found.reduced_rate, 30 * math.pi / 4 / 8.9**2
+    error = enskog_error("viscosity", phi) + a * 0.02 / 0.06 + 2 * a**2
+    assert found.viscosity.theory_error == pytest.approx(error * found.viscosity.theory)
+    strong = (*small, "run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
+    found = shear(simulated(load_scene(ROOT / "configs" / "shear.toml", strong), tmp_path), start=0)
+    assert found.viscosity.theory is None
+    assert found.pressure.theory is not None
+    (fast,) = (sentence for sentence in found.caveats if sentence.startswith("The shear rate"))
+    assert fast.endswith("the viscosity may be less than that of a slow flow.")
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_a_temperature_that_changes(tmp_path):
+    """Inelastic discs cool from a hot start, though the shear heats them."""
+    path = simulated(load_scene(GOLDEN, ["run.events=300", "restitution.normal=0.5"]), tmp_path)
+    assert "in the window: the viscosity is that of one state only if" in " ".join(shear(path, start=0).caveats)
 
 
 @pytest.mark.parametrize(
