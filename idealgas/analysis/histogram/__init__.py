@@ -76,7 +76,7 @@ class Histogram(Result):
 
 
 class HistogramAnalysis(Analysis):
-    """Distributions of speeds, energies, free flights and waiting times."""
+    """Distributions of speeds, energies, free flights, waiting times, impact parameters and numbers of collisions."""
 
     position = 50
     headline = "distributions.*.mean"
@@ -120,10 +120,11 @@ class HistogramAnalysis(Analysis):
         """Measure a distribution between two times of a log, species by species, and test it against its laws.
 
         Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
-        flights with a dilute gas, and waiting times with an exponential distribution; `law_error` is how far these two
-        are off. The p-values are those of the Kolmogorov-Smirnov test of independent samples. Under gravity or a piston
-        the temperature of the law is the measured one. A gas that never reaches equilibrium has no law, and its window
-        is the whole log by default.
+        flights with a dilute gas, waiting times with an exponential distribution, impact parameters with a uniform one,
+        and numbers of collisions with Boltzmann's equation of one disc in a dilute gas of equal discs; `law_error` is
+        how far a law is off. The p-values are those of the Kolmogorov-Smirnov test of independent samples. Under
+        gravity or a piston the temperature of the law is the measured one. A gas that never reaches equilibrium has no
+        law, and its window is the whole log by default.
 
         Raises:
             UserError: if no disc moves, or if the window has too few events.

@@ -46,10 +46,11 @@ Found = tuple[Window, list[Distribution], str]
 def free_flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
     """Distribution of the free paths or free times of each species."""
     discs, path = classes(log.discs), quantity == "free-path"
-    temperature, rates, speed, why_not = free_flight_rates(log, discs, start, end)
+    temperature, rates, errors, speed, why_not = free_flight_rates(log, discs, start, end)
     per_disc = rates.sum(axis=1)
     rate = discs.shares @ per_disc
     average = speed / rate if path else 1 / rate
+    relative = discs.shares @ (errors * rates).sum(axis=1) / rate
     high = 10 * average
     tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
     window = measure(log, [tally], start, end, progress)
@@ -63,7 +64,8 @@ def free_flights(log: Log, quantity: str, start: float | None, end: float | None
         laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
         flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more of them
         dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
-        possible, expected = ({}, None) if why_not else ({"dilute gas": dilute}, float(average[s]))
+        possible = {} if why_not else {"dilute gas": dilute}
+        expected = None if why_not else Theory(float(average[s]), float(average[s] * relative[s]), "kinetic theory")
         found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
     return window, found, why_not
 
@@ -105,7 +107,9 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
 def collision_counts(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
     """Distribution of the number of collisions of a disc in a time, with its cumulants."""
     discs = classes(log.discs)
-    _, rates, _, why_not = free_flight_rates(log, discs, start, end)
+    _, rates, errors, _, why_not = free_flight_rates(log, discs, start, end)
+    if len(discs.mass) > 1:
+        why_not = why_not or "it is known for equal discs"
     if log.has_positions and log.discs.packing_fraction > DENSEST_COUNTS:
         why_not = why_not or f"above φ = {DENSEST_COUNTS:g} none is known for numbers of collisions"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
@@ -116,15 +120,16 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
     begin = int(tally.begins.searchsorted(window.start))
     error, *of_cumulants = count_errors(log)
     edges, found = np.arange(MOST_COUNTED + 1) - 0.5, []
+    mean = law = None
+    cumulants: list[Theory | None] = [None, None]
+    if not why_not:
+        mean = Theory(float(rate[0]) * time, float(rate[0] * errors[0, 0]) * time, "kinetic theory")
+        law = CollisionCountLaw(discs.mass[0], tuple(discs.mass), tuple(rates[0]), time)
+        cumulants = [Theory(*one, "dilute gas") for one in zip(law.cumulants, of_cumulants, strict=True)]
     for s, name in enumerate(log.discs.species_names):
-        kinds = np.flatnonzero(discs.species == s)
-        laws = [CollisionCountLaw(discs.mass[k], tuple(discs.mass), tuple(rates[k]), time) for k in kinds]
-        law: distributions.Law = (
-            laws[0] if len(laws) == 1 else distributions.MeanLaw(tuple(laws), tuple(discs.number[kinds]))
-        )
         chosen = (tally.sample_species == s) & (tally.sample_index >= begin)
         even = np.random.default_rng(0).uniform(-0.5, 0.5, int(chosen.sum()))
-        sums, mean = tally.sums[begin:, s].T, None if why_not else float(rate[s]) * time
+        sums = tally.sums[begin:, s].T
         average = ratio(sums[1], sums[0], theory=mean)
         one = distribution_of(
             name,
@@ -133,17 +138,14 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
             average,
             tally.sample[chosen] + even,
             None,
-            {} if why_not else {"dilute gas": law},
+            {"dilute gas": law} if law else {},
             error,
         )
-        theories: list[Theory] | list[None] = [None, None]
-        if len(laws) == 1 and not why_not:
-            theories = [Theory(*one, "dilute gas") for one in zip(laws[0].cumulants, of_cumulants, strict=True)]
-        cumulants = {
-            "variance_over_mean": estimate(_variance, *sums[:3], theory=theories[0]),
-            "third_cumulant_over_mean": estimate(_third, *sums, theory=theories[1]),
+        measured = {
+            "variance_over_mean": estimate(_variance, *sums[:3], theory=cumulants[0]),
+            "third_cumulant_over_mean": estimate(_third, *sums, theory=cumulants[1]),
         }
-        found.append(replace(one, counted_in=time, cumulants=cumulants))
+        found.append(replace(one, counted_in=time, cumulants=measured))
     return window, found, why_not
 
 
@@ -166,7 +168,7 @@ def _intervals(
     blocks: slice,
     high: float,
     possible: Mapping[str, distributions.Law],
-    expected: float | None,
+    expected: Theory | float | None,
     law_error: float,
 ) -> Distribution:
     """Distribution of the intervals of species s in some blocks of time."""

@@ -32,7 +32,6 @@ FINITE_NUMBER = 0.16
 Waiting times of 30 discs are off by 0.0046(5), and free times of 64 by 0.002 more than those of 1000.
 """
 
-
 DENSEST_COUNTS = 0.5
 """Packing fraction up to which the law of the number of collisions is compared; denser gases have cages."""
 
@@ -122,8 +121,10 @@ def velocity_laws(
 
 def free_flight_rates(
     log: Log, discs: Composition, start: float | None, end: float | None
-) -> tuple[float, np.ndarray, np.ndarray, str]:
-    """Temperature, collision rates (K, K) and mean speeds (S,) of free flights; why no law holds, empty if one does.
+) -> tuple[float, np.ndarray, np.ndarray, np.ndarray, str]:
+    """Temperature, collision rates and their relative errors (K, K), and mean speeds (S,) of free flights.
+
+    The last is why no law holds, empty if one does.
 
     discs: the K kinds of discs of the S species. Without a law rates and speeds are means over the gas that only set
     the range of the histogram.
@@ -139,13 +140,14 @@ def free_flight_rates(
     if known.ensemble and not why_not:
         gas = known.ensemble
         theory = theory_of(log) if log.has_positions else None
-        rates = expected_rates(log.box, gas, theory).of_kinds[0]
+        rates, errors = expected_rates(log.box, gas, theory).of_kinds
         if (rates.sum(axis=1) > 0).all():
-            return gas.temperature, rates, gas.mean_speed, ""
+            return gas.temperature, rates, errors, gas.mean_speed, ""
         why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")
     rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
     speed = discs.shares @ mean_speed(known.scale, discs.mass)
-    return known.scale, np.diag(np.full(len(discs.name), rate)), speed, why_not
+    rates = np.diag(np.full(len(discs.name), rate))
+    return known.scale, rates, 0 * rates, speed, why_not

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from idealgas import histogram
+from idealgas.analysis.core.collisions import expected_rates, theory_of
+from idealgas.analysis.core.ensemble import known_ensemble
 from idealgas.errors import UserError
 
 GAS = """
@@ -95,3 +97,21 @@ def test_figure_of_values_outside_all_bins(make):
     (gas,) = found.distributions
     beyond = replace(found, distributions=(replace(gas, density=np.zeros_like(gas.density)),))
     assert beyond.plot().axes[0].get_xlim() == (gas.edges[0], gas.edges[-1])
+
+
+def test_numbers_of_collisions_have_a_theory_for_equal_discs(make):
+    """The mean number has the relative error of the collision rate."""
+    log = make()
+    (gas,) = histogram(log, "collisions").distributions
+    (relative,) = expected_rates(log.box, known_ensemble(log), theory_of(log)).relative_error.ravel()
+    assert gas.mean.theory_error == pytest.approx(relative * gas.mean.theory)
+    assert relative > 0
+    assert gas.cumulants["variance_over_mean"].theory is not None
+    two = [
+        f"{{ name = '{name}', count = 20, radius = {r}, temperature = 1.5 }}" for name, r in (("a", 0.1), ("b", 0.2))
+    ]
+    found = histogram(make(f"species=[{', '.join(two)}]"), "collisions")
+    assert found.no_law == "it is known for equal discs"
+    for each in found.distributions:
+        assert (each.tests, each.mean.theory) == ((), None)
+        assert each.cumulants["variance_over_mean"].theory is None
