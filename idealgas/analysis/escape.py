@@ -19,7 +19,6 @@ from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
 from idealgas.analysis.theory.values import NoTheoryError, Theory
 from idealgas.columns import FIRST_SEGMENT, Kind
-from idealgas.effects.periodic import PERIODIC
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log, LogState
 from idealgas.physics.arc_geometry import bounds, nearest_points
@@ -213,7 +212,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[float, float, float]]:
     """Each face of a wall that discs reach: 1 if it is a hole, lengths of the line of touching centres and half-way."""
     scene, size = log.scene, np.array(log.box)
     near = NEAR * float(size.max())
-    walls = {k: wall for k, wall in enumerate(number_walls(scene)) if wall.action != PERIODIC}
+    walls = {k: wall for k, wall in enumerate(number_walls(scene)) if wall.action != "periodic"}
     fit = _fitting(log, list(walls.values()), radius, near)
     for k, wall in walls.items():
         hole = float(k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing)
