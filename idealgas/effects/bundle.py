@@ -105,7 +105,10 @@ def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[st
     """Energies that the effects add, by field of `idealgas.run.energy.Energy`, mass length²/time²."""
     parts = [(effect.energy, state) for effect, state in present(effects) if effect.energy is not None]
     if parts:
-        gas = replace(gas, position=unwrapped(gas.position, effects.periodic))
+        position = unwrapped(gas.position, effects.periodic)
+        if effects.absorbing is not None:
+            position = np.nan_to_num(position)  # nan of discs that have left
+        gas = replace(gas, position=position)
     return {part.part: part.of(state, gas, local_time) for part, state in parts}
 
 

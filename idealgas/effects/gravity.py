@@ -66,11 +66,8 @@ def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
 
 
 def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
-    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows.
-
-    Discs that have left the gas have the position nan, and none.
-    """
-    return -float(np.nansum(gas.mass * (gas.position @ np.array(gravity))))
+    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows."""
+    return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 
 
 EFFECT = EffectSpec(

@@ -161,7 +161,6 @@ def _properties(tables: Tables) -> Properties:
         fixed_walls=False,
         allows_monte_carlo=False,
         allows_time_steps=False,
-        local=False,
         is_scalable=False,
         driven=piston.mass is None and any(velocity for _, velocity in steps_of(piston.velocity)),
         drives_discs=True,

@@ -40,8 +40,7 @@ class Properties:
     lines between events. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
     fixed_walls: all walls stay where they are. allows_monte_carlo: it has a meaning for discs without positions.
     allows_time_steps: the time-driven method can simulate it. is_scalable: the box may grow or shrink around the gas,
-    as nothing in it has a fixed position. local: what happens to a disc depends only on what is near it, so that each
-    thread may simulate a part of the box.
+    as nothing in it has a fixed position.
 
     False by default; true for a scene if true for any of its effects:
 
@@ -66,7 +65,6 @@ class Properties:
     allows_monte_carlo: bool = _plain(True, operator.and_)
     allows_time_steps: bool = _plain(True, operator.and_)
     is_scalable: bool = _plain(True, operator.and_)
-    local: bool = _plain(True, operator.and_)
     driven: bool = _plain(False, operator.or_)
     dissipative: bool = _plain(False, operator.or_)
     has_rough_walls: bool = _plain(False, operator.or_)

@@ -36,7 +36,6 @@ def _properties(tables: Tables) -> Properties | None:
         fixed_walls=False,
         allows_monte_carlo=False,
         allows_time_steps=False,
-        local=False,
         driven=True,
         drives_discs=True,
         periodic=(False, True),

@@ -224,6 +224,13 @@ def cross_boundary(periodic, i, axis, forward):
         periodic.boundary_crossings[i, axis] += np.int32(forward)
 
 
+@inline
+def take_out(disc, i, kind, absorbing, rotation):
+    """Take disc i out of the gas if its event of this kind was the last."""
+    if absorbing is not None and kind == ESCAPED:
+        leave_gas(disc, i, rotation)
+
+
 @njit
 def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; records are in order of id.
@@ -264,8 +271,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             images = images_to_wall(effects.periodic, i, (image_x, image_y))
             kind = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
             rows += write_hit(batch, rows, clock, i, -1 - FIRST_SEGMENT - partner, kind, disc, effects)
-            if effects.absorbing is not None and kind == ESCAPED:
-                leave_gas(disc, i, effects.rotation)
+            take_out(disc, i, kind, effects.absorbing, effects.rotation)
         elif what == THERMOSTAT:
             resolve_thermostat_collision(disc, i, time, effects.thermostat, effects)
             rows += write_hit(batch, rows, clock, i, BATH, THERMOSTAT, disc, effects)

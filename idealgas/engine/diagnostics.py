@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.jit import inline, njit
-from idealgas.physics.absorbing import has_left
+from idealgas.physics.absorbing import has_left, inside
 from idealgas.physics.periodic import separation
 from idealgas.state import Gas
 
@@ -48,10 +48,11 @@ def deepest_overlap_of_all(record, periodic, absorbing):
     return deepest
 
 
-def check_invariants(gas: Gas, overlap: float) -> Diagnostics:
+def check_invariants(gas: Gas, overlap: float, absorbing: np.ndarray | None) -> Diagnostics:
     """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
-    radius = gas.radius
-    reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(gas.position.T, gas.box, strict=True)]
-    outside = float(max(np.nan_to_num(np.array(reach) / (2 * radius)).max(), 0.0))  # nan of discs that have left
+    here = inside(gas.position[:, 0], absorbing)
+    radius, position = gas.radius[here], gas.position[here]
+    reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(position.T, gas.box, strict=True)]
+    outside = float((np.array(reach) / (2 * radius)).max(initial=0.0))
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
     return Diagnostics(gas.kinetic_energy, momentum, overlap, outside)

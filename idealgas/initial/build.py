@@ -26,8 +26,10 @@ def make_gas(scene: Scene) -> Gas:
     """
     radius, mass, species, names = disc_constants(scene)
     position, velocity = _positions(scene, radius), _all_velocities(scene, mass, species, names)
-    if rate := scene.properties.shear:  # given discs keep their velocities
-        drawn = slice(0 if scene.draws_velocities else len(scene.given), None)
+    if rate := scene.properties.shear:  # given velocities are kept
+        explicit = [names.index(s.name) for s in scene.species if s.velocities is not None]
+        drawn = ~np.isin(species, explicit)
+        drawn[: 0 if scene.draws_velocities else len(scene.given)] = False
         velocity[drawn, 0] += flow_at(position[drawn, 1], rate, scene.box.size[1])
     gas = Gas(
         box=scene.box.size,

@@ -4,6 +4,7 @@ import csv
 import re
 import zipfile
 from collections.abc import Callable, Iterator
+from itertools import compress
 from pathlib import Path
 from typing import Any, Literal
 
@@ -35,7 +36,8 @@ def read_state(path: Path, time: Instant) -> State:
         with open(path, "rb", opener=regular) as file:
             if (size := file.seek(0, 2)) > MOST_BYTES:
                 raise StartError("file", "too large", f"{size:,} bytes", f"<= {MOST_BYTES:,}")
-        return reader(path, time)
+        columns, overlap = reader(path, time)
+        return _inside(columns), overlap
     except OSError as error:
         raise StartError("file", "cannot be read", error.strerror or str(error), "a file") from None
     except ImportError:
@@ -57,6 +59,18 @@ def read_state(path: Path, time: Instant) -> State:
         raise StartError("file", f"not a valid {path.suffix} file", reason, "columns by name") from None
 
 
+def _inside(columns: dict[str, Any]) -> dict[str, Any]:
+    """Columns without discs that have left the gas, whose position and velocity are nan in frames."""
+    motion = [np.asarray(columns.get(name, 0.0), float) for name in ("position", "velocity")]
+    if motion[0].shape != motion[1].shape or motion[0].ndim != 2:
+        return columns
+    here = ~np.isnan(np.hstack(motion)).all(axis=1)
+    return {
+        name: list(compress(values, here)) if isinstance(values, list) else np.asarray(values)[here]
+        for name, values in columns.items()
+    }
+
+
 def _npz(path: Path, time: Instant) -> State:
     if time != "end":
         raise StartError("time", "no times in a .npz file", f"{time:g}", '"end"')
@@ -76,7 +90,7 @@ def _npz(path: Path, time: Instant) -> State:
 
 
 def _single(columns: dict[str, Any]) -> float:
-    return SINGLE * float(np.abs(np.array(columns["position"], float)).max(initial=0.0))
+    return SINGLE * float(np.nanmax(np.abs(np.array(columns["position"], float)), initial=0.0))
 
 
 def _csv(path: Path, time: Instant) -> State:

@@ -156,9 +156,10 @@ class Replay:
         """
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]
+        delay = time - self._time
         if self._left is not None:
             position[self._left] = 0.0
-        delay = time - self._time
+            delay[self._left] = 0.0
         gravity = None if self._gravity_at is None else self._gravity_at(self._time)
         for axis in range(2):
             acceleration = None if gravity is None else gravity[..., axis]

@@ -1,11 +1,13 @@
 """A state of a log as the start of another scene: its discs, and the scene that continues from it."""
 
 from collections import Counter
+from collections.abc import Container
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
+from idealgas.effects.wall import Wall
 from idealgas.errors import UserError
 from idealgas.log.reader import Log, open_log
 from idealgas.scene import Scene
@@ -78,8 +80,10 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
         "start": Start(log=source, time=time),
         "disc": tuple(disc for disc in scene.disc if disc.fixed),
         "box": scene.box.after(time),
-        "species": tuple(s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species),
-        "wall": tuple(later for wall in scene.wall if (later := wall.later(time)) is not None),
+        "species": tuple(
+            s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species if numbers[s.name]
+        ),
+        "wall": tuple(_known(later, numbers) for wall in scene.wall if (later := wall.later(time)) is not None),
     }
     if scene.gravity is not None:
         update["gravity"] = scene.gravity.after(time)
@@ -90,6 +94,15 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
     if scene.piston is not None:
         update["piston"] = _piston_at(log, scene, time)
     return dump_document(scene.model_copy(update=update))
+
+
+def _known(wall: Wall, species: Container[str]) -> Wall:
+    """A wall that none but known species pass; one for others alone is closed to all discs."""
+    if wall.permeable_to is None:
+        return wall
+    names = tuple(name for name in wall.permeable_to if name in species)
+    update = {"permeable_to": names} if names else {"permeable_to": None, "permeable_from": None}
+    return wall.model_copy(update=update)
 
 
 def _piston_at(log: Log, scene: Scene, time: float) -> Any:

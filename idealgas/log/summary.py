@@ -8,8 +8,10 @@ from typing import Any, Self
 from idealgas.log.rules import LONGEST
 
 KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
+"""Fields whose sum is the number of events, with `steered`."""
+
 STEERED, ESCAPED = OPTIONAL = ("steered", "escaped")
-"""Fields whose sum is the number of events, with `steered`; those that are absent where they are 0."""
+"""Fields that are absent where they are 0."""
 
 
 @dataclass(frozen=True)

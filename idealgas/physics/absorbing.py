@@ -20,6 +20,11 @@ def has_left(disc, absorbing):
     return False
 
 
+def inside(x: np.ndarray, absorbing: np.ndarray | None) -> np.ndarray | slice:
+    """Mask (N,) of the discs in the gas, from their coordinates x (N,), length; all if no wall absorbs discs."""
+    return slice(None) if absorbing is None else ~np.isnan(x)
+
+
 @inline
 def mass_in_gas(disc, absorbing):
     """Mass of a disc; 0 if it has left the gas."""

@@ -249,16 +249,19 @@ def complete_flights(record, time, gravity, flow, absorbing):
             terms[U(1)].column[U(k)] = xy
             terms[U(2)].column[U(k)] = yy
         add_terms(flow.tensor, terms, 0, 3, number)
-        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy, absorbing)
+        complete_heat(flow.heat, terms, record, first, number, time, flow.vx, flow.vy)
 
 
 @inline
-def complete_heat(heat, terms, record, first, number, time, vx, vy, absorbing):
-    """Add the kinetic heat flux of a number of discs from their records to a local time, if it is recorded."""
+def complete_heat(heat, terms, record, first, number, time, vx, vy):
+    """Add the kinetic heat flux of a number of discs from their records to a local time, if it is recorded.
+
+    No wall is inside the box where it is, so no disc has left.
+    """
     if heat is not None:
         for k in range(number):
             disc = record[U(first + k)]
-            x, y = kinetic_heat_flow(mass_in_gas(disc, absorbing), disc.vx - vx, disc.vy - vy, time - disc.t)
+            x, y = kinetic_heat_flow(disc.m, disc.vx - vx, disc.vy - vy, time - disc.t)
             terms[U(0)].column[U(k)] = x
             terms[U(1)].column[U(k)] = y
         add_terms(heat, terms, 0, 2, number)

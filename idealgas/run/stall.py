@@ -1,12 +1,14 @@
 """Detection of runs that make no progress: epochs without events, and few discs with most of the events."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from idealgas.effects.bundle import next_change
 from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
 from idealgas.engine.simulation import Simulation, Stop
+from idealgas.physics.absorbing import inside
 from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.state import Gas
 
@@ -63,7 +65,7 @@ class StallDetector:
         empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
         expected = 0.0
         if self._endless and (empty or (apart and self._needs_pairs)):
-            expected = _expected_collisions(simulation.gas, simulation.length)
+            expected = _expected_collisions(simulation.gas, simulation.length, simulation.effects.absorbing)
         self._empty, self._expected = (self._empty + 1, self._expected + expected) if empty else (0, 0.0)
         self._missed = self._missed + expected if apart and self._needs_pairs else 0.0
         if math.isfinite(next_change(simulation.effects, simulation.time)):  # a gate may change everything
@@ -86,7 +88,8 @@ class StallDetector:
         """Why the run cannot be expected to reach its stop; empty if it can."""
         if not self._endless:
             return ""
-        if np.isnan(self._simulation.gas.position[:, 0]).all() and self._simulation.method.has_positions:
+        simulation = self._simulation
+        if simulation.effects.absorbing is not None and np.isnan(simulation.gas.position[:, 0]).all():
             return "all discs have left the gas"
         hopeless = self._expected < HOPELESS * self._empty
         if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):
@@ -125,8 +128,12 @@ class StallDetector:
         return f"{few} of {n} discs make{'s' * (few == 1)} most of the events {span}"
 
 
-def _expected_collisions(gas: Gas, duration: float) -> float:
+def _expected_collisions(gas: Gas, duration: float, absorbing: np.ndarray | None = None) -> float:
     """Pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
-    n, speed = len(gas), float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
+    here = inside(gas.position[:, 0], absorbing)
+    gas = replace(gas, velocity=gas.velocity[here], radius=gas.radius[here], mass=gas.mass[here])
+    if (n := len(gas)) < 2:
+        return 0.0
+    speed = float(np.hypot(*(gas.velocity - gas.velocity.mean(axis=0)).T).mean())
     per_length = disc_collisions_per_length(n, 2 * float(gas.radius.mean()), gas.packing_fraction, gas.box)
     return n / 2 * per_length * speed * duration

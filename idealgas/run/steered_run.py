@@ -93,10 +93,11 @@ class SteeredRun(LoggedRun):
         whole = ids.dtype.kind in "iu" or not ids.size  # an empty list has no whole numbers
         if ids.ndim != 1 or not whole or not ((ids >= 0) & (ids < number)).all():
             raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
+        holes = self._simulation.effects.absorbing is not None
+        if holes and len(left := ids[~self.state().inside[ids.astype(int)]]):
+            raise UserError(f"discs: disc {left[0]} has left the gas")
         if given.shape != (len(ids), 2) or not (np.abs(given) <= LARGEST).all():
             raise UserError(f"velocity: not ({len(ids)}, 2) numbers up to {LARGEST:g} (got {given.shape})")
-        if len(left := ids[np.isnan(self.state().velocity[ids.astype(int), 0])]):
-            raise UserError(f"discs: disc {left[0]} has left the gas")
         self._arrive()
         self._stall.end_epoch()
         self._simulation.set_velocities(ids.astype(int), given)

@@ -207,7 +207,9 @@ class Document(_DiscsAndEffects):
         """
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
         size = right - left, top - bottom
-        area = size[0] * size[1] - self.solids.area
+        area = size[0] * size[1]
+        if area > (solid := self.solids.area):  # else some of it is beyond the piston
+            area -= solid
         phi = self.covered_area / area
         diameter, largest = self._sum_of_diameters / n, self.largest_radius
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n

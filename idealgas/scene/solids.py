@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from itertools import pairwise, product
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -39,9 +39,6 @@ class Solids(NamedTuple):
 
 NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
 """Those of a scene without any."""
-
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(32)
-"""Nodes and weights of the integral of a length that discs cover, on -1 to 1."""
 
 
 @lru_cache(maxsize=4)
@@ -115,46 +112,63 @@ def _swept(wall: Wall, forwards: bool) -> float:
 def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]) -> float:
     """Area of a box that fixed discs cover, length², however they overlap each other and its sides.
 
-    It is the integral over x of the length along y that they cover, from each place where that is not smooth to the
-    next: where a disc begins or ends, and where two rims, or a rim and a side, cross.
+    It is the integral of x dy along the boundary of what they cover in the box: the arcs of their rims that are in the
+    box and in no other disc, and the parts of the right side that are in discs.
     """
     width, height = size
     shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
     moves = list(product(*shifts))
-    x, y, radius = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
-    rims = (x - radius, x + radius, _crossings(x, y, radius), *(_heights(x, y, radius, y0) for y0 in (0.0, height)))
-    places, area = np.unique(np.clip(np.concatenate(((0.0, width), *rims)), 0.0, width)), 0.0
-    for start, end in pairwise(places.tolist()):
-        middle, half, angle = (start + end) / 2, (end - start) / 2, (NODES + 1) * math.pi / 2
-        here = np.abs(middle - x) < radius
-        across = (middle - half * np.cos(angle))[:, None] - x[here]
-        chord = np.sqrt(np.maximum(radius[here] ** 2 - across**2, 0.0))
-        low, high = np.clip((y[here] - chord, y[here] + chord), 0.0, height)
-        order = low.argsort(axis=1)
-        low, high = np.take_along_axis(low, order, axis=1), np.take_along_axis(high, order, axis=1)
-        reached = np.maximum.accumulate(np.insert(high, 0, 0.0, axis=1), axis=1)[:, :-1]
-        length = np.maximum(high - np.maximum(low, reached), 0.0).sum(axis=1)
-        area += half * math.pi / 2 * float(WEIGHTS @ (length * np.sin(angle)))
-    return area
+    x, y, r = images = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
+    x, y, r = np.unique(images[:, (x > -r) & (x < width + r) & (y > -r) & (y < height + r)], axis=1)
+    arcs = [(k, *arc) for k, hidden in enumerate(_hidden(x, y, r, size)) for arc in _gaps(hidden, 2 * math.pi)]
+    if not arcs:
+        return width * height
+    owner, (start, end) = np.array([k for k, *_ in arcs]), np.array([arc for _, *arc in arcs]).T
+    swept = x[owner] * (np.sin(end) - np.sin(start))
+    swept += r[owner] / 2 * (end - start + (np.sin(2 * end) - np.sin(2 * start)) / 2)
+    half = np.sqrt(np.maximum(r**2 - (width - x) ** 2, 0.0))
+    side = np.clip((y - half, y + half), 0.0, height)[:, half > 0].T.tolist()
+    free = math.fsum(high - low for low, high in _gaps(side, height))
+    return math.fsum((r[owner] * swept).tolist()) + width * (height - free)
 
 
-def _crossings(x: np.ndarray, y: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Places along x where the rims of two discs cross."""
+def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
+    """For each of several discs, no two of which are the same, the angles from and to which others or a box hide it."""
     from scipy.spatial import cKDTree
 
-    pairs = cKDTree(np.column_stack((x, y))).query_pairs(2 * float(radius.max()), output_type="ndarray")
-    one, other = pairs[(x[pairs[:, 0]] != x[pairs[:, 1]]) | (y[pairs[:, 0]] != y[pairs[:, 1]])].T
+    pairs = cKDTree(np.column_stack((x, y))).query_pairs(2 * float(r.max()), output_type="ndarray")
+    one, other = np.concatenate((pairs, pairs[:, ::-1])).T
     dx, dy = x[other] - x[one], y[other] - y[one]
-    square = dx**2 + dy**2
-    along = (1 + (radius[one] ** 2 - radius[other] ** 2) / square) / 2
-    across = radius[one] ** 2 / square - along**2
-    some = across > 0
-    foot, aside = (x[one] + along * dx)[some], np.sqrt(across[some]) * dy[some]
-    return np.concatenate((foot - aside, foot + aside))
+    distance = np.hypot(dx, dy)
+    meet = (distance < r[one] + r[other]) & (distance > r[one] - r[other])
+    one, other, dx, dy, distance = one[meet], other[meet], dx[meet], dy[meet], distance[meet]
+    within = distance <= r[other] - r[one]
+    nearest = np.where(
+        within, -r[one], (distance + (r[one] ** 2 - r[other] ** 2) / np.where(within, 1.0, distance)) / 2
+    )
+    each = np.arange(len(r))
+    owner = np.concatenate((one, *[each] * 4))
+    towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
+    reach = np.concatenate((nearest, size[0] - x, size[1] - y, x, y)) / r[owner]
+    half = np.arccos(np.clip(reach, -1.0, 1.0))
+    hidden: list[list[tuple[float, float]]] = [[] for _ in each]
+    for k, low, high in zip(
+        owner.tolist(), ((towards - half) % (2 * math.pi)).tolist(), (2 * half).tolist(), strict=True
+    ):
+        hidden[k].append((low, low + high))
+        hidden[k].append((0.0, low + high - 2 * math.pi))
+    return hidden
 
 
-def _heights(x: np.ndarray, y: np.ndarray, radius: np.ndarray, height: float) -> np.ndarray:
-    """Places along x where the rims of discs have a height."""
-    square = radius**2 - (height - y) ** 2
-    some = square > 0
-    return np.concatenate((x[some] - np.sqrt(square[some]), x[some] + np.sqrt(square[some])))
+def _gaps(covered: Iterable[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:
+    """Parts of 0 to a length that no interval from and to places covers; those that end before they begin are none."""
+    reached = 0.0
+    for low, high in sorted(covered):
+        if low >= length:
+            break
+        if reached < low < high:
+            yield reached, low
+        if low < high:
+            reached = max(reached, high)
+    if reached < length:
+        yield reached, length

@@ -10,6 +10,8 @@ from helpers.support import ROOT, output_of
 from idealgas import evolution, load_scene, open_log, open_run, parse_scene, resume, simulate, temperature
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
+from idealgas.initial.files import read_state
+from idealgas.log.dataframes import flat_discs
 from idealgas.movie.film import paint_frame
 from idealgas.report.player import player
 
@@ -64,6 +66,21 @@ def test_it_is_nowhere_after_that(two):
     assert after.inside.tolist() == [False, True]
     assert np.isnan(after.position[0]).all()
     assert after.position[1].tolist() == pytest.approx([4.6, 8.0])
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_it_flies_through_no_more_images(tmp_path):
+    """It crosses the right side at t = 8, and the hole takes it at t = 11.5."""
+    right = [
+        "box.left=periodic",
+        "box.right=periodic",
+        "run.until=99",
+        "disc.0.position=[6, 5]",
+        "disc.0.velocity=[0.5, 0]",
+    ]
+    simulate(parse_scene(TWO, overrides=right), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        assert [state.image[0].tolist() for state in log.frames([7.0, 9.0, 30.0, 90.0])] == [[0, 0], *[[1, 0]] * 3]
 
 
 def test_its_energy_is_on_the_account(two):
@@ -132,12 +149,48 @@ def test_a_start_from_a_state_has_those_that_are_left(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
+def test_a_start_after_a_species_has_left(tmp_path):
+    """It has no table any more, and a wall that only its discs would pass is closed to all."""
+    doors = """
+        { from = [9, 1], to = [9, 3], permeable_to = ["heavy"], permeable_from = "left" },
+        { from = [9, 4], to = [9, 6], permeable_to = ["heavy", "light"] },
+    ]
+    species = [
+        { name = "heavy", count = 1, radius = 0.5, mass = 2, speed = 1 },
+        { name = "light", count = 1, radius = 0.5, speed = 1 },
+    ]"""
+    text = TWO.replace(" }]", f" }},{doors}", 1).replace("mass = 2 }", 'mass = 2, species = "heavy" }')
+    text = text.replace("radius = 0.5 },\n]", 'radius = 0.5, species = "light" },\n]')
+    simulate(parse_scene(text), tmp_path / "old.h5")
+    output_of("scene", tmp_path / "old.h5", "--at", "5", "-o", tmp_path / "next.toml")
+    following = load_scene(tmp_path / "next.toml")
+    assert [(s.name, s.count) for s in following.species] == [("light", 1)]
+    assert [(w.permeable_to, w.permeable_from) for w in following.wall] == [(None, None)] * 2 + [(("light",), None)]
+    assert simulate(following, tmp_path / "new.h5").wall_hits == 1
+
+
+@pytest.mark.parametrize("kind", ["csv", "extxyz", "gsd"])
+def test_a_start_from_a_frame_has_those_that_are_left(two, tmp_path, kind):
+    if kind == "gsd":
+        pytest.importorskip("gsd")
+    path = tmp_path / f"frames.{kind}"
+    output_of("export", two.path, "--format", kind, "--frames", "2", "-o", path)
+    columns, overlap = read_state(path, 10.0)
+    assert columns["position"].tolist() == two.state_at(10.0).position[1:].tolist()
+    assert columns["radius"].tolist() == [0.5]
+    assert columns["species"] == ["disc"]
+    assert np.isfinite(overlap)
+    if kind == "extxyz":
+        assert [line for line in path.read_text().splitlines() if line.isdigit()] == ["2", "1"]
+
+
+@pytest.mark.usefixtures("uncompiled")
 def test_a_program_cannot_move_it(tmp_path):
     with open_run(parse_scene(TWO + "[steering]\n"), tmp_path / "run.h5") as run:
         run.advance(until=3.0)
         assert run.state().inside.tolist() == [False, True]
         with pytest.raises(UserError, match="disc 0 has left the gas"):
-            run.set_velocities([[0.0, 0.0]] * 2)
+            run.set_velocities([[math.nan, math.nan], [0.0, 0.0]])
         run.set_velocities([[0.0, 2.0]], [1])
         run.reverse()
         assert abs(run.finish().energy_drift) < 1e-15
@@ -152,6 +205,9 @@ def test_a_run_that_all_discs_leave(tmp_path):
     both = TWO.replace("[2, 8]", "[2, 6.1]")
     summary = simulate(parse_scene(both), tmp_path / "run.h5")
     assert (summary.escaped, summary.events, summary.end_time) == (2, 2, 10)
+    with open_log(tmp_path / "run.h5") as log:
+        (frame,) = flat_discs(log.discs, log.frames([10.0]))
+        assert np.isnan([frame["x"], frame["y"], frame["vx"], frame["vy"]]).all()
     path, endless = tmp_path / "endless.h5", parse_scene(both, overrides=["run.until=", "run.events=9"])
     with pytest.raises(UserError, match="all discs have left the gas, up to t = "):
         simulate(endless, path)

@@ -23,19 +23,26 @@ MAX_UNSORTED = 4096
 """Number of discs that fit into the caches: they are not sorted in memory again at each epoch."""
 
 
-def expected_threads(gas: Gas, threads: int | None, local: bool) -> Threads:
-    """How the work will be shared; threads: as in `EventDriven`. local: whether discs collide only with near ones."""
+def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool) -> Threads:
+    """How the work will be shared; threads: as in `EventDriven`. piston, shear: whether the gas has them."""
     cells, coarse = make_levels(gas.radius, gas.box, discs_per_cell(gas.packing_fraction))
-    return _share(cells, coarse, threads, len(gas), local)
+    return _share(cells, coarse, threads, len(gas), _far(piston, shear))
+
+
+def _far(piston: bool, shear: bool) -> str:
+    """Why discs may collide with what is not near them; empty if they do not."""
+    if piston:
+        return "any disc may meet the piston"
+    return "any disc may meet others through sheared sides" if shear else ""
 
 
 def _share(
-    cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, local: bool, tuning: Tuning = DEFAULT_TUNING
+    cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, far: str, tuning: Tuning = DEFAULT_TUNING
 ) -> Threads:
     """Number of threads for n discs in cells, see `choose_threads`; one if some discs reach over many rows."""
     if coarse is not None:
         return Threads(1, "the largest discs reach over many rows of cells")
-    return choose_threads(threads, cells.rows - 2, n, local, tuning)
+    return choose_threads(threads, cells.rows - 2, n, far, tuning)
 
 
 class EventDriven(Method):
@@ -69,7 +76,7 @@ class EventDriven(Method):
         if another:
             self._allocate(gas, effects)
         if another or len(gas) > MAX_UNSORTED:
-            self._sort(gas)
+            self._sort(gas, effects)
         self._effects = effects
         walls, coarse_walls = self._wall_cells(effects)
         self._state = self._state._replace(walls=walls, coarse_walls=coarse_walls)
@@ -89,13 +96,16 @@ class EventDriven(Method):
         if effects.shear is not None:  # coarse cells have no neighbours through sheared sides
             cells, coarse = make_cells(len(gas), gas.box, float(gas.radius.max()), filling), None
         self._state = make_state(len(gas), cells, coarse, effects)
-        local = effects.piston is None and effects.shear is None
-        self._shared = _share(cells, coarse, self._threads, len(gas), local, self.workers.tuning)
+        far = _far(effects.piston is not None, effects.shear is not None)
+        self._shared = _share(cells, coarse, self._threads, len(gas), far, self.workers.tuning)
 
-    def _sort(self, gas: Gas) -> None:
+    def _sort(self, gas: Gas, effects: Effects) -> None:
         """Sort the discs in memory by cell."""
         cells = self._state.cells
-        column, row = cell_of(np.nan_to_num(gas.position), cells)  # nan of discs that have left
+        position = gas.position
+        if effects.absorbing is not None:
+            position = np.nan_to_num(position)  # nan of discs that have left
+        column, row = cell_of(position, cells)
         self.discs = make_discs(gas, np.argsort(row * cells.columns + column, kind="stable"))
 
     @property

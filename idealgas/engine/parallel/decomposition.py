@@ -26,6 +26,7 @@ from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, V
 from idealgas.engine.records import COUNTERS, UNLIMITED, Discs
 from idealgas.jit import aligned
 from idealgas.physics import stress
+from idealgas.physics.absorbing import inside
 from idealgas.physics.periodic import periodic_axes
 
 REASONS = {VIOLATION: "causality", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
@@ -111,9 +112,10 @@ class DomainDecomposition:
         """Decompose the discs of a new epoch into a number of slabs, at least two."""
         self._workers, self._discs, self._state, self._effects = workers, discs, state, effects
         record, cells = discs.record, state.cells
+        here = inside(record.x, effects.absorbing)
         fastest = float(np.sqrt((record.vx**2 + record.vy**2).max())) or 1.0
         self._subdomains = make_subdomains(
-            slab_edges(np.bincount(record.row, minlength=cells.rows), slabs),
+            slab_edges(np.bincount(record.row[here], minlength=cells.rows), slabs),
             periodic_axes(effects.periodic)[1],
             workers.tuning.lead * cells.height / fastest,
         )

@@ -48,15 +48,16 @@ class Tuning(NamedTuple):
 DEFAULT_TUNING = Tuning()
 
 
-def choose_threads(threads: int | None, rows: int, n: int, local: bool, tuning: Tuning = DEFAULT_TUNING) -> Threads:
+def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tuning = DEFAULT_TUNING) -> Threads:
     """Number of threads that share n discs in a number of rows of cells.
 
-    threads: as requested; None for as many as are worthwhile. local: whether discs collide only with what is near them.
+    threads: as requested; None for as many as are worthwhile. far: why discs may
+    collide with what is not near them; empty if they do not.
     """
     if INTERPRETED:
         return Threads(1, "nothing is compiled")
-    if not local:
-        return Threads(1, "any disc may meet the piston, or others through sheared sides")
+    if far:
+        return Threads(1, far)
     if threads is None:
         limits = {
             n // tuning.min_discs: f"each has at least {tuning.min_discs} discs",

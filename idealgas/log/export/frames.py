@@ -72,7 +72,8 @@ PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:
 def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
     """Write extended XYZ with 17 digits, so that every float64 is exact. The depth of the box is the largest diameter.
 
-    `species` is a species' name if that is the symbol of a chemical element, and otherwise X.
+    `species` is a species' name if that is the symbol of a chemical element, and otherwise X. Discs that have left the
+    gas are left out.
     """
     discs, (width, height) = log.discs, log.box
     pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
@@ -82,13 +83,15 @@ def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
     fixed = list(zip((kinds[k] for k in discs.species), discs.radius.tolist(), discs.mass.tolist(), strict=True))
     for state in log.frames(times):
         time = f'Lattice="{lattice}" Properties={PROPERTIES} Time={float(state.time)!r} pbc="{pbc}"'
+        inside = state.inside.tolist()
         momenta = (discs.mass[:, np.newaxis] * state.velocity).tolist()
         moving = zip(fixed, state.position.tolist(), state.velocity.tolist(), momenta, strict=True)
         rows = [
             f"{i} {kind} {x!r} {y!r} 0.0 {vx!r} {vy!r} 0.0 {px!r} {py!r} 0.0 {radius!r} {mass!r} {mass!r}"
             for i, ((kind, radius, mass), (x, y), (vx, vy), (px, py)) in enumerate(moving)
+            if inside[i]
         ]
-        file.write("\n".join((str(len(discs)), time, *rows, "")).encode())
+        file.write("\n".join((str(len(rows)), time, *rows, "")).encode())
     return len(times)
 
 

@@ -32,4 +32,4 @@ def issues(scene: Document) -> Iterator[Issue]:
     least = 2 * LEAST * scene.largest_radius
     if min(scene.box.size) < least:
         got = "{:.6g} by {:.6g}".format(*scene.box.size)
-        yield Issue((("box", "size"), top), "a disc would touch its own image", got, f">= {least:.6g}")
+        yield Issue((("box", "size"), top), "box too small for sheared sides", got, f">= {least:.6g}")

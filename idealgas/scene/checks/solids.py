@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from idealgas.physics.arc_geometry import drawn_points
-from idealgas.scene.checks.overlaps import MOST_OVERLAPS, disc_keys, label
-from idealgas.toml.issues import Issue
+from idealgas.scene.checks.overlaps import MOST_OVERLAPS, disc_keys, distance_to_wall, images, label, rounding
+from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
+    from idealgas.effects.wall import FixedDisc, Wall
     from idealgas.scene.document import Document
 
 
 def solid_issues(scene: Document) -> Iterator[Issue]:
-    """Errors of solids."""
-    if not any(wall is not None and wall.solid for wall in scene.wall):
+    """Errors of solids, and of fixed discs that reach into one or leave no area."""
+    made = {k: wall for k, wall in enumerate(scene.wall) if wall is not None and wall.solid}
+    fixed = scene.segments[len(scene.wall) :]
+    if not made and not fixed:
         return
     solids = scene.solids
     for k, end in solids.loose:
@@ -26,19 +29,38 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
         yield Issue((("wall", k, "solid"),), "no closed curve", f"an end at {list(end)}", allowed)
     if solids.loose:
         return
-    if crossing := _crossing(scene):
+    if made and (crossing := _crossing(scene)):
         a, b = crossing
         yield Issue(
             (("wall", a, "solid"), ("wall", b, "solid")), "curves that cross", f"wall {b}", "closed curves apart"
         )
+    elif made and fixed and (reaching := list(_reaching(scene, fixed, made))):
+        yield from reaching
     elif solids.area >= scene.box.size[0] * scene.box.size[1] * (1 - 1e-12):
-        first = next(k for k, wall in enumerate(scene.wall) if wall is not None and wall.solid)
-        yield Issue((("wall", first, "solid"),), "no area is left", "solids everywhere", "some place for the gas")
+        place: Key = ("wall", next(iter(made)), "solid") if made else fixed[0].place
+        got = f"{'solids' if made else 'fixed discs'} everywhere"
+        yield Issue((place,), "no area is left", got, "some place for the gas")
     discs = scene.given
     for k in np.flatnonzero(solids.contain(discs.position))[:MOST_OVERLAPS].tolist():
         number = int(discs.index[k])
         keys = disc_keys(scene, (number,), "position")
         yield Issue(keys, f"{label(scene, number)}in a solid", str(discs.position[k].tolist()), "a place out of it")
+
+
+def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, Wall]) -> Iterator[Issue]:
+    """Check fixed discs that reach into a solid, at most MOST_OVERLAPS; solid: walls of solids by number."""
+    position, radius = np.array([disc.start for disc in fixed]), np.array([disc.radius for disc in fixed])
+    found = scene.solids.contain(position)
+    owner, centre = images(position, radius, scene.box)
+    slack = rounding(max(scene.box.size), 2 * radius)
+    for wall in solid.values():
+        found[owner[distance_to_wall(centre, wall) < (radius - slack)[owner]]] = True
+    for k in np.flatnonzero(found)[:MOST_OVERLAPS].tolist():
+        keys: tuple[Key, ...] = (
+            *disc_keys(scene, (fixed[k].number,), "position", "radius"),
+            ("wall", next(iter(solid)), "solid"),
+        )
+        yield Issue(keys, "fixed disc reaches into a solid", str(position[k].tolist()), f"{radius[k]} or more from it")
 
 
 def _crossing(scene: Document) -> tuple[int, int] | None:

@@ -170,3 +170,22 @@ def test_a_lattice_leaves_out_sites_on_walls():
     gas = gas_of(species("a", count=80, radius=0.3, speed=1, placement='"lattice"'), overrides=[walls])
     assert np.abs(gas.position - 5).min() >= 0.3
     assert len(np.unique(gas.position, axis=0)) == 80
+
+
+def test_sheared_sides_add_their_flow_to_velocities_that_are_drawn():
+    """At y the flow is 0.5 (y - 5); given velocities are as they are given, of a species too."""
+    scene = parse_scene("""
+        box.size = [10, 10]
+        box.left = "periodic"
+        box.right = "periodic"
+        box.bottom = { shear = 0.5 }
+        box.top = { shear = 0.5 }
+        run.until = 1
+        species = [
+            { name = "given", count = 1, radius = 0.5, velocities = [[0.25, 0]], region = [1, 8, 3, 9.5] },
+            { name = "drawn", count = 1, radius = 0.5, speed = 1e-9, region = [1, 1, 3, 2.5] },
+        ]
+    """)
+    gas = make_gas(scene)
+    assert gas.velocity[0].tolist() == [0.25, 0.0]
+    assert gas.velocity[1, 0] == pytest.approx(0.5 * (gas.position[1, 1] - 5), abs=1e-8)

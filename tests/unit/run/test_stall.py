@@ -1,7 +1,9 @@
 """Runs whose events do not come end, runs that have an end in time reach it, and neither fills a disk on the way."""
 
+import numpy as np
 import pytest
 from helpers.log_compare import differences
+from helpers.support import gas_of
 
 from idealgas.errors import UserError
 from idealgas.log import open_log
@@ -46,6 +48,14 @@ def movers(*overrides):
 def few(monkeypatch):
     monkeypatch.setattr(stall, "EMPTY_EPOCHS", 100)
     monkeypatch.setattr(stall, "EXPECTED", 50)
+
+
+def test_collisions_are_expected_of_the_discs_that_are_left():
+    position, velocity = np.array([[1.0, 1], [3, 3], [np.nan] * 2]), np.array([[1.0, 0], [0, 1], [0, 0]])
+    holes = np.ones(1, bool)
+    expected = stall._expected_collisions(gas_of((10, 10), position[:2], velocity[:2], 0.2), 7.0)
+    assert stall._expected_collisions(gas_of((10, 10), position, velocity, 0.2), 7.0, holes) == expected > 0
+    assert stall._expected_collisions(gas_of((10, 10), position[2:], velocity[2:], 0.2), 7.0, holes) == 0
 
 
 METHODS = ("run.method=event_driven", "run.method=brute_force", "run={ method='time_driven', dt=0.5, events=4000 }")

@@ -59,7 +59,6 @@ LACKING = {
     "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston", "thermostat"},
     "allows_monte_carlo": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston", "thermostat"},
     "allows_time_steps": {"wall segments", "piston", "thermostat"},
-    "local": {"piston"},
     "is_scalable": {"wall segments", "piston"},
     "empty": {"wall segments"},
 }

@@ -77,6 +77,7 @@ def test_the_ray_through_a_corner():
 
 CROSS = [([1, 4], [9, 4]), ([9, 4], [9, 6]), ([9, 6], [1, 6]), ([1, 6], [1, 4])]
 ROUND = '{{ from = [1, 5], to = [1, 5], via = [9, 5], solid = "{}" }},'
+ONE = 'species = [{{ name = "gas", count = 1, radius = 0.05, speed = 1 }}]'
 INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
 
 
@@ -99,6 +100,32 @@ def test_one_line_for_each_mistake(text, rest, message):
     assert message in str(caught.value)
 
 
+SCATTERER = "disc = [{{ position = [{}, {}], radius = {}, fixed = true }}]\n" + ONE
+
+
+@pytest.mark.parametrize(
+    ("solid", "disc", "got"),
+    [
+        (walls("inside", SIDES), (5, 5, 0.1), "[5.0, 5.0]; allowed 0.1 or more from it)"),
+        (walls("inside", SIDES), (5, 8, 1.5), "[5.0, 8.0]; allowed 1.5 or more from it)"),
+        (walls("outside", SIDES), (9, 9, 0.5), "[9.0, 9.0]; allowed 0.5 or more from it)"),
+        (walls("outside", SIDES), (5, 5, 2), "[5.0, 5.0]; allowed 2.0 or more from it)"),
+        (walls("inside", SIDES), (5, 5 + math.sqrt(3) + 1, 1), ""),
+        (walls("outside", SIDES), (5, 5, math.sqrt(3)), ""),
+        ("", (5, 5, 8), "disc.0.fixed: no area is left (got fixed discs everywhere; allowed some place for the gas)"),
+    ],
+    ids=["in it", "at its edge", "outside", "all around", "touching", "inscribed", "everywhere"],
+)
+def test_fixed_discs_are_apart_from_solids_and_leave_area(solid, disc, got):
+    if not got:
+        assert scene(solid, SCATTERER.format(*disc)).solids.area > math.pi * disc[2] ** 2
+        return
+    with pytest.raises(SceneError) as caught:
+        scene(solid, SCATTERER.format(*disc))
+    assert got in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+
+
 DISC = "{{ position = [{}, {}], radius = {}, fixed = true }},\n"
 SIDES_JOINED = 'box = {size=[10, 10], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
 LENS = 2 * math.pi / 3 - math.sqrt(3) / 2
@@ -112,10 +139,11 @@ LENS = 2 * math.pi / 3 - math.sqrt(3) / 2
         (((4, 5, 1), (5, 5, 1)), False, 2 * math.pi - LENS),
         (((4, 4, 1), (4, 5, 1), (4, 4, 0.5)), False, 2 * math.pi - LENS),
         (((0, 5, 2), (10, 10, 2)), False, 3 * math.pi),
+        (((10, 4, 1), (10, 5, 1), (5, 5, 2), (5, 6, 3)), False, 10 * math.pi - LENS / 2),
         (((0, 5, 2), (10, 10, 2)), True, 8 * math.pi),
         (((0.5, 5, 1), (9.5, 5, 1)), True, 2 * math.pi - LENS),
     ],
-    ids=["apart", "overlapping", "nested", "at sides", "at periodic sides", "overlapping across"],
+    ids=["apart", "overlapping", "nested", "at sides", "one in another", "at periodic sides", "overlapping across"],
 )
 def test_fixed_discs_leave_less_area(discs, joined, covered):
     """N, φ and A are those of the discs that move: areas by hand."""

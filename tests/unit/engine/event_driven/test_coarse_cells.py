@@ -82,4 +82,10 @@ def test_the_log_is_that_of_brute_force(name, tmp_path):
     assert found[0] == found[1]
     gas = make_gas(scene)
     assert make_levels(gas.radius, gas.box, 0.4)[1] is not None
-    assert expected_threads(gas, 2, True)[:2] == (1, "the largest discs reach over many rows of cells")
+    assert expected_threads(gas, 2, piston=False, shear=False)[:2] == (
+        1,
+        "the largest discs reach over many rows of cells",
+    )
+    assert expected_threads(gas, 2, piston=True, shear=False)[:2] == (1, "any disc may meet the piston")
+    far = "any disc may meet others through sheared sides"
+    assert expected_threads(gas, 2, piston=False, shear=True)[:2] == (1, far)
