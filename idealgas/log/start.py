@@ -7,7 +7,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from idealgas.effects.wall import Wall
 from idealgas.errors import UserError
 from idealgas.log.reader import Log, open_log
 from idealgas.scene import Scene
@@ -96,7 +95,7 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
     return dump_document(scene.model_copy(update=update))
 
 
-def _known(wall: Wall, species: Container[str]) -> Wall:
+def _known(wall: Any, species: Container[str]) -> Any:
     """A wall that none but known species pass; one for others alone is closed to all discs."""
     if wall.permeable_to is None:
         return wall
