@@ -40,7 +40,7 @@ def _share(
     cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, far: str, tuning: Tuning = DEFAULT_TUNING
 ) -> Threads:
     """Number of threads for n discs in cells, see `choose_threads`; one if some discs reach over many rows."""
-    if coarse is not None:
+    if coarse is not None and not far:
         return Threads(1, "the largest discs reach over many rows of cells")
     return choose_threads(threads, cells.rows - 2, n, far, tuning)
 
