@@ -14,13 +14,13 @@ import numpy as np
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.core.statistics import Estimate, parts_of
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
 from idealgas.analysis.theory.values import NoTheoryError, Theory
 from idealgas.columns import FIRST_SEGMENT, Kind
 from idealgas.errors import NotApplicableError, UserError
-from idealgas.log import Log, LogState
+from idealgas.log import Log
 from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.scene.walls import NumberedWall, number_walls
 
@@ -102,23 +102,25 @@ class EscapeAnalysis(Analysis):
         if not len(at):
             raise UserError(f"{log.path}: no disc leaves the gas between t = {first:g} and {last:g}")
         state, escaped = log.state_at(first), len(at)
-        number, time = int(state.inside.sum()), np.linspace(first, last, INSTANTS)
+        speed, time = np.hypot(*state.velocity[state.inside].T), np.linspace(first, last, INSTANTS)
         caveats: tuple[str, ...] = ()
         theory = expected = spread = None
         try:
             theory = _theory(log)
-            expected, spread = _expected(log, state, theory, time - first, collisions / escaped)
+            expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
             what = "No theory" if theory is None else "No theory of the number left"
             caveats = (f"{what}: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
-        per_path = None if log.has_gravity else _per(escaped, path, theory)
-        speed = np.hypot(*state.velocity[state.inside].T)
+        per_path = None
+        if not log.has_gravity:
+            per_path = Estimate(escaped / path, math.sqrt(escaped) / path, math.inf, *parts_of(theory))
         alike = expected is not None and np.ptp(speed) <= NEAR * speed.max() and collisions < RARE * escaped
-        mean_time = _mean_time(escaped, spent, theory.times(float(speed.mean())) if theory and alike else None)
-        left = number - at.searchsorted(time, "right")
-        return Escape(number, escaped, time, left, expected, spread, per_path, mean_time, caveats=caveats)
+        expected_time = theory.times(float(speed.mean())).inverse() if theory and alike else None
+        mean_time = Estimate(spent / escaped, spent / escaped**1.5, math.inf, *parts_of(expected_time))
+        left = len(speed) - at.searchsorted(time, "right")
+        return Escape(len(speed), escaped, time, left, expected, spread, per_path, mean_time, caveats=caveats)
 
     @staticmethod
     def tables(result: Escape) -> list[Table]:
@@ -168,18 +170,6 @@ def _flights(log: Log, first: float, last: float, progress: Progress | None) -> 
         if progress is not None:
             progress(min(done, rows), rows)
     return np.concatenate(at), math.fsum(spent), math.fsum(path), collisions
-
-
-def _per(escaped: int, whole: float, theory: Theory | None) -> Estimate:
-    """Number of escapes per a whole, with its error."""
-    value, error = (None, 0.0) if theory is None else (theory.value, theory.error)
-    return Estimate(escaped / whole, math.sqrt(escaped) / whole, math.inf, value, error)
-
-
-def _mean_time(escaped: int, spent: float, rate: Theory | None) -> Estimate:
-    """Time spent per escape, with its error; rate: by theory, 1/time."""
-    value, error = (None, 0.0) if rate is None else (1 / rate.value, rate.error / rate.value**2)
-    return Estimate(spent / escaped, spent / escaped**1.5, math.inf, value, error)
 
 
 # ── theory ──
@@ -254,32 +244,31 @@ def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) ->
 
 
 def _expected(
-    log: Log, state: LogState, rate: Theory, time: np.ndarray, collisions: float
+    log: Log, speed: np.ndarray, rate: Theory, time: np.ndarray, collisions: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard deviation (INSTANTS,) of the number of discs left, after times from a state on.
+    """Mean and standard deviation (INSTANTS,) of the number of discs left, after times from a state with speeds (N,).
 
     Discs that hardly meet keep their speeds. Those of a gas in equilibrium at one temperature leave at the rate of its
     mean speed; without heat from outside it cools, as a disc that leaves takes 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
     """
-    properties, mass = log.scene.properties, float(log.discs.mass[0])
-    here = state.inside
-    speed = np.hypot(*state.velocity[here].T)
+    properties, mass, number = log.scene.properties, float(log.discs.mass[0]), len(speed)
+    mixes, lossy = collisions >= OFTEN, properties.dissipative or properties.spins
     if RARE < collisions < OFTEN or len(properties.temperatures) > 1 or properties.varies:
         raise NoTheoryError("discs neither keep their speeds nor come to equilibrium before they leave")
-    if collisions >= OFTEN and (np.ptp(log.discs.mass) > 0 or properties.dissipative or properties.spins):
+    if mixes and (np.ptp(log.discs.mass) > 0 or lossy):
         raise NoTheoryError("the temperature of a mixture, or with losses or spins, is not known while discs leave")
-    if collisions < OFTEN and (properties.temperatures or properties.dissipative or properties.spins):
+    if not mixes and (properties.temperatures or lossy):
         raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly meet")
-    heat = next(iter(properties.temperatures), None)
-    if collisions >= OFTEN:
-        temperature = float(mass * (speed**2).mean() / 2) if heat is None else heat
+    if mixes:
+        temperature = next(iter(properties.temperatures), float(mass * (speed**2).mean() / 2))
         speed = np.array([math.sqrt(math.pi * temperature / (2 * mass))])
+    cools = mixes and not properties.temperatures
 
     def share(per_path: float) -> np.ndarray:
         away = per_path * np.multiply.outer(time, speed)
-        lasting = (1 + away / 4) ** -4.0 if collisions >= OFTEN and heat is None else np.exp(-away)
+        lasting = (1 + away / 4) ** -4.0 if cools else np.exp(-away)
         return np.asarray(lasting.mean(axis=1))
 
-    number, mean = int(here.sum()), share(rate.value)
+    mean = share(rate.value)
     doubt = np.abs(share(rate.value - rate.error) - share(rate.value + rate.error)) / 2
     return number * mean, np.hypot(np.sqrt(number * mean * (1 - mean)), number * doubt)

@@ -18,13 +18,13 @@ from idealgas.analysis.core.equilibration import (
     memory_time,
 )
 from idealgas.analysis.core.fields import OMITTED
+from idealgas.analysis.core.impacts import contacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.stream import add_to, block_edges, frames, stream
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error, fluid
-from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError
 from idealgas.log import Flights, Log
 from idealgas.physics.shear import flow_at
@@ -37,7 +37,8 @@ STRIPS, INSTANTS = 20, 200
 """Strips of the profile of the flow, and instants at which it is taken."""
 
 FAST = 0.1
-"""Shear rate over the collision rate of a disc above which the viscosity of a dilute gas is less by a part of 2 %."""
+"""Shear rate over the collision rate of a disc above which the viscosity of a dilute gas is 2 % less, and rate of a
+heat bath over it above which theory has no viscosity."""
 
 DRIFT = 0.1
 """Relative change of the temperature in the window above which it is no longer that of one state."""
@@ -132,10 +133,9 @@ class PassedOn:
 
     def add(self, flights: Flights) -> None:
         """Add the collisions at the ends of flights, with the second disc of each."""
-        assert flights.end_position is not None
         width, height = self._box
-        second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
-        x, y = (flights.end_position.take(second, axis=0) - flights.end_position.take(second - 1, axis=0)).T
+        second, apart = contacts(flights, self._box, (False, False))
+        x, y = apart.T
         rows = np.rint(y / height)
         x -= rows * np.remainder(self._rate * height * flights.end[second], width)
         x -= width * np.rint(x / width)
@@ -257,10 +257,11 @@ def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: 
     quarter = max(len(temperatures) // 4, 1)
     before, after = float(temperatures[:quarter].mean()), float(temperatures[-quarter:].mean())
     if abs(after - before) > DRIFT * temperatures.mean():
-        reason, when = (", as shear heats the gas", "as") if heats else ("", "if")
+        reason = ", as shear heats the gas" if heats else ""
+        which = "that at the mean temperature, as" if heats else "that of one state only if"
         found.append(
-            f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity is that of "
-            f"one state only {when} it is proportional to √T."
+            f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity is {which} "
+            "it is proportional to √T."
         )
     if reduced_rate > FAST:
         found.append(

@@ -103,13 +103,13 @@ def changed(effects: Effects, after: float, until: float) -> Effects:
 
 def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[str, float]:
     """Energies that the effects add, by field of `idealgas.run.energy.Energy`, mass length²/time²."""
-    parts = [(effect.energy, state) for effect, state in present(effects) if effect.energy is not None]
-    if parts:
+    if effects.gravity is not None:
         position = unwrapped(gas.position, effects.periodic)
         if effects.absorbing is not None:
             position = np.nan_to_num(position)  # nan of discs that have left
         gas = replace(gas, position=position)
-    return {part.part: part.of(state, gas, local_time) for part, state in parts}
+    parts = ((effect.energy, state) for effect, state in present(effects))
+    return {part.part: part.of(state, gas, local_time) for part, state in parts if part is not None}
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:

@@ -58,7 +58,7 @@ class EnergyPart(NamedTuple, Generic[State]):
 
     Attributes:
         part: a field of `idealgas.run.energy.Energy`.
-        of: the energy, from the effect's state, the gas with unwrapped positions and the local time.
+        of: the energy, from the effect's state, the gas (under gravity with unwrapped positions) and the local time.
         observed: its column in the samples; None if they have none.
         inner: whether it belongs to the discs and collisions may turn it into kinetic energy.
     """

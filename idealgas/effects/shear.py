@@ -58,7 +58,7 @@ EFFECT = EffectSpec(
     name="sheared sides",
     field="shear",
     side=ShearedSide,
-    side_text="{ shear = rate }",
+    side_text="at bottom and top { shear = rate }",
     properties=_properties,
     check=_check,
     make=lambda tables, start: law.make_shear(tables.sides[3].shear, tables.size),

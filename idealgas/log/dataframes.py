@@ -78,7 +78,7 @@ def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) ->
     for state in states:
         values = state._asdict()
         time = np.full(len(ids), values.pop("time"))
-        if state.inside.any() and np.isnan(state.position[state.inside]).all():  # a gas without positions
+        if (here := state.inside).any() and np.isnan(state.position[here]).all():  # a gas without positions
             del values["position"]
         fixed = {"time": time, "disc": ids, "species": gas.species, "radius": gas.radius, "mass": gas.mass}
         yield {name: column[chosen] for name, column in (fixed | flat(values)).items()}

@@ -181,7 +181,7 @@ class FlightReader:
         """Yield uncut flights that end with events, in batches. Their block is that of their end."""
         log, (first, last) = self._log, self._edges[[0, -1]]
         state = log.state_at(first)
-        self._join, self._left = Join(state, self._read), np.isnan(state.velocity[:, 0])
+        self._join, self._left = Join(state, self._read), ~state.inside
         for rows in whole_pairs(log.chunks(self._read, log.row_at(first, "right"), log.row_at(last, "right"))):
             if self._discs is not None:
                 chosen = np.flatnonzero(np.isin(rows["disc"], self._discs))

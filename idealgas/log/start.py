@@ -43,7 +43,7 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         allowed = f"multiples of {width / (rate * height):.6g}, when images are above each other"
         raise UserError(f"{log.path}: no start between sheared sides from t = {time:g} (allowed {allowed})")
     spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
-    here = ~np.isnan(state.position[:, 0])
+    here = state.inside
     if not here.any():
         raise UserError(f"{log.path}: all discs have left the gas by t = {time:g}")
     columns: dict[str, Any] = {

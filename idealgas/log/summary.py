@@ -10,7 +10,8 @@ from idealgas.log.rules import LONGEST
 KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
 """Fields whose sum is the number of events, with `steered`."""
 
-STEERED, ESCAPED = OPTIONAL = ("steered", "escaped")
+STEERED = "steered"
+OPTIONAL = (STEERED, "escaped")
 """Fields that are absent where they are 0."""
 
 

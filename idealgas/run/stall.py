@@ -88,8 +88,7 @@ class StallDetector:
         """Why the run cannot be expected to reach its stop; empty if it can."""
         if not self._endless:
             return ""
-        simulation = self._simulation
-        if simulation.effects.absorbing is not None and np.isnan(simulation.gas.position[:, 0]).all():
+        if self._simulation.totals.escaped == len(self._simulation.gas):
             return "all discs have left the gas"
         hopeless = self._expected < HOPELESS * self._empty
         if self._empty >= EMPTY_EPOCHS and (self._expected >= EXPECTED or hopeless):

@@ -93,14 +93,16 @@ class SteeredRun(LoggedRun):
         whole = ids.dtype.kind in "iu" or not ids.size  # an empty list has no whole numbers
         if ids.ndim != 1 or not whole or not ((ids >= 0) & (ids < number)).all():
             raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
-        holes = self._simulation.effects.absorbing is not None
-        if holes and len(left := ids[~self.state().inside[ids.astype(int)]]):
-            raise UserError(f"discs: disc {left[0]} has left the gas")
+        ids, record = ids.astype(int), self._simulation.method.discs
+        if self._simulation.effects.absorbing is not None:
+            left = ids[np.isin(ids, record.id[np.isnan(record.record.x)])]
+            if len(left):
+                raise UserError(f"discs: disc {left[0]} has left the gas")
         if given.shape != (len(ids), 2) or not (np.abs(given) <= LARGEST).all():
             raise UserError(f"velocity: not ({len(ids)}, 2) numbers up to {LARGEST:g} (got {given.shape})")
         self._arrive()
         self._stall.end_epoch()
-        self._simulation.set_velocities(ids.astype(int), given)
+        self._simulation.set_velocities(ids, given)
         self._begin_epoch(changed=True)
 
     def reverse(self) -> None:

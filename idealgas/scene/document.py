@@ -100,6 +100,13 @@ class Document(_DiscsAndEffects):
         return found
 
     @property
+    def free_area(self) -> float:
+        """Area of the room without solids and fixed discs, length²."""
+        left, bottom, right, top = self.room
+        area, solid = (right - left) * (top - bottom), self.solids.area
+        return area - solid if area > solid else area  # else some of it is beyond the piston
+
+    @property
     def placed(self) -> list[tuple[int, Species]]:
         """Valid tables [[species]] with their indices, and the number of their discs that are not given as count."""
         given = self.given
@@ -206,10 +213,7 @@ class Document(_DiscsAndEffects):
         The speed is that of a disc with the mean speed at the start after a fall through half of the room.
         """
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
-        size = right - left, top - bottom
-        area = size[0] * size[1]
-        if area > (solid := self.solids.area):  # else some of it is beyond the piston
-            area -= solid
+        size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
         diameter, largest = self._sum_of_diameters / n, self.largest_radius
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n

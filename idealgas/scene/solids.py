@@ -133,11 +133,12 @@ def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool
 
 
 def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
-    """For each of several discs, no two of which are the same, the angles from and to which others or a box hide it."""
-    from scipy.spatial import cKDTree
-
-    pairs = cKDTree(np.column_stack((x, y))).query_pairs(2 * float(r.max()), output_type="ndarray")
-    one, other = np.concatenate((pairs, pairs[:, ::-1])).T
+    """For each of several discs in order of x, no two the same, the angles from and to which others or a box hide."""
+    each = np.arange(len(r))
+    number = x.searchsorted(x + 2 * r.max(initial=0.0), "right") - each - 1  # of later discs that are near along x
+    low = np.repeat(each, number)
+    high = low + 1 + np.arange(len(low)) - np.repeat(np.cumsum(number) - number, number)
+    one, other = np.concatenate((low, high)), np.concatenate((high, low))
     dx, dy = x[other] - x[one], y[other] - y[one]
     distance = np.hypot(dx, dy)
     meet = (distance < r[one] + r[other]) & (distance > r[one] - r[other])
@@ -146,7 +147,6 @@ def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[li
     nearest = np.where(
         within, -r[one], (distance + (r[one] ** 2 - r[other] ** 2) / np.where(within, 1.0, distance)) / 2
     )
-    each = np.arange(len(r))
     owner = np.concatenate((one, *[each] * 4))
     towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
     reach = np.concatenate((nearest, size[0] - x, size[1] - y, x, y)) / r[owner]

@@ -19,7 +19,7 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 
-posix = pytest.mark.skipif(os.name != "posix", reason="needs files, links or messages of POSIX systems")
+posix = pytest.mark.skipif(os.name != "posix", reason="needs files, links, users or processes of POSIX systems")
 
 ROOT = Path(__file__).parents[2]
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"

@@ -12,7 +12,7 @@ from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
 
 SETS = [set(), *({name} for name in NAMES)]
-SETS += [pair for pair in map(set, combinations(NAMES, 2)) if "shear" not in pair or allowed(pair)]
+SETS += [pair for pair in map(set, combinations(NAMES, 2)) if allowed(pair)]
 LOCAL = tuple(name for name in NAMES if name != "thermostat")
 """A thermostat collision concerns one disc and nothing that it meets: pairs with the thermostat are enough."""
 SETS += [set(triple) for triple in combinations(LOCAL, 3) if allowed(set(triple))]

@@ -9,7 +9,7 @@ from types import FunctionType, SimpleNamespace
 
 import pytest
 from helpers.fresh_python import python, start
-from helpers.support import ROOT
+from helpers.support import ROOT, posix
 
 from idealgas import jit
 from idealgas.errors import UserError
@@ -227,9 +227,6 @@ def place(tmp_path):
     """An empty folder with an empty folder for temporary files."""
     (tmp_path / "tmp").mkdir()
     return tmp_path
-
-
-posix = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="folders of users are private")
 
 
 @posix

@@ -131,7 +131,8 @@ def free_paths(
         own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
         speeds = window.of(moments.flights)[:, i, 0] / number
         speed = float(equilibrium.mean_speed[i])
-        free_time = _inverse(expected.of(i))
+        rate = expected.of(i)
+        free_time = rate.inverse() if rate and rate.value else None
         paths.append(
             FreePath(
                 name,
@@ -141,12 +142,6 @@ def free_paths(
             )
         )
     return tuple(paths)
-
-
-def _inverse(rate: Theory | None) -> Theory | None:
-    if rate is None or rate.value == 0:
-        return None
-    return Theory(1 / rate.value, rate.error / rate.value**2, rate.source)
 
 
 def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:

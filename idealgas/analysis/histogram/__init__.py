@@ -161,7 +161,7 @@ class HistogramAnalysis(Analysis):
             *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
             *([f"No law here: {result.no_law}."] if result.no_law else []),
         )
-        tables = [estimates(f"Mean {result.quantity} ({result.unit})", means, notes)]
+        tables = [estimates(f"Mean {_in_words(result.quantity)} ({result.unit})", means, notes)]
         cumulants = [
             (f"{found.name}: {name.replace('_', ' ')}", one)
             for found in result.distributions
@@ -218,9 +218,14 @@ class HistogramAnalysis(Analysis):
         return figure
 
 
+def _in_words(quantity: str) -> str:
+    """Quantity in the singular."""
+    return "number of collisions" if quantity == "collisions" else quantity.replace("-", " ")
+
+
 def _follows(result: Histogram, found: Distribution) -> str:
     """Sentence on the laws of a distribution and its mean."""
-    quantity = result.quantity.replace("-", " ")
+    quantity = _in_words(result.quantity)
     average = f"{format_estimate(found.mean)} on the average"
     if not found.tests:
         return f"The {quantity} of {found.name} is {average}."

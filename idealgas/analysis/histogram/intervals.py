@@ -124,7 +124,7 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
     cumulants: list[Theory | None] = [None, None]
     if not why_not:
         mean = Theory(float(rate[0]) * time, float(rate[0] * errors[0, 0]) * time, "kinetic theory")
-        law = CollisionCountLaw(discs.mass[0], tuple(discs.mass), tuple(rates[0]), time)
+        law = CollisionCountLaw(float(rate[0]) * time)
         cumulants = [Theory(*one, "dilute gas") for one in zip(law.cumulants, of_cumulants, strict=True)]
     for s, name in enumerate(log.discs.species_names):
         chosen = (tally.sample_species == s) & (tally.sample_index >= begin)

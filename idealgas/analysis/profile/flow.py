@@ -17,8 +17,8 @@ LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
 """Name of the law."""
 
 SLIP, SLIP_ERROR = 1.016, 0.031
-"""Velocity to which the flow away from a thermal side extends there, in units of its gradient times ℓ = η √(2T/m)/nT,
-and its difference from that of hard spheres.
+"""Velocity to which the flow away from a thermal side extends there, in units of its gradient times ℓ, and its
+difference from that of hard spheres; ℓ is η √(2T/m)/nT of a dilute gas with the same mean free path.
 
 Source: the BGK equation, Albertoni, Cercignani & Gotusso, Phys. Fluids 6, 993 (1963), which is the same in two
 dimensions; hard spheres have 0.985: Sharipov, Proc. EuroSimE, 243 (2004).
@@ -74,7 +74,7 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     state = (2 * radius, density, temperature, mass, chi)
     viscosity, conductivity = hard_discs.enskog_viscosity(*state), hard_discs.enskog_conductivity(*state)
     path = hard_discs.mean_free_path(2 * radius, density, phi)
-    thermal_path = 1.022 * 2 / math.sqrt(math.pi) * path  # ℓ, of a dilute gas with this mean free path
+    thermal_path = 1.022 * 2 / math.sqrt(math.pi) * path  # ℓ
     weight = mass * density * log.gravity[1 - axis]
     curvature, slip = weight / (2 * viscosity), SLIP * thermal_path
     fastest = curvature * (gap / 4 + slip) * gap

@@ -248,7 +248,7 @@ def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) 
         structure=_first(density, 0),
         longitudinal_square=_first(along, 0, current),
         transverse_square=_first(across, 0, current),
-        early=_first(self_part, 1, *_free_flight(log, k * float(time[1]), k)),
+        early=_first(self_part, 1, *_free_flight(log, float(time[1]), k)),
     )
 
 
@@ -266,31 +266,33 @@ def _first(parts: np.ndarray, lag: int, theory: float | None = None, theory_erro
     return Estimate(float(curve.value[lag]), float(curve.error[lag]), float(len(parts)), theory, theory_error)
 
 
-def _free_flight(log: Log, path: float, k: float) -> tuple[float | None, float]:
-    """F_s and its error after a time in which a disc of speed 1 flies path/k; none after more than a collision.
+def _free_flight(log: Log, time: float, k: float) -> tuple[float | None, float]:
+    """F_s and its error after a time; none after more than a collision.
 
-    The mean square displacement is (1 - 1/N)(T/m) 2(ωt - 1 + exp(-ωt))/ω² with the rate ω = T/(mD) of Enskog's D: the
-    slope of the velocity correlation at 0 is exact, and its second derivative is the error.
+    The slope of the velocity correlation at 0 is exact, and its second derivative is the error.
     """
-    gas, equilibrium = log.discs, ensemble(log)
-    temperature, mass, phi = equilibrium.temperature, float(gas.mass[0]), gas.packing_fraction
-    if phi > hard_discs.HIGHEST:
+    gas, collisions = log.discs, _correlation_rate(log) * time
+    if gas.packing_fraction > hard_discs.HIGHEST or collisions >= 1:
         return None, 0.0
-    density, chi = len(gas) / gas.area, hard_discs.fluid_contact_value(phi)
-    diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), density, temperature, mass, chi)
-    collisions = path / k * temperature / (mass * diffusion)
-    half = path**2 * temperature / mass * (1 - 1 / len(gas)) / 2
-    value = math.exp(-half * 2 * (collisions + math.expm1(-collisions)) / collisions**2)
-    return (value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))) if collisions < 1 else (None, 0.0)
+    others = 1 - 1 / len(gas)
+    half = (k * time) ** 2 * ensemble(log).temperature / float(gas.mass[0]) * others / 2
+    value = math.exp(-k * k * others * _mean_square(log, time) / 4)
+    return value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))
+
+
+def _correlation_rate(log: Log) -> float:
+    """Rate T/(mD) of the velocity correlation with Enskog's D, 1/time; above HIGHEST, that of HIGHEST."""
+    gas, temperature, mass = log.discs, ensemble(log).temperature, float(log.discs.mass[0])
+    chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
+    diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), len(gas) / gas.area, temperature, mass, chi)
+    return temperature / (mass * diffusion)
 
 
 def _mean_square(log: Log, time: float) -> float:
-    """Mean square displacement after a time by Enskog's D, length²; see `_free_flight`. It only sets bins."""
-    gas, temperature = log.discs, ensemble(log).temperature
-    chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
-    diameter, mass = 2 * float(gas.radius[0]), float(gas.mass[0])
-    rate = temperature / (mass * hard_discs.enskog_diffusion(diameter, len(gas) / gas.area, temperature, mass, chi))
-    return 4 * temperature / mass * (rate * time + math.expm1(-rate * time)) / rate**2
+    """Mean square displacement 4(T/m)(ωt - 1 + exp(-ωt))/ω² of many discs after a time, length²."""
+    rate = _correlation_rate(log)
+    square = 4 * ensemble(log).temperature / float(log.discs.mass[0])
+    return square * (rate * time + math.expm1(-rate * time)) / rate**2
 
 
 def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:

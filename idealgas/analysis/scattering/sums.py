@@ -108,7 +108,7 @@ def segments(log: Log, k: float, lags: int, series: Series, edges: np.ndarray) -
         own = np.sum([correlation(one[some], lags) for one in phases], axis=0) / (number * places.shape[2])
         squares = [squares_after(places, lag, starts) for lag in powers_of_two(lags)]
         moments = np.array([(square.mean(), (square * square).mean()) for square in squares])
-        found = np.histogram(squares_after(places, APART, starts), edges**2)[0] / squares[0].size
+        found = np.histogram(squares[APART.bit_length() - 1], edges**2)[0] / squares[0].size
         yield Sums(density, own, longitudinal, transverse, moments, found)
 
 

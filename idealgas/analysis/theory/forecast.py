@@ -138,8 +138,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
         rows = duration * (rates.pairs + rates.events)
     if not scene.log.events:
         rows = 0.0
-    x0, y0, x1, y1 = scene.room
-    area = (x1 - x0) * (y1 - y0) - scene.solids.area
+    area = scene.free_area
     return Forecast(
         number=len(gas),
         packing_fraction=gas.packing_fraction * gas.area / area,

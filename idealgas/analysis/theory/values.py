@@ -117,6 +117,10 @@ class Theory:
         """Theory of the quantity multiplied by a factor."""
         return Theory(self.value * factor, self.error * abs(factor), self.source)
 
+    def inverse(self) -> "Theory":
+        """Theory of one over the quantity."""
+        return Theory(1 / self.value, self.error / self.value**2, self.source)
+
 
 class NoTheoryError(ValueError):
     """Theory has no value; the message is the reason, as part of a sentence."""

@@ -51,8 +51,8 @@ DEFAULT_TUNING = Tuning()
 def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tuning = DEFAULT_TUNING) -> Threads:
     """Number of threads that share n discs in a number of rows of cells.
 
-    threads: as requested; None for as many as are worthwhile. far: why discs may
-    collide with what is not near them; empty if they do not.
+    threads: as requested; None for as many as are worthwhile. far: why discs may collide with what is not near them;
+    empty if they do not.
     """
     if INTERPRETED:
         return Threads(1, "nothing is compiled")

@@ -21,7 +21,7 @@ from idealgas.log.reader import Log
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
     """Write GSD with HOOMD's schema: two dimensions, the origin in the middle of the box, float32.
 
-    GSD has no walls, so its box counts as periodic. Its names are ASCII.
+    GSD has no walls, so its box counts as periodic. Its names are ASCII. Discs that have left the gas are at nan.
     """
     import gsd.hoomd
 
@@ -98,7 +98,8 @@ def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
 def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
     """Write H5MD 1.1 with a third coordinate, zero, in the group that MDAnalysis expects.
 
-    A box without periodic sides has no edges, as MDAnalysis would regard them as periodic.
+    A box without periodic sides has no edges, as MDAnalysis would regard them as periodic. Discs that have left the gas
+    are at nan.
     """
     with _Target(path) as target, h5py.File(target, "w", libver=("v110", "v110")) as file:
         _fill_h5md3d(file, log, times)

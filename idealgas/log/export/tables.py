@@ -1,7 +1,9 @@
 """CSV and Parquet, written block by block with pyarrow."""
 
+import re
 import shutil
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, Literal
@@ -44,8 +46,10 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
     import pyarrow
     from pyarrow import parquet
 
-    if folder.exists() and not (force and folder.is_dir() and all(map(_is_part, folder.iterdir()))):
-        raise OutputError(f"{folder}: already exists")
+    if folder.exists() and not force:
+        raise OutputError(f"{folder}: already exists (use force=True to overwrite)")
+    if folder.exists() and not (folder.is_dir() and all(map(_is_part, folder.iterdir()))):
+        raise OutputError(f"{folder}: not overwritten, as it is not a folder of parts alone")
     edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
     place, writers, rows = beside(folder), list[Any](), 0
 
@@ -70,8 +74,9 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
     except OSError as error:
         raise storage_error(folder, error) from error
     finally:
-        if writers:
-            writers[-1].close()
+        with suppress(OSError):
+            if writers:
+                writers[-1].close()
         shutil.rmtree(place, ignore_errors=True)
     return rows
 
@@ -92,7 +97,7 @@ def _replace(place: Path, folder: Path) -> None:
 
 
 def _is_part(path: Path) -> bool:
-    return path.match("part-*.parquet")
+    return re.fullmatch(r"part-\d{4,}\.parquet", path.name) is not None
 
 
 def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any], Any]) -> int:

@@ -173,8 +173,7 @@ def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> I
         area = (region[2] - region[0]) * (region[3] - region[1])
         if region == whole:
             covered += math.pi * math.fsum((discs.radius**2).tolist())
-            if area > (solid := scene.solids.area):  # else some of it is beyond the piston
-                area -= solid
+            area = scene.free_area
         packing = covered / area
         random = all(s.placement == "random" for _, s in here)
         if packing > (RANDOM_PACKING if random else CLOSE_PACKING):

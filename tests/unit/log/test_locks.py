@@ -10,7 +10,7 @@ import time
 import h5py
 import pytest
 from helpers.log_samples import check, new_writer, write_log, write_rows
-from helpers.support import ROOT
+from helpers.support import ROOT, posix
 
 from idealgas.errors import OutputError, UserError
 from idealgas.files import LOG, check_output, is_of_kind, written
@@ -159,7 +159,7 @@ def test_a_reader_of_a_log_that_a_run_continues(tmp_path):
         assert check(log) == 250_000
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+@posix
 @pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")  # of forks beside threads
 def test_a_forked_child_has_no_part_in_the_lock(tmp_path):
     path = tmp_path / "log"
