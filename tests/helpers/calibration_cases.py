@@ -63,6 +63,19 @@ STRUCTURE = ("collisions_per_disc = 300", "collisions_per_disc = 2000")
 SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
 """Runs for the energy of a gas that only its walls change."""
 
+HOLE = "[box]\nsize = [10, 10]\n[[species]]\nname = 'points'\ncount = 100\nradius = 1e-6\nspeed = 1\n" + "".join(
+    f"[[wall]]\nsolid = 'outside'\nfrom = {start}\nto = {end}\n{more}\n"
+    for start, end, more in (
+        ([1, 1], [4.85, 2], "via = [3, 1.8]"),
+        ([4.85, 2], [5.15, 2], "absorbing = true"),
+        ([5.15, 2], [9, 1], "via = [7, 1.8]"),
+        ([9, 1], [9, 9], "via = [8, 5]"),
+        ([9, 9], [1, 9], "via = [5, 8]"),
+        ([1, 9], [1, 1], "via = [2, 5]"),
+    )
+)
+"""Box of points with a hole; its walls bulge inwards, as those of the scene `escape`."""
+
 STROKES = [[0, 0]] + [[22 * k + at, v] for k in range(400) for at, v in ((20, (-0.5, 0.5)[k % 2]), (22, 0))]
 """Velocities of a piston that rests for 20 and moves for 2, in and out."""
 
@@ -135,6 +148,7 @@ CASES = {
         estimates.steady_state,
     ),
     "driven grains": Case(equal(40, 0.2, THERMAL) + "[restitution]\nnormal = 0.9\n", STRUCTURE, estimates.gauges),
+    "escaping points": Case(HOLE, ("until = 150", "until = 600"), estimates.escapes, steady=False),
     "two chambers": Case(
         "[box]\nsize = [2, 1]\n[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n"
         "[[wall]]\nname = 'gate'\nfrom = [1, 0.47]\nto = [1, 0.53]\nopens_at = 1\n[[species]]\nname = 'gas'\n"

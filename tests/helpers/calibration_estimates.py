@@ -7,6 +7,7 @@ from idealgas import (
     cooling,
     effusion,
     entropy,
+    escape,
     heat_capacity,
     histogram,
     order,
@@ -41,6 +42,14 @@ def box(log: Log) -> Named:
     yield "heat capacity E/T", heat_capacity(log).routes["E/T"]
     for quantity in ("vx", "free-path", "waiting-time"):
         yield f"mean {quantity} (histogram)", histogram(log, quantity).distributions[0].mean
+
+
+def escapes(log: Log) -> Named:
+    """Rates at which discs leave through a hole."""
+    found = escape(log)
+    assert found.per_path is not None
+    yield "escapes per path", found.per_path
+    yield "mean escape time", found.mean_time
 
 
 def strips(log: Log) -> Named:
