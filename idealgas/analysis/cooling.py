@@ -241,8 +241,8 @@ class CoolingAnalysis(Analysis):
         first, last = result.temperature[[0, -1]]
         said = agreement([("loss per collision", result.loss), ("Haff's time", result.haff)], "that of a uniform gas")
         return (
-            f"The gas cools from m v²/2 = {first:.4g} to {last:.4g} in {result.collisions[-1]:.4g} collisions per disc "
-            f"and loses {format_estimate(result.loss)} of it per collision. Loss and Haff's time: {said}."
+            f"The kinetic energy per disc falls from {first:.4g} to {last:.4g} in {result.collisions[-1]:.4g} "
+            f"collisions per disc, by {format_estimate(result.loss)} of it per collision. Loss and Haff's time: {said}."
         )
 
     @staticmethod

@@ -152,7 +152,7 @@ def temperature_tables(result: Temperature) -> list[Table]:
 
 def temperature_summary(result: Temperature) -> str:
     """Kinetic energy per disc, and whether all degrees of freedom agree with equipartition."""
-    found = f"m v²/2 = {format_estimate(result.species[-1].both)} per disc (k_B = 1)"
+    found = f"The kinetic energy per disc is {format_estimate(result.species[-1].both)} (k_B = 1)"
     return f"{found}; {agreement(_rows(result), 'equipartition')}."
 
 

@@ -62,6 +62,7 @@ class Evolution(Result):
         pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
         rest: mean position of a piston with a mass once it is steady, length; None without one, or if it is not steady
             by the end.
+        rest_start: time from which on the piston is steady; None where `rest` is.
         chambers: mean m v²/2 per disc on each side of an inner piston, (F,), by the name of the side of the box.
     """
 
@@ -79,6 +80,7 @@ class Evolution(Result):
     dissipated: Series
     pressure: PressureSeries | None = None
     rest: Estimate | None = None
+    rest_start: float | None = None
     chambers: Series = field(default_factory=dict)
 
     @property
@@ -148,7 +150,7 @@ class EvolutionAnalysis(Analysis):
             balance[inside],
             lost,
             pressure,
-            _rest(log, pressure, law),
+            *_rest(log, pressure, law),
             frames[-1],
             caveats=law.caveats if law else (),
         )
@@ -265,7 +267,7 @@ class EvolutionAnalysis(Analysis):
         for ax in axes:
             ax.time_axis()
         if series and states:
-            draw_state(next(rest), series)
+            draw_state(next(rest), series, result.rest_start)
         for ax in axes:
             ax.legend()
         return figure
@@ -315,13 +317,13 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
     return time, temperature, None if inertia is None else spin, shares, apart
 
 
-def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> Estimate | None:
-    """Mean position of a piston with a mass once it is steady, compared with theory."""
+def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
+    """Mean position of a piston with a mass once it is steady, compared with theory, and the time it is steady from."""
     if not log.scene.piston or not log.scene.piston.mass or series is None or series.track is None:
-        return None
-    places = series.track[1]
+        return None, None
+    times, places = series.track
     start = detect_equilibration([Observable(places)])
     if start is None:
-        return None
+        return None, None
     theory = None if law is None or law.piston is None else Theory(law.piston, law.piston_error, law.text)
-    return mean(places[start:], theory)
+    return mean(places[start:], theory), float(times[start])

@@ -154,12 +154,17 @@ def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
         ax.plot(series.middles, adiabat, "--", color=BLACK, label="theory: adiabat")
 
 
-def draw_state(ax: "Panel", series: PressureSeries) -> None:
-    """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat."""
+def draw_state(ax: "Panel", series: PressureSeries, rest_start: float | None) -> None:
+    """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat.
+
+    A piston only fluctuates from the time `rest_start` on, which is one point.
+    """
     from idealgas.analysis.core.style import COLOURS, GREY
 
+    moves = int(np.searchsorted(series.middles, math.inf if rest_start is None else rest_start))
+    on_the_way, rest = np.arange(moves), np.arange(moves, len(series.area))
+    groups = [k for k in (*np.array_split(on_the_way, STATES), rest) if len(k)]
     for name, colour in zip(series.shown, COLOURS, strict=False):
-        groups = np.array_split(np.arange(len(series.area)), min(len(series.area), STATES))
         area, pressure = (
             np.array([values[k].mean() for k in groups]) for values in (series.area, series.pressure[name])
         )

@@ -33,8 +33,8 @@ def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
     ideal = result.number * result.temperature / result.area
     notes = [
         describe(result.window),
-        f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, m v²/2 = "
-        f"{result.temperature:.6g} per disc, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
+        f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, kinetic "
+        f"energy per disc {result.temperature:.6g}, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
         f"No theory here: {result.no_theory}.",
     ]
     if found.unsteady:

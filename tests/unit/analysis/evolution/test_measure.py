@@ -11,6 +11,7 @@ from helpers.crafted import craft
 
 from idealgas import evolution, open_log
 from idealgas.analysis.evolution import MOST_SAMPLES, EvolutionAnalysis
+from idealgas.analysis.evolution.pressure_series import STATES
 from idealgas.errors import UserError
 from idealgas.log.hdf5.commit import Commit
 
@@ -154,6 +155,25 @@ def test_pressure_in_bins_of_time(make):
     assert axes.count("pressure (energy/length²)") == 2
     labels = [text.get_text() for text in found.plot().axes[-1].get_legend().get_texts()]
     assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall, in time"]
+
+
+def states_of(found):
+    """Areas of the pressures that the picture of an evolution shows against the area."""
+    return found.plot().axes[-1].containers[0].lines[0].get_xdata()
+
+
+def test_states_of_a_piston_are_a_path_until_it_rests(make):
+    """One with a mass oscillates first; all the time at rest is one point. One that is moved never rests."""
+    moved = evolution(make("piston={ velocity = -0.1 }"))
+    assert (moved.rest_start, len(states_of(moved))) == (None, len(moved.pressure.area))
+    log = make("piston={ position = 12, mass = 100, pressure = 3 }", "species.count=60", "run.until=1000")
+    found, late = evolution(log), evolution(log, 500.0)
+    assert 100 < found.rest_start < 500 < late.rest_start
+    areas = states_of(found)
+    assert len(areas) == STATES + 1
+    assert np.ptp(areas[:4]) > 10
+    assert areas[-1] == pytest.approx(8 * found.rest.value, rel=0.01)
+    assert len(states_of(late)) == 1
 
 
 def test_pressure_of_a_uniform_gas_is_that_of_all_sides(make):
