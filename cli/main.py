@@ -83,6 +83,7 @@ class Commands(click.Group):
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="backslashreplace")
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait actively, longer than small products take
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
         return super().main(*args, **options)
 

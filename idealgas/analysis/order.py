@@ -306,8 +306,10 @@ class WaveVectors:
 
     def structure_factor(self, position: np.ndarray) -> np.ndarray:
         """S (K,) of positions (N, 2) at the wave vectors that are used."""
-        along, across = (np.exp(1j * np.outer(k, x)) for k, x in zip((self.kx, self.ky), position.T, strict=True))
-        return np.asarray(np.abs((along @ across.T)[self.used]) ** 2 / len(position))
+        waves = zip((self.kx, self.ky[len(self.ky) // 2 :]), position.T, strict=True)
+        along, up = (np.vander(np.exp(1j * k[1] * x), len(k), increasing=True) for k, x in waves)  # powers of the first
+        across = np.hstack((up[:, :0:-1].conj(), up))
+        return np.asarray(np.abs((along.T @ across)[self.used]) ** 2 / len(position))
 
     def structure(self, frames: np.ndarray, number: int) -> Structure:
         """Structure of a gas of `number` discs from S (F, K) in F frames, F ≥ 2."""
