@@ -56,7 +56,8 @@ def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
 
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:
     """Time of a sweep with the costs of its points on a number of workers of this machine, seconds."""
-    return START + sum(cost.seconds for cost in costs) / workers
+    seconds = [cost.seconds for cost in costs]
+    return START + max(sum(seconds) / workers, max(seconds))
 
 
 def _cost(scene: Scene, trial: _Trial, analyses: int) -> Cost:

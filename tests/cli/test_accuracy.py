@@ -80,6 +80,12 @@ def test_what_cannot_be_compared_is_refused_in_a_line(scene, message, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_quiet_without_an_output_is_refused_before_anything_runs(tmp_path):
+    (tmp_path / "gas.toml").write_text(SMALL)
+    line = error_of("accuracy", "gas.toml", "-q", folder=tmp_path)
+    assert line == "-q: neither -o nor --json, so that nothing would be left of the result\n"
+
+
 def test_a_folder_that_cannot_be_is_refused_before_anything_runs(tmp_path):
     (tmp_path / "file").write_text("")
     scene = ROOT / "configs" / "quickstart.toml"

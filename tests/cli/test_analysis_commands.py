@@ -104,6 +104,10 @@ def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, folder
     assert listing(folder) == before
 
 
+def test_the_seed_is_a_number(path):
+    assert type(json.loads(output_of("info", path, "--json"))["scene"]["seed"]) is int
+
+
 def test_window(path):
     found = json.loads(called("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
     assert found["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}

@@ -133,6 +133,15 @@ def test_export_by_the_ending_of_the_file(copy, tmp_path):
         assert line.startswith("--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)")
 
 
+def test_frames_as_csv_have_radius_and_mass_and_gsd_needs_no_format(copy, tmp_path):
+    output_of("export", copy, "--frames", 2, "-o", tmp_path / "gas.csv")
+    head, *rows = (tmp_path / "gas.csv").read_text().splitlines()
+    assert head == '"time","disc","species","radius","mass","x","y","vx","vy"'
+    assert len(rows) == 2000
+    pytest.importorskip("gsd")
+    assert output_of("export", copy, "--frames", 2, "-o", tmp_path / "x.gsd") == f"{tmp_path / 'x.gsd'}: 2 frames\n"
+
+
 def test_export(copy):
     shown = output_of("export", copy, "--format", "extxyz", "--frames", "every=0.5")
     assert shown.startswith(f"{copy.with_suffix('.extxyz')}: ")

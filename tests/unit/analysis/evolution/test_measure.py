@@ -116,6 +116,9 @@ def test_a_piston_with_a_mass_keeps_its_balance_and_has_a_place(make):
     t = energy / (2 * n + 1.5)
     assert found.law.temperature[0] == pytest.approx(t, rel=1e-3)
     assert 12 - found.law.piston == pytest.approx(0.002 + (n + 1) * t / 8, rel=1e-3)
+    shown = found.plot().axes
+    assert "piston position (length)" in [ax.get_ylabel() for ax in shown]
+    assert "work done by the piston" in [text.get_text() for ax in shown for text in ax.get_legend().get_texts()]
 
 
 @pytest.mark.parametrize(
