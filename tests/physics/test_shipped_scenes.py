@@ -150,17 +150,17 @@ def test_rough(run):
 
 @pytest.mark.long
 def test_brownian_motion(run):
-    """A heavy disc forgets its velocity at the rate γ that Enskog's friction gives, before its own wake comes back.
+    """A heavy disc forgets its velocity at first at the rate γ of Enskog's friction: over a fiftieth of 1/γ.
 
+    Later its own wake carries it along: 3 % more slowly by 0.1/γ, 9 % by 0.4/γ.
     The other discs recoil, so that the velocity relative to them decays at γ/(1 - M/M_all).
     """
     rates, friction = [], math.nan
-    for seed in range(1, 5):
+    for seed in range(1, 9):
         log = run("brownian", f"scene.seed={seed}")
         grain = transport(log).diffusion[0]
         friction = 1 / grain.velocity_correlation_time.theory
-        k = grain.lag.searchsorted(0.1 / friction)
-        rates.append(-math.log(grain.correlation[k]) / grain.lag[k])
+        rates.append(-math.log(grain.correlation[1]) / grain.lag[1])
     agrees(of_runs(rates, friction), resolution=0.04)
 
 

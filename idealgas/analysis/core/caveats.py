@@ -25,7 +25,7 @@ MOST = 6
 NAMED = 3
 """Largest number of logs that one sentence names."""
 
-RELAXATIONS = 40.0
+RELAXATIONS = 42.0
 """Length of a window in relaxation times of its gas from which on errors are right (measured to 10 %)."""
 
 WIDE, WIDE_PERIODIC = 20.0, 5.0

@@ -1,6 +1,6 @@
 """Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -100,14 +100,16 @@ def collision_rates(
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 
-    expected: rates by theory, from `expected_rates`.
+    A few collisions tell no more of their error than as many samples would. expected: rates by theory, from `expected_rates`.
     """
     counts = window.of(impacts.collisions)
 
     def rate(i: int, j: int) -> Estimate:
         discs_per_event = 2 if i == j else 1
-        series = discs_per_event * counts[:, min(i, j), max(i, j)] / discs.number[i]
-        return mean(series, theory=expected.between(i, j))
+        events = counts[:, min(i, j), max(i, j)]
+        found = mean(discs_per_event * events / discs.number[i], theory=expected.between(i, j))
+        number = float(events.sum()) * window.width
+        return replace(found, independent_samples=min(found.independent_samples, number))
 
     species = range(len(discs.name))
     return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
