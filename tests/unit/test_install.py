@@ -154,7 +154,7 @@ def test_wheel(source, tmp_path):
         for p in (ROOT / "idealgas").rglob("*")
         if p.is_file() and p.suffix not in (".pyc", ".md")
     }
-    scenes = [path for kind in ("toml", "json", "ipynb") for path in (ROOT / "configs").rglob(f"*.{kind}")]
+    scenes = [path for kind in ("toml", "json", "csv", "ipynb") for path in (ROOT / "configs").rglob(f"*.{kind}")]
     expected |= {f"idealgas_scenes/{path.relative_to(ROOT / 'configs').as_posix()}" for path in scenes}
     expected |= {f"idealgas_cli/{p.name}" for p in (ROOT / "cli").glob("*.py")}
     assert code == expected
