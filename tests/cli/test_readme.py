@@ -77,9 +77,9 @@ def assert_outputs_are_shown(page, printed):
 def test_pages_are_short():
     lengths = {document.relative_to(ROOT).as_posix(): len(document.read_text().split()) for document in DOCUMENTS}
     assert lengths.pop(README) <= 900
-    assert lengths.pop(SCENES) <= 1845
+    assert lengths.pop(SCENES) <= 1895
     assert max(lengths.values()) <= 1200
-    assert sum(len(document.read_text().split()) for document in DOCUMENTS) <= 13400
+    assert sum(len(document.read_text().split()) for document in DOCUMENTS) <= 13600
 
 
 # ── README.md ──

@@ -239,6 +239,12 @@ def scattered(log: Log) -> Named:
             yield f"{title}, {name}", Estimate(float(curve.value[index]), float(curve.error[index]), PARTS)
     for name, moved in zip(("long", "second", "third", "short"), found.van_hove, strict=True):
         yield f"G_s, {name}", Estimate(float(moved.density.value[8]), float(moved.density.error[8]), PARTS)
+    for name, other in zip(("t = 0", "long", "second", "third", "short"), found.distinct, strict=True):
+        for place, index in (("at contact", 20), ("at twice the diameter", 40)):
+            yield (
+                f"G_d {place}, {name}",
+                Estimate(float(other.density.value[index]), float(other.density.error[index]), PARTS),
+            )
     curve, late = found.non_gaussian, len(found.time) // 2
     yield "α₂", Estimate(float(curve.value[late]), float(curve.error[late]), PARTS)
 

@@ -1,7 +1,7 @@
 """Measure density and current correlations in space and time: F(k, t), S(k, ω), self part and currents.
 
-In a periodic box, for wave vectors along its sides; with the self part of the van Hove function, G_s(r, t), and the
-non-Gaussian parameter of displacements.
+In a periodic box, for wave vectors along its sides; with both parts of the van Hove function, G_s(r, t) and G_d(r, t),
+and the non-Gaussian parameter of displacements.
 """
 
 import math
@@ -20,6 +20,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
 from idealgas.analysis.scattering.displacements import Curve, VanHove, curve_of, non_gaussian, van_hove
+from idealgas.analysis.scattering.distinct import Distinct, distinct_parts
 from idealgas.analysis.scattering.sums import APART, BINS, FARTHEST, Sums, read, segments, wave_numbers
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.waves import sound_of_discs
@@ -71,14 +72,15 @@ class Scattering(Result):
     """Density and current correlations of the gas of one log.
 
     window: the time that was used. thermal_speed: √(T/m), length/time. waves: from the longest to the shortest.
-    van_hove: for the time in which a free disc flies 4/k, of each wave. time: (D,). non_gaussian: (D,),
-    ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
+    van_hove: for the time in which a free disc flies 4/k, of each wave. distinct: for t = 0 and the same times; empty
+    for a single disc. time: (D,). non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
     """
 
     window: Window
     thermal_speed: float
     waves: tuple[Wave, ...]
     van_hove: tuple[VanHove, ...]
+    distinct: tuple[Distinct, ...]
     time: np.ndarray
     non_gaussian: Curve
 
@@ -93,7 +95,7 @@ class ScatteringAnalysis(Analysis):
     sections = (
         Section(
             "Scattering",
-            "F(k, t), its self part beside free flight, S(k, ω), currents, displacements and non-Gaussian parameter",
+            "F(k, t), its self part beside free flight, S(k, ω), currents, both parts of the van Hove function, α₂",
         ),
     )
     reads = "wave numbers"
@@ -134,7 +136,10 @@ class ScatteringAnalysis(Analysis):
             least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
             raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
         caveats = (*narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
-        return Scattering(window, speed, tuple(waves), tuple(displaced), *non_gaussian(moments), caveats=caveats)
+        others = distinct_parts(log, window, [0.0, *(own.time for own in displaced)])
+        return Scattering(
+            window, speed, tuple(waves), tuple(displaced), others, *non_gaussian(moments), caveats=caveats
+        )
 
     @staticmethod
     def tables(result: Scattering) -> list[Table]:
@@ -164,6 +169,9 @@ class ScatteringAnalysis(Analysis):
         for own in result.van_hove:
             columns = {"r": own.distance, "normal": own.gaussian}
             tables.append(_series(f"Displacements, G_s(r, {own.time:.4g})", columns, {"G_s": own.density}))
+        for other in result.distinct:
+            title = f"Other discs, G_d(r, {other.time:.4g})"
+            tables.append(_series(title, {"r": other.distance}, {"G_d": other.density}))
         title = "Non-Gaussian parameter of displacements (no unit)"
         return [*tables, _series(title, {"t": result.time}, {"α₂": result.non_gaussian})]
 
@@ -187,8 +195,7 @@ class ScatteringAnalysis(Analysis):
         """Picture of F, F_s, S(k, ω), both currents, G_s and the non-Gaussian parameter; free flight dashed."""
         from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
 
-        figure, (density, own, spectrum, along, across, gaussian, displaced, rest) = panels(4, 2)
-        rest.set_axis_off()
+        figure, (density, own, spectrum, along, across, gaussian, displaced, others) = panels(4, 2)
         for index, one in enumerate(result.waves):
             colour, line, _ = curve_style(index)
             rate, square = one.k * result.thermal_speed, result.thermal_speed**2
@@ -216,6 +223,13 @@ class ScatteringAnalysis(Analysis):
         displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
         displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
         displaced.legend()
+        for index, other in enumerate(result.distinct):
+            colour, line, _ = curve_style(index)
+            x, y, error = other.distance, other.density.value, other.density.error
+            others.plot(x, y, line, color=colour, label=f"t = {other.time:.4g}")
+            others.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        others.set(xlabel="r (length)", ylabel="G_d(r, t) (1/length²)")
+        others.legend()
         density.set_ylabel("F(k, t) (no unit)")
         own.set_ylabel("self part F_s(k, t) (no unit)")
         spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")

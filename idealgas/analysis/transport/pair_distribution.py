@@ -6,12 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from idealgas.analysis.core.pairs import BINS_A_DIAMETER, REACH, inside
 from idealgas.analysis.theory.ensemble import Composition
 from idealgas.log import Log
 
 FRAMES = 64  # number of instants
-BINS_A_DIAMETER = 20
-REACH = 5.0  # largest distance, in units of the sum of the radii
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,10 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
         edges[i, j] = np.linspace(first, max(reach, 1.01 * sigma[i, j]), bins + 1)
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
-    box = np.array(log.box)
-    period = np.where(log.periodic, box, 0.0)  # 0: no images along this axis
+    period = np.where(log.periodic, log.box, 0.0)  # 0: no images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
-        inside = np.where(log.periodic, np.clip(state.position, 0.0, np.nextafter(box, 0.0)), state.position)
-        trees = [cKDTree(inside[ids], boxsize=period) for ids in members]
+        places = inside(log, state.position)
+        trees = [cKDTree(places[ids], boxsize=period) for ids in members]
         for i, j in pairs:
             found = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=True)
             counts[i, j].append(np.diff(found))

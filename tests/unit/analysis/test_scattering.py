@@ -7,6 +7,7 @@ import pytest
 
 import idealgas
 from idealgas import open_log, parse_scene, simulate
+from idealgas.analysis.scattering.distinct import distinct_parts
 from idealgas.analysis.scattering.sums import correlation, read, segments
 from idealgas.errors import NotApplicableError, UserError
 
@@ -123,6 +124,49 @@ def test_displacements_are_normal_but_for_their_non_gaussian_parameter(found):
         expected = one.gaussian * (1 + found.non_gaussian.value[where] * (1 - 2 * x + x**2 / 2))
         near = x < 4
         assert (np.abs(one.density.value - expected) < 5 * one.density.error + 0.1 * one.gaussian)[near].all()
+
+
+def test_other_discs_against_states(log, found, monkeypatch):
+    """Pairs by hand, at the instants of two segments of two starts each."""
+    monkeypatch.setattr("idealgas.analysis.scattering.distinct.SEGMENTS", 2)
+    monkeypatch.setattr("idealgas.analysis.scattering.distinct.STARTS", 2)
+    times = [0.0, 0.3, 2.0]
+    for time, one in zip(times, distinct_parts(log, found.window, times), strict=True):
+        edges = np.append(one.distance - 0.025, one.distance[-1] + 0.025)
+        assert edges == pytest.approx(np.arange(len(edges)) / 20, abs=1e-12)
+        assert edges[-1] <= 4.5 < edges[-1] + 0.05
+        parts = []
+        for start in np.linspace(found.window.start, found.window.end - 2, 4):
+            apart = log.state_at(start + time).position - log.state_at(start).position[:, None]
+            apart -= 9 * np.rint(apart / 9)
+            distance = np.hypot(*np.moveaxis(apart, 2, 0))[~np.eye(30, dtype=bool)]
+            parts.append(np.histogram(distance, edges)[0] / (30 * math.pi * np.diff(edges**2)))
+        first, second = np.mean(parts[:2], axis=0), np.mean(parts[2:], axis=0)
+        assert one.density.value == pytest.approx((first + second) / 2)
+        assert one.density.error == pytest.approx(abs(first - second) / 2)
+
+
+def test_other_discs_from_pairs_to_chance(log, found):
+    """G_d is ρ g(r) at t = 0, with instants of its own, and (N - 1)/A long after; k = 5 as 300 bins are compared."""
+    assert [one.time for one in found.distinct] == [0.0, *(own.time for own in found.van_hove)]
+    start, (pairs,) = found.distinct[0], idealgas.transport(log).pair_distributions
+    assert (start.density.value[:20] == 0).all()
+    n = min(len(pairs.value), len(start.distance) - 20)
+    assert (pairs.edges[:n] + 0.025)[:n] == pytest.approx(start.distance[20 : 20 + n], rel=0.01)
+    density = 30 / 81 * (1 - 1 / 30)
+    error = np.hypot(start.density.error[20 : 20 + n], density * pairs.error[:n])
+    assert (np.abs(start.density.value[20 : 20 + n] - density * pairs.value[:n]) < 5 * error).all()
+    (late,) = distinct_parts(log, found.window, [found.window.duration / 8])
+    assert (np.abs(late.density.value - 29 / 81) < 5 * late.density.error).all()
+    share = 2 * math.pi * late.distance * 0.05
+    error = math.sqrt(((share * late.density.error) ** 2).sum())
+    assert abs((share * (late.density.value - 29 / 81)).sum()) < 4 * error + 0.01
+    assert start.density.value[20] > 1.5 * 29 / 81
+
+
+def test_a_single_disc_has_no_others(make):
+    log = make("species.gas.count=1", "run.collisions_per_disc=", "run.until=50")
+    assert distinct_parts(log, None, [0.0]) == ()
 
 
 def test_structure_is_that_of_order(log, found):

@@ -1,0 +1,67 @@
+"""Distinct part of the van Hove function: the other discs around the place where a disc was a time before."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from idealgas.analysis.core.equilibration import Window
+from idealgas.analysis.core.pairs import BINS_A_DIAMETER, REACH, inside
+from idealgas.analysis.scattering.displacements import Curve, curve_of
+from idealgas.analysis.scattering.sums import SEGMENTS
+from idealgas.log import Log
+
+STARTS = 4
+"""Number of instants in a segment from which pairs are counted."""
+
+
+@dataclass(frozen=True)
+class Distinct:
+    """Distinct part of the van Hove function at one time: density of the other discs around the former place of a disc.
+
+    time: time. distance: (B,), middles of bins, length. density: (B,), G_d(r, t), mean over a bin, 1/length²: ρ g(r) at
+    t = 0, and after long times that of the other discs in the box, (N - 1)/A.
+    """
+
+    time: float
+    distance: np.ndarray
+    density: Curve
+
+
+def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Distinct, ...]:
+    """Distinct part after each of some times, at distances up to half the box; none for a single disc.
+
+    The log is read once, and an instant is kept until its last pair is counted. Errors are by SEGMENTS parts of the
+    window.
+    """
+    number, diameter = len(log.discs), 2 * float(log.discs.radius[0])
+    if number < 2:
+        return ()
+    bins = int(BINS_A_DIAMETER * min(REACH, min(log.box) / 2 / diameter))
+    edges = np.arange(bins + 1) * diameter / BINS_A_DIAMETER
+    starts = np.linspace(window.start, window.end - max(times), STARTS * SEGMENTS)
+    later = np.array([np.minimum(starts + time, window.end) for time in times])
+    at = np.unique(np.append(starts, later))
+    first, second = at.searchsorted(starts), at.searchsorted(later)
+    counts = np.empty((len(times), len(starts), bins))
+    places: dict[int, np.ndarray] = {}
+    for now, state in enumerate(log.frames(at)):
+        places[now] = inside(log, state.position)
+        for k, start in np.argwhere(second == now):
+            counts[k, start] = _pairs(places[first[start]], places[now], np.array(log.box), edges)
+        waiting = first[second.max(axis=0) > now]
+        places = {n: one for n, one in places.items() if n in waiting}
+    densities = counts.reshape(len(times), SEGMENTS, STARTS, bins).mean(axis=2) / (number * math.pi * np.diff(edges**2))
+    middles = (edges[1:] + edges[:-1]) / 2
+    return tuple(Distinct(time, middles, curve_of(one)) for time, one in zip(times, densities, strict=True))
+
+
+def _pairs(before: np.ndarray, after: np.ndarray, box: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Number of pairs of two discs (bins,) by the distance from the place of one before to that of the other after."""
+    found = cKDTree(before, boxsize=box).count_neighbors(cKDTree(after, boxsize=box), edges[1:])
+    moved = after - before
+    moved -= box * np.rint(moved / box)
+    own = np.hypot(*moved.T)
+    return np.diff(found, prepend=0) - np.histogram(own, edges)[0]
