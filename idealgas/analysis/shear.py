@@ -133,13 +133,8 @@ class PassedOn:
 
     def add(self, flights: Flights) -> None:
         """Add the collisions at the ends of flights, with the second disc of each."""
-        width, height = self._box
-        second, apart = contacts(flights, self._box, (False, False))
+        second, apart = contacts(flights, self._box, (True, True), self._rate)
         x, y = apart.T
-        rows = np.rint(y / height)
-        x -= rows * np.remainder(self._rate * height * flights.end[second], width)
-        x -= width * np.rint(x / width)
-        y -= height * rows
         given = flights.new_velocity.take(second, axis=0) - flights.end_velocity.take(second, axis=0)
         px, py = self._mass.take(flights.disc[second]) * given.T
         for sums, values in zip(self._sums, (px * x, px * y, py * y, np.ones_like(x)), strict=True):

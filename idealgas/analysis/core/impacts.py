@@ -84,8 +84,16 @@ class Impacts:
         add_to(self.collisions, (block * number + np.minimum(one, other)) * number + np.maximum(one, other))
 
 
-def contacts(flights: Flights, box: tuple[float, float], periodic: tuple[bool, ...]) -> tuple[np.ndarray, np.ndarray]:
+def contacts(
+    flights: Flights, box: tuple[float, float], periodic: tuple[bool, ...], shear: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Rows of whole flights that end collisions as the second of two, and their discs' places relative to the others.
+
+    Args:
+        flights: flights, with the times of their ends where the sides are sheared.
+        box: width and height, length.
+        periodic: whether x and y are periodic.
+        shear: shear rate, 1/time; the image above is then that times the height and the time ahead.
 
     Returns:
         The rows (c,), and the positions (c, 2), length, of the discs of these relative to the nearest images of their
@@ -94,6 +102,9 @@ def contacts(flights: Flights, box: tuple[float, float], periodic: tuple[bool, .
     assert flights.end_position is not None
     second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
     apart = flights.end_position.take(second, axis=0) - flights.end_position.take(second - 1, axis=0)
+    if shear:
+        rows = np.rint(apart[:, 1] / box[1])
+        apart[:, 0] -= rows * np.remainder(shear * box[1] * flights.end[second], box[0])
     for axis in range(2):
         if periodic[axis]:
             apart[:, axis] -= box[axis] * np.rint(apart[:, axis] / box[axis])

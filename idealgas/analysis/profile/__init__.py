@@ -1,4 +1,4 @@
-"""Measure density, temperature and flow in strips along an axis, and the heat given by walls.
+"""Measure density, temperature, flow and pressure in strips along an axis, and the heat given by walls.
 
 Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and between two thermal sides
 T^(3/2) linear in the position, with the temperature jumps at them, and n T Z constant. A flow that gravity drives along
@@ -20,6 +20,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
 from idealgas.analysis.profile.flow import LAW, expected_flow
+from idealgas.analysis.profile.stress import pressure_of_strips
 from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, collect, gradient, strip_test
 from idealgas.analysis.profile.theory import Expected, expected_profile, flow_axis, natural_axis
 from idealgas.analysis.theory.ensemble import composition
@@ -80,6 +81,7 @@ class Profile(Result):
         frames: number of averaged frames.
         law: name of the theory; None without one.
         species: profiles of each species.
+        pressure: (K,) each, components "xx", "yy" and "xy" of the pressure tensor relative to the flow, energy/length².
         heat: energy per time that each wall gives to the discs, by the name of the wall.
     """
 
@@ -91,6 +93,7 @@ class Profile(Result):
     frames: int
     law: str | None
     species: tuple[SpeciesProfile, ...]
+    pressure: dict[str, tuple[Estimate, ...]]
     heat: dict[str, Estimate]
 
     @property
@@ -100,11 +103,12 @@ class Profile(Result):
 
 
 class ProfileAnalysis(Analysis):
-    """Profiles of density, temperature and flow."""
+    """Profiles of density, temperature, flow and pressure."""
 
+    takes_shear = True
     position = 40
     results = (Profile,)
-    sections = (Section("Profile", "Density and temperature in strips along an axis, theory dashed"),)
+    sections = (Section("Profile", "Density, temperature and pressure tensor in strips along an axis, theory dashed"),)
     options = (
         Option(
             "along",
@@ -140,7 +144,9 @@ class ProfileAnalysis(Analysis):
         reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
         window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
         along_flow = flow_axis(log)
-        sums = collect(log, axis, along_flow, window.edges[window.first :], edges, progress)
+        times = window.edges[window.first :]
+        sums, carried = collect(log, axis, along_flow, times, edges, progress)
+        pressure = pressure_of_strips(log, axis, edges, times, carried, progress)
         expected = expected_profile(log, axis, edges, window.start)
         flow = expected_flow(log, axis, edges) if along_flow == 1 - axis else None
         strip = float(edges[1] - edges[0]) * log.box[1 - axis]
@@ -153,7 +159,8 @@ class ProfileAnalysis(Analysis):
         caveats += tuple(flow.caveats(window)) if flow else ()
         law = expected.law if expected else LAW if flow else None
         axes = "xy"[axis], None if along_flow is None else "xy"[along_flow]
-        return Profile(window, *axes, edges, strip, len(sums), law, species, _heat(log, window), caveats=caveats)
+        heat = _heat(log, window)
+        return Profile(window, *axes, edges, strip, len(sums), law, species, pressure, heat, caveats=caveats)
 
     @staticmethod
     def tables(result: Profile) -> list[Table]:
@@ -169,6 +176,8 @@ class ProfileAnalysis(Analysis):
                 tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
         if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
             tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
+        for name, parts in result.pressure.items():
+            tables.append(estimates(f"pressure P_{name} (energy/length²)", zip(strips, parts, strict=True)))
         tests = [
             (name, Number(test.chi_squared, ".4g"), Number(test.waves, "d"), Number(test.p_value, ".3g"))
             for name, test in _tests(result)
@@ -213,7 +222,7 @@ class ProfileAnalysis(Analysis):
             ax.theory(result.middles, theory, off, None)
             ax.errorbar(result.middles, value, error, ms=4, capsize=2, **style)
 
-        figure, (density, temperature, *flow) = panels(2 if result.flow is None else 3)
+        figure, (density, temperature, stress, *flow) = panels(3 if result.flow is None else 4)
         for k, entry in enumerate(result.species):
             colour, _, marker = curve_style(k)
             draw(density, entry.density, fmt=marker, color=colour, label=entry.species)
@@ -222,12 +231,16 @@ class ProfileAnalysis(Analysis):
                 draw(temperature, entry.spin, fmt="x", color=colour, label=f"{entry.species}: I ω²")
             if entry.velocity is not None:
                 draw(flow[0], entry.velocity, fmt=marker, color=colour, label=entry.species)
+        for k, (name, parts) in enumerate(result.pressure.items()):
+            colour, _, marker = curve_style(k)
+            draw(stress, parts, fmt=marker, color=colour, label=f"P_{name}")
+        stress.set_ylabel("pressure tensor (energy/length²)")
         if result.law is not None:
             (*flow, density)[0].plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
             highest = [e.theory or 0.0 for entry in result.species for e in entry.density]
             if max(highest) > 20 * min(highest) > 0:
                 density.set_yscale("log")
-        for ax in (density, temperature, *flow):
+        for ax in (density, temperature, stress, *flow):
             ax.set_xlabel(f"{result.axis} (length)")
             ax.legend()
         low, high, number = result.edges[0], result.edges[-1], len(result.middles)

@@ -11,6 +11,7 @@ from idealgas.analysis.core.stream import frames
 from idealgas.analysis.profile.theory import Expected
 from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log
+from idealgas.physics.shear import flow_at
 
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for an estimate of its temperature."""
@@ -34,28 +35,40 @@ class StripTest:
 
 def collect(
     log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: Progress | None
-) -> np.ndarray:
-    """Sums (F, S, K, 5) of 1, m v²/2, I ω², m u and m over the discs of a strip, at F times.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sums (F, S, K, 5) of 1, m v²/2, I ω², m u and m over discs of a strip, and (F, K, 3) of m vx², m vy², m vx vy.
 
-    u: velocity along the axis `flow`, if there is a flow; v²/2 is then relative to the mean of u in the strip.
+    At F times. u: velocity along the axis `flow`, if there is a flow; v is then relative to the mean of u in the strip.
+    Between sheared sides v is relative to their flow.
     """
     gas, frame = log.discs, centre_of_mass_velocity(log)
     shape = (len(gas.species_names), len(edges) - 1)
-    sums = np.zeros((len(times), *shape, 5))
+    sums, carried = np.zeros((len(times), *shape, 5)), np.zeros((len(times), shape[1], 5))
+    rate, height = log.scene.properties.shear, log.box[1]
     inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
     for k, state in enumerate(frames(log, times, progress)):
         place = state.position[:, axis]
         strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
         cell = gas.species.astype(np.int64) * shape[1] + strip
         spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
-        energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
+        velocity = state.velocity - frame
+        velocity[:, 0] -= flow_at(state.position[:, 1], rate, height)
+        energy = gas.mass * (velocity**2).sum(axis=1) / 2
         momentum = gas.mass * (0.0 if flow is None else state.velocity[:, flow])
         for c, value in enumerate((np.ones(len(gas)), energy, inertia * spin**2, momentum, gas.mass)):
             sums[k, ..., c] = np.bincount(cell, value, shape[0] * shape[1]).reshape(shape)
+        px, py = gas.mass * velocity.T
+        vx, vy = velocity.T
+        for c, value in enumerate((px * vx, py * vy, px * vy, px, py)):
+            carried[k, :, c] = np.bincount(strip, value, shape[1])
     momentum, mass = sums[..., 3], sums[..., 4]
     mean_velocity = momentum.sum(axis=0) / np.maximum(mass.sum(axis=0), np.finfo(float).tiny)
     sums[..., 1] -= mean_velocity * momentum - mean_velocity**2 * mass / 2
-    return sums
+    if flow is not None:
+        whole, u = mass.sum(axis=1), momentum.sum(axis=(0, 1)) / np.maximum(mass.sum(axis=(0, 1)), np.finfo(float).tiny)
+        carried[..., flow] -= 2 * u * carried[..., 3 + flow] - u**2 * whole
+        carried[..., 2] -= u * carried[..., 4 - flow]
+    return sums, carried[..., :3]
 
 
 def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> StripTest | None:

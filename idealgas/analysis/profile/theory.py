@@ -92,7 +92,7 @@ def natural_axis(log: Log) -> int:
     """Axis (0 for x, 1 for y) across a flow, of gravity, or of two thermal sides of different temperatures; else x."""
     if (along := flow_axis(log)) is not None:
         return 1 - along
-    if log.gravity[1] != 0:
+    if log.gravity[1] != 0 or log.scene.properties.shear:
         return 1
     bottom, top = (log.scene.properties.emits[side] for side in sides_across(1))
     return int(bottom is not None and top is not None and bottom != top)
@@ -101,7 +101,12 @@ def natural_axis(log: Log) -> int:
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
     """Profiles by theory in the strips between edges (K + 1,), for a gas from time `start` on; None if unknown."""
     properties, discs = log.scene.properties, classes(log.discs)
-    if start < properties.last_wall_removed_at or not properties.fixed_walls or log.gravity[1 - axis]:
+    if (
+        properties.shear
+        or start < properties.last_wall_removed_at
+        or not properties.fixed_walls
+        or log.gravity[1 - axis]
+    ):
         return None
     reach = discs.radius * (not log.periodic[axis])  # distance of the centres from the sides
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
