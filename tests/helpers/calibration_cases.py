@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from helpers import calibration_estimates as estimates
 from helpers.calibration_estimates import Named
-from idealgas import Log, scattering, transport
+from idealgas import Log, scattering, shear, transport
 
 
 class Case(NamedTuple):
@@ -123,6 +123,13 @@ CASES = {
         f"[box]\nsize = [12, 12]\n{PERIODIC}[[species]]\nname = 'gas'\ncount = 56\nradius = 0.5\ntemperature = 1\n",
         ("until = 4000", "until = 6000"),
         estimates.waves,
+    ),
+    "sheared gas": Case(
+        equal(50, 0.3, PERIODIC[: PERIODIC.index("bottom")] + "bottom = { shear = 0.5 }\ntop = { shear = 0.5 }\n")
+        + "[thermostat]\ntemperature = 1\nrate = 3\n",
+        SHORT,
+        estimates.sheared,
+        caveats=lambda log: shear(log).caveats,
     ),
     "mixture": Case(
         "[box]\nsize = [1, 1]\n[[species]]\nname = 'light'\ncount = 30\nradius = 0.03\ntemperature = 1.3\n"

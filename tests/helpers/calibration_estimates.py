@@ -14,6 +14,7 @@ from idealgas import (
     profile,
     relaxation,
     scattering,
+    shear,
     sound,
     work,
 )
@@ -247,6 +248,15 @@ def scattered(log: Log) -> Named:
             )
     curve, late = found.non_gaussian, len(found.time) // 2
     yield "α₂", Estimate(float(curve.value[late]), float(curve.error[late]), PARTS)
+
+
+def sheared(log: Log) -> Named:
+    """A sheared gas: viscosity and pressure are those at its temperature T, and their errors have none of that of T."""
+    found = shear(log)
+    t = found.temperature.value
+    yield from (("η/√T", found.viscosity.times(t**-0.5)), ("P/T", found.pressure.times(1 / t)))
+    yield "temperature of a sheared gas", found.temperature
+    yield from (("normal stress over pressure", found.normal_stress), ("slope of the flow", found.slope))
 
 
 def counted(log: Log) -> Named:

@@ -71,7 +71,7 @@ def pressure_of_strips(
     """Components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
     xy is the flow along the axis of momentum across it. Between walls, the component along the axis is the force
-    through a line across the box over the width of the box, and that across it the force over the width of the strip.
+    through a line across the box over the width of the box.
 
     Args:
         log: log of the gas.
@@ -83,10 +83,8 @@ def pressure_of_strips(
     """
     passed_on = PassedOn(axis, edges, log.periodic, log.scene.properties.shear)
     stream(log, times, [passed_on], progress)
-    width, across = float(edges[1] - edges[0]), np.full(3, log.box[1 - axis])
-    if not log.periodic[1 - axis]:
-        across[1 - axis] -= 2 * float(log.discs.radius.min())  # centres keep this far from the sides
+    area = float(edges[1] - edges[0]) * log.box[1 - axis]
     rates = passed_on.stress / np.diff(times)[:, None, None]
-    pressure = ((carried[1:] + carried[:-1]) / 2 + rates) / (width * across)
+    pressure = ((carried[1:] + carried[:-1]) / 2 + rates) / area
     strips = range(len(edges) - 1)
     return {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}

@@ -81,6 +81,8 @@ def test_walls_hold_the_gas_in_every_strip(make):
     assert max(e.standard_error for e in found["xx"]) < 0.1 * left.value
     assert far(found["xx"], left.value) < STANDARD_ERRORS
     assert far(found["xy"], 0.0) < STANDARD_ERRORS
+    bottom, error = routes["bottom wall"].pressure, max(e.standard_error for e in found["yy"])
+    assert abs(np.mean([e.value for e in found["yy"]]) - bottom.value) < STANDARD_ERRORS * error
 
 
 def test_under_gravity_the_pressure_carries_the_weight_above(make):
