@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.bond_order import FOLD, bond_order
+from idealgas.analysis.core.bond_order import DENSE, FOLD, bond_order
 from idealgas.analysis.core.equilibration import Window, measure, unsteady
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.result import Result
@@ -103,6 +103,7 @@ class OrderAnalysis(Analysis):
     """Order of the discs of one log."""
 
     position = 80
+    reported_from = DENSE
     headline = "whole"
     results = (Order,)
     sections = (

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from idealgas.analysis.core.bond_order import bond_order
+from idealgas.analysis.core.bond_order import DENSE, bond_order
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
@@ -169,8 +169,12 @@ def _order_shades() -> np.ndarray:
 
 
 def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
-    """Numbers (F, N) of the shades of all discs at F instants, evenly spaced; nothing where neighbours are not told."""
-    if not log.scene.properties.fixed_walls or log.escapes or len(log.discs) > MOST_NEIGHBOURHOODS:
+    """Numbers (F, N) of the shades of all discs of a dense gas at F instants, evenly spaced.
+
+    Nothing in a dilute one, and where neighbours are not told.
+    """
+    dilute = log.discs.packing_fraction < DENSE
+    if dilute or not log.scene.properties.fixed_walls or log.escapes or len(log.discs) > MOST_NEIGHBOURHOODS:
         return {}
     number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
     try:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from idealgas.analysis import registry
 from idealgas.analysis.core.tables import Table
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import DamageError, Log
 from idealgas.scene import Scene
 
@@ -38,6 +38,8 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
     parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
     for k, (analysis, section) in enumerate(parts):
         try:
+            if log.discs.packing_fraction < analysis.reported_from:
+                raise NotApplicableError(f"a dilute gas; `idealgas {analysis.key}` measures it all the same")
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
             figure, words = analysis.figure(result), analysis.summary(result)

@@ -173,17 +173,17 @@ def test_the_flight_of_a_disc(opened, pages):
 
 def test_colours_of_the_discs(opened, pages):
     """Order as the discs have it at the instants that the page knows: none below a third, else one of 16 angles."""
-    browser = opened("two species")
+    browser = opened("dense")
     colours, shown = Select(browser.find_element(By.ID, "colour")), set()
-    with open_log(pages("two species")[0]) as log:
+    with open_log(pages("dense")[0]) as log:
         state = log.state_at(log.end_time)
         order = bond_order(state.position, log.box, log.periodic).value
         seek(browser, log.end_time)
-    for name in ("speed", "species", "order"):
+    for name in ("speed", "order"):
         colours.select_by_value(name)
         shown.add(picture(browser))
         assert browser.find_element(By.ID, "discs").get_attribute("aria-label").endswith(f"coloured by {name}")
-    assert len(shown) == 3
+    assert len(shown) == 2
     shades = np.array(browser.execute_script("return Array.from(player.gas.orders())"))
     assert np.array_equal(shades == 0, np.abs(order) < 1 / 3)
     turn = (shades - 1) % 16 / 16 - np.angle(order) / (2 * np.pi)
@@ -191,7 +191,7 @@ def test_colours_of_the_discs(opened, pages):
     assert np.array_equal(shades > 16, np.abs(order) >= 2 / 3)
 
 
-@pytest.mark.parametrize(("name", "offered"), [("plain", ["speed", "order"]), ("piston", ["speed"])])
+@pytest.mark.parametrize(("name", "offered"), [("dense", ["speed", "order"]), ("two species", ["speed", "species"])])
 def test_colours_that_tell_nothing_are_not_offered(opened, name, offered):
     options = opened(name).find_elements(By.CSS_SELECTOR, "#colour option")
     assert [option.get_attribute("value") for option in options] == offered

@@ -106,6 +106,7 @@ class Analysis:
         end: description of the default end of the window.
         reads: what the progress bar counts, such as events or frames.
         position: position in the report; analyses without one follow in alphabetical order.
+        reported_from: packing fraction from which on a report has it.
         headline: name of its main quantity, which the figure of a sweep shows by default; empty for none.
     """
 
@@ -119,6 +120,7 @@ class Analysis:
     end: ClassVar[str] = "the log's end"
     reads: ClassVar[str] = "events"
     position: ClassVar[int] = 1000
+    reported_from: ClassVar[float] = 0.0
     headline: ClassVar[str] = ""
 
     measure: ClassVar[Callable[..., Any]]

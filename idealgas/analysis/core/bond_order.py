@@ -16,6 +16,9 @@ from idealgas.errors import UserError
 FOLD = 6
 """Number of neighbours of a disc in a triangular lattice."""
 
+DENSE = 0.5
+"""Packing fraction from which on a report looks at the order of a gas."""
+
 MARGIN = 4.0
 """Width of the border of images that is tried first, in mean distances 1/√n between discs."""
 

@@ -100,7 +100,7 @@ def collision_rates(
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 
-    A few collisions tell no more of their error than as many samples would. expected: rates by theory, from `expected_rates`.
+    expected: rates by theory, from `expected_rates`. A few collisions tell no more of their error than as many samples.
     """
     counts = window.of(impacts.collisions)
 

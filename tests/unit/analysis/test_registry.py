@@ -52,8 +52,8 @@ TAKES = {"effusion": SLIT, "sound": WAVES, "scattering": WAVES, "work": STROKES,
 TAKES |= {"shear": SHEARED, "escape": HOLE}
 """Overrides for the gas of those analyses that have no answer for a closed box."""
 
-NOT_ALONE = ["Cooling", "Scattering", "Sound", "Shear flow", "Effusion", "Escape", "Work"]
-"""Sections that a closed box does not have."""
+NOT_ALONE = ["Cooling", "Order", "Scattering", "Sound", "Shear flow", "Effusion", "Escape", "Work"]
+"""Sections that a dilute gas in a closed box does not have."""
 
 every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=lambda analysis: analysis.key)
 
@@ -187,6 +187,8 @@ def test_a_report_shows_every_section_or_says_why_not(make):
     assert steps == [(k + 1, len(titles)) for k in range(len(titles))]
     assert [section.title for section in sections if section.left_out] == NOT_ALONE
     assert all(section.picture and section.caption and section.tables for section in sections if not section.left_out)
+    (order,) = [section.left_out for section in sections if section.title == "Order"]
+    assert order == "a dilute gas; `idealgas order` measures it all the same"
     without_positions = make_sections(make('run.method="monte_carlo"', "run.v_ref=5"))
     left_out = {section.title: section.left_out for section in without_positions if section.left_out}
     assert left_out["Profile"] == "discs of this method have no positions"

@@ -22,7 +22,9 @@ def test_few_collisions_are_few_samples(tmp_path):
     with open_log(tmp_path / "run.h5") as log:
         found = pressure(log)
         inside = np.concatenate([b.time > found.window.start for b in log.chunks()])
-        disc, partner = (np.concatenate([getattr(b, name) for b in log.chunks()])[inside] for name in ("disc", "partner"))
+        disc, partner = (
+            np.concatenate([getattr(b, name) for b in log.chunks()])[inside] for name in ("disc", "partner")
+        )
         (rate,) = [r.rate for r in found.collision_rates if r.species == r.other == "grain"]
     events = ((disc < 2) & (partner >= 0) & (partner < 2)).sum() / 2
     assert 1 < events < 20
