@@ -39,7 +39,7 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
     for k, (analysis, section) in enumerate(parts):
         try:
             if log.discs.packing_fraction < analysis.reported_from:
-                raise NotApplicableError(f"a dilute gas; `idealgas {analysis.key}` measures it all the same")
+                raise NotApplicableError(f"the packing fraction is below {analysis.reported_from:g}")
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
             figure, words = analysis.figure(result), analysis.summary(result)

@@ -158,10 +158,10 @@ def test_all_are_on_record():
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", REFERENCES)
 def test_a_reference_log(scene, tmp_path):
-    """The log and its numbers are those on record, it has 1 to 100 MB, and its numbers agree with theory."""
+    """The log and its numbers are those on record, it has 5 to 40 MB, and its numbers agree with theory."""
     found = rows_of(scene, tmp_path)
     assert [row for row, _ in found] == [row for row in on_record() if row.scene == scene]
-    assert 1e6 < (tmp_path / f"{scene}.h5").stat().st_size < 1e8
+    assert 5e6 < (tmp_path / f"{scene}.h5").stat().st_size < 4e7
     for row, one in found:
         assert one.deviation is None or abs(one.deviation) < STANDARD_ERRORS, row
 

@@ -100,7 +100,7 @@ def collision_rates(
 ) -> tuple[CollisionRate, ...]:
     """Measured collision rates of all ordered pairs of species, in 1/time.
 
-    expected: rates by theory, from `expected_rates`. A few collisions tell no more of their error than as many samples.
+    expected: rates by theory, from `expected_rates`. n collisions count as n samples at most.
     """
     counts = window.of(impacts.collisions)
 

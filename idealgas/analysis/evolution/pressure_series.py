@@ -157,7 +157,7 @@ def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
 def draw_state(ax: "Panel", series: PressureSeries, rest_start: float | None) -> None:
     """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat.
 
-    A piston only fluctuates from the time `rest_start` on, which is one point.
+    From the time `rest_start` on, if there is one, a piston only fluctuates: all of that is one point.
     """
     from idealgas.analysis.core.style import COLOURS, GREY
 

@@ -129,7 +129,7 @@ class ProfileAnalysis(Analysis):
         end: float | None = None,
         progress: Progress | None = None,
     ) -> Profile:
-        """Measure density and temperature in strips across an axis, and the heat that walls give, between two times.
+        """Measure density, temperature and pressure in strips across an axis, and the heat of walls, between two times.
 
         Averages are taken over states at least as far apart as the events of a disc. Theory, if there is one, is a
         uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille's for a flow, to which
@@ -164,7 +164,7 @@ class ProfileAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Profile) -> list[Table]:
-        """Tables of density and temperature of each species in every strip, and of the heat given by walls."""
+        """Tables of density, temperature and pressure in every strip, and of the heat given by walls."""
         axis, edges = result.axis, result.edges
         strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
         tables = []
@@ -177,7 +177,7 @@ class ProfileAnalysis(Analysis):
         if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
             tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
         for name, parts in result.pressure.items():
-            tables.append(estimates(f"pressure P_{name} (energy/length²)", zip(strips, parts, strict=True)))
+            tables.append(estimates(f"Pressure P_{name} (energy/length²)", zip(strips, parts, strict=True)))
         tests = [
             (name, Number(test.chi_squared, ".4g"), Number(test.waves, "d"), Number(test.p_value, ".3g"))
             for name, test in _tests(result)
@@ -213,7 +213,7 @@ class ProfileAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Profile) -> "Figure":
-        """Picture of density, temperature and flow against position, theory dashed; spin temperature as crosses."""
+        """Picture of density, temperature, pressure and flow, theory dashed; spin temperature as crosses."""
         from idealgas.analysis.core.style import BLACK, Strips, curve_style, panels
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:

@@ -192,7 +192,7 @@ class ScatteringAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Scattering) -> "Figure":
-        """Picture of F, F_s, S(k, ω), both currents, G_s and the non-Gaussian parameter; free flight dashed."""
+        """Picture of F, F_s, S(k, ω), both currents, α₂, G_s and G_d; free flight and normal distribution dashed."""
         from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
 
         figure, (density, own, spectrum, along, across, gaussian, displaced, others) = panels(4, 2)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.pairs import BINS_A_DIAMETER, REACH, inside
 from idealgas.analysis.scattering.displacements import Curve, curve_of
@@ -33,8 +34,8 @@ class Distinct:
 def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Distinct, ...]:
     """Distinct part after each of some times, at distances up to half the box; none for a single disc.
 
-    The log is read once, and an instant is kept until its last pair is counted. Errors are by SEGMENTS parts of the
-    window.
+    Places are relative to the centre of mass. The log is read once, and an instant is kept until its last pair is
+    counted. Errors are by SEGMENTS parts of the window.
     """
     number, diameter = len(log.discs), 2 * float(log.discs.radius[0])
     if number < 2:
@@ -47,10 +48,11 @@ def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Di
     first, second = at.searchsorted(starts), at.searchsorted(later)
     counts = np.empty((len(times), len(starts), bins))
     places: dict[int, np.ndarray] = {}
+    box, drift = np.array(log.box), centre_of_mass_velocity(log)
     for now, state in enumerate(log.frames(at)):
-        places[now] = inside(log, state.position)
+        places[now] = inside(log, np.remainder(state.position - drift * at[now], box))
         for k, start in np.argwhere(second == now):
-            counts[k, start] = _pairs(places[first[start]], places[now], np.array(log.box), edges)
+            counts[k, start] = _pairs(places[first[start]], places[now], box, edges)
         waiting = first[second.max(axis=0) > now]
         places = {n: one for n, one in places.items() if n in waiting}
     densities = counts.reshape(len(times), SEGMENTS, STARTS, bins).mean(axis=2) / (number * math.pi * np.diff(edges**2))

@@ -188,7 +188,7 @@ def test_a_report_shows_every_section_or_says_why_not(make):
     assert [section.title for section in sections if section.left_out] == NOT_ALONE
     assert all(section.picture and section.caption and section.tables for section in sections if not section.left_out)
     (order,) = [section.left_out for section in sections if section.title == "Order"]
-    assert order == "a dilute gas; `idealgas order` measures it all the same"
+    assert order == "the packing fraction is below 0.5"
     without_positions = make_sections(make('run.method="monte_carlo"', "run.v_ref=5"))
     left_out = {section.title: section.left_out for section in without_positions if section.left_out}
     assert left_out["Profile"] == "discs of this method have no positions"

@@ -7,6 +7,7 @@ import pytest
 
 import idealgas
 from idealgas import open_log, parse_scene, simulate
+from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.scattering.distinct import distinct_parts
 from idealgas.analysis.scattering.sums import correlation, read, segments
 from idealgas.errors import NotApplicableError, UserError
@@ -126,18 +127,30 @@ def test_displacements_are_normal_but_for_their_non_gaussian_parameter(found):
         assert (np.abs(one.density.value - expected) < 5 * one.density.error + 0.1 * one.gaussian)[near].all()
 
 
-def test_other_discs_against_states(log, found, monkeypatch):
-    """Pairs by hand, at the instants of two segments of two starts each."""
+@pytest.mark.parametrize("drift", [(0.0, 0.0), (3.0, -0.5)])
+def test_other_discs_against_states(tmp_path, log, drift, monkeypatch):
+    """Pairs by hand, at the instants of two segments of two starts each, relative to the centre of mass."""
+    state = log.state_at(0.0)
+    discs = [
+        f"{{ position = {place}, velocity = {velocity}, radius = 0.5, mass = 2 }}"
+        for place, velocity in zip(state.position.tolist(), (state.velocity + drift).tolist(), strict=True)
+    ]
+    box = GAS[GAS.index("[box]") : GAS.index("[[species]]")]
+    simulate(parse_scene(f"disc = [{', '.join(discs)}]\nrun.until = 20\n{box}"), tmp_path / "run.h5")
+    window = Window(np.array([5.0, 20.0]), 0, False)
     monkeypatch.setattr("idealgas.analysis.scattering.distinct.SEGMENTS", 2)
     monkeypatch.setattr("idealgas.analysis.scattering.distinct.STARTS", 2)
-    times = [0.0, 0.3, 2.0]
-    for time, one in zip(times, distinct_parts(log, found.window, times), strict=True):
+    times, starts = [0.0, 0.3, 2.0], np.linspace(5, 18, 4)
+    with open_log(tmp_path / "run.h5") as moving:
+        found = distinct_parts(moving, window, times)
+        places = {at: moving.state_at(at).position for start in starts for at in start + np.array(times)}
+    for time, one in zip(times, found, strict=True):
         edges = np.append(one.distance - 0.025, one.distance[-1] + 0.025)
         assert edges == pytest.approx(np.arange(len(edges)) / 20, abs=1e-12)
         assert edges[-1] <= 4.5 < edges[-1] + 0.05
         parts = []
-        for start in np.linspace(found.window.start, found.window.end - 2, 4):
-            apart = log.state_at(start + time).position - log.state_at(start).position[:, None]
+        for start in starts:
+            apart = places[start + time] - time * np.array(drift) - places[start][:, None]
             apart -= 9 * np.rint(apart / 9)
             distance = np.hypot(*np.moveaxis(apart, 2, 0))[~np.eye(30, dtype=bool)]
             parts.append(np.histogram(distance, edges)[0] / (30 * math.pi * np.diff(edges**2)))

@@ -69,6 +69,6 @@ def test_slow_structure_is_said(name, start, tmp_path):
 
 def test_window_of_many_relaxation_times_needs_no_caveat():
     edges = [0.0, 100.0]
-    assert of_window(Window(edges, 0, True, relaxation=2.5)) == ()
+    assert of_window(Window(edges, 0, True, relaxation=2.3)) == ()
     (said,) = of_window(Window(edges, 0, True, relaxation=10.0))
     assert "in t = 10; the window is only 10 times as long" in said
