@@ -223,8 +223,8 @@ class ScatteringAnalysis(Analysis):
         displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
         displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
         displaced.legend()
-        for index, other in enumerate(result.distinct):
-            colour, line, _ = curve_style(index)
+        for index, other in enumerate(result.distinct, -1):  # colours of G_s, and another one for t = 0
+            colour, line, _ = curve_style(index % len(result.distinct))
             x, y, error = other.distance, other.density.value, other.density.error
             others.plot(x, y, line, color=colour, label=f"t = {other.time:.4g}")
             others.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
