@@ -89,7 +89,7 @@ def test_a_side_reflects_where_its_step_says_so(tmp_path):
 @pytest.mark.usefixtures("uncompiled")
 def test_a_piston_falls_on_the_parabolas_of_its_pressures(tmp_path):
     """X = 9 - t²/4 up to 2, then 8 - s - s²/2 up to 3, then 6.5 - 2 s - s²/8: a = -P L/m is -1/2, -1, -1/4."""
-    piston = "[piston]\nside = 'top'\nposition = 9\nmass = 4\npressure = [[0, 1], [2, 2], [3, 0.5]]\n"
+    piston = "[[piston]]\nside = 'top'\nposition = 9\nmass = 4\npressure = [[0, 1], [2, 2], [3, 0.5]]\n"
     scene = "[box]\nsize = [2, 10]\n" + piston + DISC.format([1, 1], [0, 0]) + "[run]\nuntil = 4\n"
     summary = simulate(parse_scene(scene), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
