@@ -157,7 +157,7 @@ def energy_at_piston(disc, energy, piston):
 def is_piston_side(side, piston):
     """Whether a piston stands in place of this side of the box."""
     if piston is not None:
-        for k in range(piston.shape[0]):
+        for k in range(len(piston)):
             if side == piston[k].wall:
                 return True
     return False

@@ -15,7 +15,7 @@ from idealgas.log.flights import Flights
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "steps.toml"
 FALLS = GOLDEN.with_name("gravity-in-steps.toml")
-DRIVEN = "piston={ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8, -0.125]] }"
+DRIVEN = "piston=[{ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8, -0.125]] }]"
 DISC = "[[disc]]\nposition = {}\nvelocity = {}\nradius = 0.5\n"
 
 
@@ -145,7 +145,7 @@ def test_later_scenes_have_the_rest_of_the_steps():
     assert scene.wall[0].later(1.0).absences == ((0, 3.5), (6, 9))
     assert scene.box.left.after(4.0).thermal == ((0, 0.25), (2, "reflecting"), (5, 1))
     assert scene.box.left.after(7.0).thermal == ((0, "reflecting"), (2, 1))
-    assert scene.piston.after(8.0).pressure == 1
+    assert scene.piston[0].after(8.0).pressure == 1
     assert description(scene.box.left.thermal) == "2, 0.25 from t = 3, reflecting from t = 6, 1 from t = 9"
     assert (value_at(3.0, 7), steps_of(3.0)) == (3, ((0, 3),))
     assert value_at(((0.0, 1.0), (2.0, 3.0)), np.array([0, 1.9, 2, 5])).tolist() == [1, 1, 3, 3]

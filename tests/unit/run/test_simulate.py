@@ -108,7 +108,7 @@ def test_the_work_of_a_piston_is_pressure_times_area(tmp_path):
     _, log = run(tmp_path / "run.h5", scene)
     with log:
         work = log.observables["wall_energy"][1][-1, 1]
-        speed = scene.piston.velocity
+        speed = scene.piston[0].velocity
         after = np.concatenate([b.velocity[b.kind == 3, 0] for b in log.chunks()])
         before = 2 * speed - after
         assert len(after) > 100
