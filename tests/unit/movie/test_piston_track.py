@@ -16,7 +16,7 @@ run.until = {until}
 PISTONS = {
     "with a mass": 'piston = [{side = "right", position = 12, mass = 10, pressure = 3}]\n',
     "of given velocity": 'piston = [{side = "left", position = 2, velocity = 0.1}]\n',
-    "that falls": 'piston = [{side = "top", position = 8, mass = 30, pressure = 1}]\ngravity.acceleration = [0, -0.5]\n',
+    "that falls": 'piston = [{side = "top", position = 8, mass = 30, pressure = 1}]\ngravity.acceleration=[0, -0.5]\n',
 }
 
 
