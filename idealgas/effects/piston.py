@@ -229,8 +229,8 @@ def _values(pistons: np.ndarray, local_time: float) -> Values:
     return dict(zip(_columns(len(pistons)), motion.T.copy(), strict=True))
 
 
-def _restore(pistons: np.ndarray, values: Mapping[str, Any]) -> None:
-    pistons["x"], pistons["v"] = (values[column.name] for column in _columns(len(pistons)))
+def _restore(pistons: np.ndarray, arrays: Mapping[str, np.ndarray]) -> None:
+    pistons["x"], pistons["v"] = (arrays[column.name] for column in _columns(len(pistons)))
     pistons["t"] = 0.0
 
 

@@ -76,11 +76,11 @@ def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
 
 def test_the_room_beyond_a_piston_is_shown_in_part():
     place = np.array([4.0, 5.0])
-    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0)
-    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0)
-    assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
-    assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
-    assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
+    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0, "piston")
+    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0, "piston")
+    assert view((40.0, 10.0), [right]) == ((0.0, 6.25), (0.0, 10.0))
+    assert view((40.0, 10.0), [left]) == ((33.75, 40.0), (0.0, 10.0))
+    assert view((40.0, 10.0), []) == ((0.0, 40.0), (0.0, 10.0))
 
 
 def test_discs_are_where_they_are():
@@ -127,7 +127,7 @@ def test_the_name_of_a_piston_at_the_edge_is_whole():
     made = scene()
     track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, 10.0]), np.zeros(2), (0.0, 10.0), 1.0, "piston")
     for size in ((720, 720), (360, 360)):
-        painter = Painter(made, make_gas(made), track, 1.0, size=size, panel="none")
+        painter = Painter(made, make_gas(made), [track], 1.0, size=size, panel="none")
         frame = painter.paint(STATE._replace(time=4.0))[..., :3]
         assert frame[:, -2:].min() > WHITE
 
