@@ -167,9 +167,9 @@ def states_of(found):
 
 def test_states_of_a_piston_are_a_path_until_it_rests(make):
     """One with a mass oscillates first; all the time at rest is one point. One that is moved never rests."""
-    moved = evolution(make("piston={ velocity = -0.1 }"))
+    moved = evolution(make("piston=[{ velocity = -0.1 }]"))
     assert (moved.rest_start, len(states_of(moved))) == (None, len(moved.pressure.area))
-    log = make("piston={ position = 12, mass = 100, pressure = 3 }", "species.count=60", "run.until=1000")
+    log = make("piston=[{ position = 12, mass = 100, pressure = 3 }]", "species.count=60", "run.until=1000")
     found, late = evolution(log), evolution(log, 500.0)
     assert 100 < found.rest_start < 500 < late.rest_start
     areas = states_of(found)
