@@ -143,11 +143,6 @@ class InnerPiston(LastingWall):
     radius = 0.0
 
 
-def called(number: int) -> list[str]:
-    """What the pistons of a scene are called in messages: by their tables, or a single one the piston."""
-    return ["the piston"] if number == 1 else [f"piston {k}" for k in range(number)]
-
-
 def inner_pistons(tables: Sequence[Piston | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
     """The inner ones of the pistons of a box of a size; None for invalid ones."""
     found = []

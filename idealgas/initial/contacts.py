@@ -9,9 +9,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
-from idealgas.effects.piston import called
 from idealgas.physics.arc_geometry import nearest_points
 from idealgas.scene import Scene
+from idealgas.scene.checks.piston import called
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 

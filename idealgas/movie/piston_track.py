@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.columns import Kind
-from idealgas.effects.piston import NAME
 from idealgas.log import Log
 
 
@@ -59,5 +58,5 @@ def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
         return None
     pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
     limits = (0.0, log.box[piston.axis])
-    name = piston.wall if piston.inner else NAME
+    name = piston.name or "piston"
     return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward, name)

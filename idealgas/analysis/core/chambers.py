@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from idealgas.columns import SIDES, axis_of, sides_across
-from idealgas.effects.piston import NAME, Piston
 from idealgas.log import Log
+from idealgas.scene import Piston
 from idealgas.scene.walls import walls_inside
 
 
@@ -59,8 +59,8 @@ def outward(log: Log, piston: Piston) -> float:
 
 def piston_names(log: Log) -> list[str]:
     """Names of the pistons for tables and pictures: of a single one piston, of several by their sides or own names."""
-    walls = ["inner" if piston.wall == NAME else piston.wall for piston in log.scene.piston]
-    return [NAME] if len(walls) == 1 else [f"{wall} piston" for wall in walls]
+    walls = [(piston.name or "inner") if piston.inner else piston.wall for piston in log.scene.piston]
+    return ["piston"] if len(walls) == 1 else [f"{wall} piston" for wall in walls]
 
 
 def beside_pistons(log: Log) -> dict[str, np.ndarray]:

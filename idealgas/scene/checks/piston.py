@@ -12,7 +12,6 @@ import numpy as np
 
 from idealgas.columns import SIDES, opposite, sides_across
 from idealgas.effects.periodic import PERIODIC
-from idealgas.effects.piston import called
 from idealgas.effects.schedule import description, steps_of
 from idealgas.effects.vibration import reach
 from idealgas.physics.arc_geometry import bounds
@@ -26,6 +25,11 @@ WAY = ", as one with a mass comes as near to the other side as the discs let it"
 
 CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
+
+
+def called(number: int) -> list[str]:
+    """What the pistons of a scene are called in messages: by their tables, or a single one the piston."""
+    return ["the piston"] if number == 1 else [f"piston {k}" for k in range(number)]
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
