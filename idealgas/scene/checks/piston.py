@@ -157,7 +157,9 @@ def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 def track(scene: Document, piston: Piston) -> list[tuple[float, float]]:
     """Times and positions of a piston of given velocity: at the start, at changes of its velocity and at the end."""
-    until, place = scene.run.until or 0.0, piston.start(scene.box.size)
+    until, place = scene.run.until, piston.start(scene.box.size)
+    if until is None:  # then it has no velocity
+        return [(0.0, place)]
     steps = [(time, velocity) for time, velocity in piston.velocity_steps if time < until]
     found = [(0.0, place)]
     for (time, velocity), later in zip(steps, [*(time for time, _ in steps[1:]), until], strict=True):
