@@ -156,11 +156,11 @@ def test_equilibrium(run):
             )
         )
     )
-    place = (log.observables["piston_position"][1][5:] - 0.04) / (20 - 0.08)
+    place = (log.observables["piston_position"][1][5:, 0] - 0.04) / (20 - 0.08)
     agrees(mean(place, 4 / 10), 0.03)
     centred = place - 0.4
     agrees(estimate(lambda s, square: square - s**2, centred, centred**2, theory=0.4 * 0.6 / 11), 0.1)
-    energy = 0.75 * log.observables["piston_velocity"][1][5:] ** 2
+    energy = 0.75 * log.observables["piston_velocity"][1][5:, 0] ** 2
     agrees(mean(energy / 8, 1 / 17), 0.05)
 
 
