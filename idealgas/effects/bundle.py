@@ -142,12 +142,12 @@ def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
     }
 
 
-def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray], values: Mapping[str, Any]) -> None:
-    """Set the effects to the state of a checkpoint, given by its columns: arrays per disc, and values."""
+def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray]) -> None:
+    """Set the effects to the state of a checkpoint, given by its columns."""
     for column, own in disc_state(effects).items():
         own[:] = arrays[column.name]
     for effect, state in present(effects):
-        effect.restore(state, values)
+        effect.restore(state, arrays)
 
 
 def with_own_sums(effects: Effects) -> Effects:

@@ -107,10 +107,10 @@ class EffectSpec(Generic[State]):
             events are in event rows and snapshots too.
         constants: values per disc that the log stores once, at the start.
         values: values of the effect as a whole that checkpoints and samples store, at a local time.
-        restore: set the state to the values of a checkpoint, by name, except for arrays per disc.
+        restore: set the state to the values of a checkpoint, by name, except for those per disc.
         energy: the part of the energy that it adds.
         gives_energy: whether walls give energy to discs, or take some.
-        own_wall: number of a wall whose energy is part of the energy account, so that it gives none from outside.
+        own_walls: numbers of walls whose energy is part of the energy account, so that they give none from outside.
         counted: total number of its own events.
         begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run, and has a
             length (time).
@@ -139,10 +139,10 @@ class EffectSpec(Generic[State]):
     disc_state: Callable[[State], Arrays] = lambda state: {}
     constants: Callable[[State], Arrays] = lambda state: {}
     values: Callable[[State, float], Values] = lambda state, local_time: {}
-    restore: Callable[[State, Mapping[str, Any]], None] = lambda state, values: None
+    restore: Callable[[State, Mapping[str, np.ndarray]], None] = lambda state, arrays: None
     energy: EnergyPart[State] | None = None
     gives_energy: Callable[[State], bool] = lambda state: False
-    own_wall: Callable[[State], int | None] = lambda state: None
+    own_walls: Callable[[State], tuple[int, ...]] = lambda state: ()
     counted: Column | None = None
     begin_epoch: Callable[[State, float, float], None] = lambda state, time, length: None
     end_epoch: Callable[[State, float], None] = lambda state, length: None

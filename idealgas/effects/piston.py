@@ -1,6 +1,6 @@
-"""A piston: a wall across the whole box that moves."""
+"""Pistons: walls across the whole box that move."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -24,18 +24,15 @@ from idealgas.jit import aligned
 from idealgas.physics import piston as law
 from idealgas.physics.steering import reversed_velocity
 from idealgas.state import Gas
-from idealgas.toml.issues import Key
-from idealgas.toml.table import Number, Positive, Rectangle
-
-POSITION = Column("piston_position", "f8", (), "length")
-VELOCITY = Column("piston_velocity", "f8", (), "length/time")
+from idealgas.toml.issues import Issue, Key
+from idealgas.toml.table import Number, Positive, Rectangle, Word
 
 NAME = "piston"
-"""Name of an inner piston among the walls."""
+"""Name of an inner piston among the walls, unless it has another."""
 
 
 class Piston(SteppedTable):
-    """`[piston]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
+    """`[[piston]]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
 
     It moves at a given velocity, or it has a mass, and gravity along its axis. One that replaces a side is pressed on
     the gas by the external pressure. At a side of the box it is reflected.
@@ -61,6 +58,7 @@ class Piston(SteppedTable):
     pressure: NotNegativeInSteps | None = Field(
         default=None, description="external pressure, force per length of the piston, or steps [[0, P], [t, P], …]"
     )
+    name: Word | None = Field(default=None, description='unique word for the log, of an inner one; "piston" if absent')
 
     @property
     def axis(self) -> int:
@@ -70,7 +68,7 @@ class Piston(SteppedTable):
     @property
     def wall(self) -> str:
         """Name of the wall that it is: the side that it replaces, or its own name."""
-        return (self.side or "right") if self.inner is None else NAME
+        return (self.side or "right") if self.inner is None else self.name or NAME
 
     @property
     def outward(self) -> float:
@@ -130,7 +128,7 @@ class Piston(SteppedTable):
     @property
     def times(self) -> tuple[float, ...]:
         """Times after 0 at which its pressure or velocity changes."""
-        return tuple(time for time, _ in (*steps_of(self.pressure)[1:], *steps_of(self.velocity)[1:]))
+        return tuple(time for time, _ in (*steps_of(self.pressure)[1:], *self.velocity_steps[1:]))
 
 
 @dataclass(frozen=True)
@@ -140,93 +138,120 @@ class InnerPiston(LastingWall):
     start: Point
     end: Point
     action: str
-    name: str = NAME
-    place: Key = ("piston", "position")
+    name: str
+    place: Key
     radius = 0.0
 
 
-def inner_piston(table: Piston | None, size: tuple[float, float]) -> tuple[InnerPiston, ...]:
-    """The inner piston of a box of a size, if there is one."""
-    if table is None or table.inner is None:
-        return ()
-    place = table.start(size)
-    ends = ((place, 0.0), (place, size[1])) if table.axis == 0 else ((size[0], place), (0.0, place))
-    return (InnerPiston(*ends, table.action),)
+def inner_pistons(tables: Sequence[Piston | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
+    """The inner ones of the pistons of a box of a size; None for invalid ones."""
+    found = []
+    for k, table in enumerate(tables):
+        if table is not None and table.inner is not None:
+            place = table.start(size)
+            ends = ((place, 0.0), (place, size[1])) if table.axis == 0 else ((size[0], place), (0.0, place))
+            found.append(InnerPiston(*ends, table.action, table.wall, ("piston", k, "position")))
+    return tuple(found)
 
 
 def _properties(tables: Tables) -> Properties:
-    piston = tables.own
+    pistons = [piston for piston in tables.own if piston is not None]
+    times = tuple(sorted({time for piston in pistons for time in piston.times}))
     return Properties(
         uniform=False,
         fixed_walls=False,
         allows_monte_carlo=False,
         allows_time_steps=False,
         is_scalable=False,
-        driven=piston.mass is None and any(velocity for _, velocity in steps_of(piston.velocity)),
+        driven=any(p.mass is None and any(velocity for _, velocity in p.velocity_steps) for p in pistons),
         drives_discs=True,
-        changes=piston.times,
-        varies=bool(piston.times),
+        changes=times,
+        varies=bool(times),
     )
 
 
+def _check(tables: Tables) -> Iterator[Issue]:
+    """Names of pistons that are taken, or without use."""
+    walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
+    taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
+    for k, piston in enumerate(tables.own):
+        if piston is None:
+            continue
+        key: Key = ("piston", k, "name" if piston.name else "inner")
+        if piston.inner is None and piston.name:
+            yield Issue((key,), "a name of a piston at a side", f'"{piston.name}"', "none: it has that of the side")
+        elif piston.inner and piston.wall in taken:
+            yield Issue((key,), f"name taken by {taken[piston.wall]}", f'"{piston.wall}"', "a name of its own")
+        elif piston.inner:
+            taken[piston.wall] = "another piston"
+
+
 def _make(tables: Tables, start: Start) -> np.ndarray:
-    table, size = tables.own, tables.size
-    piston = aligned(1, law.PISTON)
-    record = piston[0]
-    record.x, record.v = table.start(size), table.start_velocity
-    record.a = table.acceleration(size, start.acceleration)
-    record.m, record.length, record.axis = table.mass or 0.0, size[table.axis], table.axis
-    record.outward = table.outward
-    record.wall = FIRST_SEGMENT - 1 + len(tables.walls) if table.inner else SIDES.index(table.wall)
-    return piston
+    size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.own)
+    pistons = aligned(len(tables.own), law.PISTON)
+    for record, table in zip(pistons, tables.own, strict=True):
+        record.x, record.v = table.start(size), table.start_velocity
+        record.a = table.acceleration(size, start.acceleration)
+        record.m, record.length, record.axis = table.mass or 0.0, size[table.axis], table.axis
+        record.outward = table.outward
+        record.wall = first if table.inner else SIDES.index(table.wall)
+        first += table.inner is not None
+    return pistons
 
 
 def _schedule(tables: Tables, start: Start) -> Iterator[Change]:
-    """Changes of the acceleration, item 0, and of a given velocity, item 1."""
-    for time, _ in steps_of(tables.own.pressure)[1:]:
-        yield Change(time, 0, tables.own.acceleration(tables.size, start.acceleration, time))
-    for time, velocity in steps_of(tables.own.velocity)[1:]:
-        yield Change(time, 1, velocity)
+    """Changes of piston k: of its acceleration, item 2 k, and of its given velocity, item 2 k + 1."""
+    for k, table in enumerate(tables.own):
+        for time, _ in steps_of(table.pressure)[1:]:
+            yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))
+        for time, velocity in table.velocity_steps[1:]:
+            yield Change(time, 2 * k + 1, velocity)
 
 
-def _change(piston: np.ndarray, item: int, value: float) -> np.ndarray:
-    piston[0]["v" if item else "a"] = value
-    return piston
+def _change(pistons: np.ndarray, item: int, value: float) -> np.ndarray:
+    pistons[item // 2]["v" if item % 2 else "a"] = value
+    return pistons
 
 
-def _values(piston: np.ndarray, local_time: float) -> Values:
-    position, velocity = law.piston_motion(piston[0], local_time)
-    return {POSITION: float(position), VELOCITY: float(velocity)}
+def _columns(number: int) -> tuple[Column, Column]:
+    """Columns of the positions and velocities of pistons."""
+    places = Column("piston_position", "f8", (number,), "length")
+    return places, Column("piston_velocity", "f8", (number,), "length/time")
 
 
-def _restore(piston: np.ndarray, values: Mapping[str, Any]) -> None:
-    record = piston[0]
-    record.x, record.v, record.t = values[POSITION.name], values[VELOCITY.name], 0.0
+def _values(pistons: np.ndarray, local_time: float) -> Values:
+    motion = np.array([law.piston_motion(record, local_time) for record in pistons])
+    return dict(zip(_columns(len(pistons)), motion.T.copy(), strict=True))
 
 
-def _energy(piston: np.ndarray, _: Gas, local_time: float) -> float:
-    record = piston[0]
-    position, velocity = law.piston_motion(record, local_time)
-    return float(law.piston_energy(record.m, position, velocity, record.a)) if record.m > 0 else 0.0
+def _restore(pistons: np.ndarray, arrays: Mapping[str, np.ndarray]) -> None:
+    pistons["x"], pistons["v"] = (arrays[column.name] for column in _columns(len(pistons)))
+    pistons["t"] = 0.0
 
 
-def _own_wall(piston: np.ndarray) -> int | None:
-    return int(piston[0].wall) if piston[0].m > 0 else None
+def _energy(pistons: np.ndarray, _: Gas, local_time: float) -> float:
+    motions = ((piston, law.piston_motion(piston, local_time)) for piston in pistons if piston.m > 0)
+    return float(sum(law.piston_energy(piston.m, x, v, piston.a) for piston, (x, v) in motions))
 
 
-def _reverse(piston: np.ndarray) -> None:
-    """Turn a piston with a mass around; a given velocity stays."""
-    if piston[0].m > 0:
-        piston[0].v = reversed_velocity(piston[0].v)
+def _own_walls(pistons: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(record.wall) for record in pistons if record.m > 0)
+
+
+def _reverse(pistons: np.ndarray) -> None:
+    """Turn pistons with a mass around; a given velocity stays."""
+    for record in pistons:
+        if record.m > 0:
+            record.v = reversed_velocity(record.v)
 
 
 def _sample(side: float) -> str:
     pressure = 1.2 * SAMPLE_DISCS / side**2
-    return f'[piston]\nside = "top"\nposition = {0.95 * side!r}\nmass = 100\npressure = {pressure!r}\n'
+    return f'[[piston]]\nside = "top"\nposition = {0.95 * side!r}\nmass = 100\npressure = {pressure!r}\n'
 
 
 def _inner_sample(side: float) -> str:
-    return '[piston]\ninner = "x"\nmass = 100\n'
+    return '[[piston]]\ninner = "x"\nmass = 100\n'
 
 
 EFFECT = EffectSpec(
@@ -234,16 +259,18 @@ EFFECT = EffectSpec(
     field="piston",
     key="piston",
     table=Piston,
-    description="[piston]: side or inner, position, velocity or mass, pressure",
+    many=True,
+    description="[[piston]] tables",
     properties=_properties,
+    check=_check,
     make=_make,
     schedule=_schedule,
     change=_change,
     values=_values,
     restore=_restore,
     energy=EnergyPart("piston", _energy),
-    gives_energy=lambda piston: True,
-    own_wall=_own_wall,
+    gives_energy=lambda pistons: True,
+    own_walls=_own_walls,
     reverse=_reverse,
     end_epoch=law.end_epoch,
     samples=(Sample(tables=_sample), Sample("inner", tables=_inner_sample)),

@@ -36,16 +36,17 @@ from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
-from idealgas.physics.piston import is_inner, is_piston_side, piston_contact, stop_contact
+from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.shear import crossing_time
 from idealgas.physics.vibration import contact_with_side
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
+INNER = -1  # side of inner pistons
 
 
 @inline
 def wall_event(record, i, effects, length_x, length_y, best):
-    """The earlier of the event `best` and disc i's next contact with a side, the piston or a wall segment.
+    """The earlier of the event `best` and disc i's next contact with a side, a piston or a wall segment.
 
     best: an event as `next_event` returns it. length_x, length_y: size of the box.
     """
@@ -53,19 +54,13 @@ def wall_event(record, i, effects, length_x, length_y, best):
     for side in range(4):
         along_y = side >= 2
         if is_piston_side(side, effects.piston):
-            time = piston_hit(disc, effects.piston, effects.gravity)
-            if time < best[0]:
-                best = (time, PISTON, i, side, 0, 0)
+            best = piston_event(disc, i, side, effects.piston, effects.gravity, best)
         elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
             time = side_time(disc, side, length_y if along_y else length_x, effects.shear, effects)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
     best = segment_event(disc, i, effects.segments, effects, best)
-    if is_inner(effects.piston):
-        time = piston_hit(disc, effects.piston, effects.gravity)
-        if time < best[0]:
-            best = (time, PISTON, i, 0, 0, 0)
-    return best
+    return piston_event(disc, i, INNER, effects.piston, effects.gravity, best)
 
 
 @inline
@@ -77,11 +72,15 @@ def side_time(disc, side, length, shear, effects):
 
 
 @inline
-def piston_hit(disc, piston, gravity):
-    """Local time at which a disc touches the piston; NEVER if it does not or there is no piston."""
+def piston_event(disc, i, side, piston, gravity, best):
+    """The earlier of the event `best` and disc i's next contact with the piston at a side, or with the INNER ones."""
     if piston is not None:
-        return piston_contact(disc, piston[0], gravity)
-    return NEVER
+        for k in range(piston.shape[0]):
+            if piston[k].outward == 0.0 if side == INNER else piston[k].wall == side:
+                time = piston_contact(disc, piston[k], gravity)
+                if time < best[0]:
+                    best = (time, PISTON, i, k, 0, 0)
+    return best
 
 
 @inline
@@ -188,11 +187,12 @@ def boundary_crossing_event(record, i, periodic, gravity, now, best):
 
 @inline
 def stop_event(piston, best):
-    """The earlier of the event `best` and the piston's arrival at a side, which comes first if they tie."""
+    """The earlier of the event `best` and a piston's arrival at a side, which comes first if they tie."""
     if piston is not None:
-        time = stop_contact(piston[0])
-        if time <= best[0] and time < NEVER:
-            return time, STOP, 0, 0, 0, 0
+        for k in range(piston.shape[0]):
+            time = stop_contact(piston[k])
+            if time < best[0] or (time == best[0] and time < NEVER and best[1] != STOP):
+                best = (time, STOP, k, 0, 0, 0)
     return best
 
 
@@ -255,7 +255,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             cross_boundary(effects.periodic, i, partner, image_x)
             continue
         if what == STOP:
-            resolve_stop(time, effects.piston)
+            resolve_stop(i, time, effects.piston)
             continue
         disc = record[i]
         clock = epoch_start + time
@@ -277,7 +277,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             rows += write_hit(batch, rows, clock, i, BATH, THERMOSTAT, disc, effects)
             thermostat_collisions += 1
         else:
-            wall = resolve_piston(disc, i, time, effects.piston, effects)
+            wall = resolve_piston(disc, i, partner, time, effects.piston, effects)
             rows += write_hit(batch, rows, clock, i, -1 - wall, PISTON, disc, effects)
         events += 1
         events_at_this_time = check_clock(time, now, events_at_this_time, record.shape[0])

@@ -103,7 +103,7 @@ def driving_speed(gas: Gas, effects: Effects) -> float:
     if effects.gravity is not None:
         speed += math.sqrt(math.hypot(*effects.gravity) * sum(gas.box))
     if effects.piston is not None:
-        speed += abs(float(effects.piston[0].v))
+        speed += float(np.abs(effects.piston["v"]).max())
     if effects.vibration is not None:
         speed += 0.5 * float((effects.vibration.acceleration * effects.vibration.half).max())
     if effects.thermostat is not None:
@@ -116,5 +116,4 @@ def driving_energy(gas: Gas, effects: Effects) -> float:
     """Largest energy that a piston with a mass can bring on its way across the box; 0 without one."""
     if effects.piston is None:
         return 0.0
-    piston = effects.piston[0]
-    return abs(float(piston.m * piston.a)) * max(gas.box)
+    return float(np.abs(effects.piston["m"] * effects.piston["a"]).max()) * max(gas.box)

@@ -13,7 +13,7 @@ from idealgas.physics.gravity import potential_energy
 from idealgas.physics.motion import advance
 from idealgas.physics.periodic import enter_opposite_side, place_in_space, wrap
 from idealgas.physics.permeable import passage_of
-from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, is_inner, normal_of_piston
+from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, normal_of_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.shear import add_flow, cross, enter_common_frame, leave_common_frame
 from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
@@ -217,10 +217,10 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 
 @inline
-def resolve_piston(disc, own, time, piston, effects):
-    """Collide a disc with the piston at a local time; return the number of the piston among the walls."""
+def resolve_piston(disc, own, k, time, piston, effects):
+    """Collide a disc with piston k at a local time; return the number of the piston among the walls."""
     if piston is not None:
-        p = piston[0]
+        p = piston[U(k)]
         arrive(disc, time, effects)
         advance_piston(p, time)
         energy = energy_of(disc, own, effects.rotation)
@@ -234,7 +234,7 @@ def resolve_piston(disc, own, time, piston, effects):
         finish(disc, own, time, effects)
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         face = np.int64(p.wall)
-        if is_inner(piston):
+        if p.outward == 0.0:
             face = face_of(face, nx + ny < 0.0)
         record_hit(effects.flow, disc, face, nx, ny, abs(ny), abs(nx), px, py)
         return p.wall
@@ -242,10 +242,10 @@ def resolve_piston(disc, own, time, piston, effects):
 
 
 @inline
-def resolve_stop(time, piston):
-    """Reverse the piston's velocity at a side of the box, which it reaches at a local time."""
+def resolve_stop(k, time, piston):
+    """Reverse the velocity of piston k at a side of the box, which it reaches at a local time."""
     if piston is not None:
-        p = piston[0]
+        p = piston[U(k)]
         advance_piston(p, time)
         p.v = -p.v
         p.count += np.uint32(1)

@@ -9,7 +9,7 @@ from idealgas.jit import in_python
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.physics.shear import flow_at
 from idealgas.scene import Scene, SceneError, Species
-from idealgas.scene.checks.piston import crushed_issues
+from idealgas.scene.checks.piston import chamber_issues
 from idealgas.scene.sizes import Values, mass_of
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
@@ -21,8 +21,8 @@ FEW, SPARSE = 1000, 0.3
 def make_gas(scene: Scene) -> Gas:
     """Discs of a scene at time 0: given ones have the first ids, then each species in the order of the file.
 
-    SceneError if the discs cannot be placed, if one is in static contact with a wall or the piston to which it is
-    pressed, or if the piston crushes some.
+    SceneError if the discs cannot be placed, if one is in static contact with a wall or a piston to which it is
+    pressed, or if pistons crush some or have none between them.
     """
     radius, mass, species, names = disc_constants(scene)
     position, velocity = _positions(scene, radius), _all_velocities(scene, mass, species, names)
@@ -41,7 +41,7 @@ def make_gas(scene: Scene) -> Gas:
         species_names=names,
         solid_area=scene.solids.area,
     )
-    if issues := [*static_contact_issues(scene, gas), *crushed_issues(scene, gas.position, gas.radius)]:
+    if issues := [*static_contact_issues(scene, gas), *chamber_issues(scene, gas.position, gas.radius)]:
         raise SceneError(scene.report(issues))
     return gas
 

@@ -11,12 +11,13 @@ import numpy as np
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.physics.arc_geometry import nearest_points
 from idealgas.scene import Scene
+from idealgas.scene.checks.piston import called
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 
 
 def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
-    """One issue for each explicit disc and each species with a disc in static contact with a wall or the piston."""
+    """One issue for each explicit disc and each species with a disc in static contact with a wall or a piston."""
     reported = set()
     for name, in_contact in _supports(scene, gas):
         for i in np.flatnonzero(in_contact):
@@ -34,7 +35,7 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     for side, name in enumerate(SIDES):
         axis = axis_of(side)
         pressed = _first(accelerations @ OUTWARD[side]) > 0 or hasattr(scene.box.sides[side], "vibrating")
-        if pressed and not properties.periodic[axis] and not (scene.piston and scene.piston.wall == name):
+        if pressed and not properties.periodic[axis] and name not in (piston.wall for piston in scene.piston):
             coordinate = gas.position[:, axis]
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
@@ -47,15 +48,14 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
                     touches &= ~np.array([wall.lets_pass(name) for name in gas.species_names])[gas.species]
                 pressed = _first(accelerations @ normal.T) < 0
                 yield f"wall {k}", touches & pressed & ((normal * gas.velocity).sum(axis=1) == 0)
-    if scene.piston:
-        piston = scene.piston
+    for piston, name in zip(scene.piston, called(len(scene.piston)), strict=True):
         outward = piston.outward_from(gas.position, gas.box)
         gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
         own = np.array([piston.acceleration(gas.box, acceleration) for acceleration in accelerations])
         relative = _first(own - accelerations[:, piston.axis])
         pressed = outward * relative < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == piston.start_velocity)
-        yield "the piston", in_contact & pressed
+        yield name, in_contact & pressed
 
 
 def _first(accelerations: np.ndarray) -> np.ndarray:

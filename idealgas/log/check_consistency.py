@@ -23,6 +23,7 @@ def check_scene(
     gravity: tuple[float, float],
     kinds: Collection[Kind],
     columns: Collection[str],
+    pistons: int,
 ) -> None:
     """Check that a scene has the discs, walls and effects of a log.
 
@@ -34,6 +35,7 @@ def check_scene(
         gravity: acceleration, length/time².
         kinds: kinds of events of the log, of those that only some logs have.
         columns: names of the columns of events and checkpoints.
+        pistons: number of pistons of the log.
 
     Raises:
         ValueError: if something differs.
@@ -51,6 +53,8 @@ def check_scene(
             raise ValueError(f"not of discs with this discs/{name}")
     if [(wall.name, wall.start, wall.end) for wall in number_walls(scene)] != list(walls):
         raise ValueError("other walls than walls/name and walls/endpoints")
+    if len(scene.piston) != pistons:
+        raise ValueError(f"{len(scene.piston)} pistons (checkpoints/piston_position: {pistons})")
     if scene.properties.acceleration != gravity:
         raise ValueError(f"gravity {scene.properties.acceleration} (gravity: {gravity})")
     if scene.properties.periodic != periodic:

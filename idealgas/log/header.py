@@ -69,7 +69,9 @@ class LogHeader:
             scene = parse_scene(self.scene_text, "scene", discs=self.given, changes=self.changes)
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
             discs, kinds = self._stored_discs, self._file.kinds
-            check_scene(scene, discs, self.walls, self.periodic, self._first_gravity, kinds, columns)
+            check_scene(
+                scene, discs, self.walls, self.periodic, self._first_gravity, kinds, columns, self._file.pistons
+            )
             return scene
 
         return self._file.checked(read, "runs/scene")

@@ -178,6 +178,8 @@ class LogFile:
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
         self.kinds = {kind for name, kind in schema.COUNTED.items() if name in self.names("checkpoints")}
+        place = self._columns.get("checkpoints/piston_position")
+        self.pistons = 0 if place is None else math.prod(place.chunk[1:])
         self.rules = self._rules(size)
 
     def _check_size(self, size: int, expected: int) -> None:
@@ -191,7 +193,7 @@ class LogFile:
         check_sizes(*counts, size)
         box = self._column_at("box")
         size_of_box = box_of(box.whole(0) if box.chunk == (2,) else np.empty(0))
-        rules = Rules(size_of_box, *counts, self.kinds)
+        rules = Rules(size_of_box, *counts, self.kinds, self.pistons)
         for table, names in self._names.items():
             columns = {f"{table}/{name}": self._columns[f"{table}/{name}"] for name in names}
             rules.check_table(columns, self.rows(table), size)

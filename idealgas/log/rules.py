@@ -74,7 +74,13 @@ class Rules:
     """
 
     def __init__(
-        self, box: tuple[float, float], discs: int, species: int, walls: int, kinds: Collection[Kind] = ()
+        self,
+        box: tuple[float, float],
+        discs: int,
+        species: int,
+        walls: int,
+        kinds: Collection[Kind] = (),
+        pistons: int = 0,
     ) -> None:
         """Declare the columns and ranges of a log.
 
@@ -84,6 +90,7 @@ class Rules:
             species: number of species.
             walls: number of walls.
             kinds: kinds of events of this log, of those that only some logs have.
+            pistons: number of pistons.
         """
         self._others = [PARTNERS[kind] for kind in kinds if kind in PARTNERS]
         self._escapes = Kind.ESCAPED in kinds
@@ -106,7 +113,8 @@ class Rules:
         }
         each = lambda column: column._replace(shape=(discs, *column.shape))  # noqa: E731
         shapes = {name: (len(parts),) for name, parts in components(["wall"] * walls).items()}
-        self._observed = {**shapes, "pair_collisions": (species, species)}
+        moving = dict.fromkeys(("piston_position", "piston_velocity"), (pistons,))
+        self._observed = {**shapes, **moving, "pair_collisions": (species, species)}
         self._declared = {
             **{column.name: column for column in (BOX, GRAVITY)},
             **{f"discs/{column.name}": each(column) for column in (*EVENT_COLUMNS, *DISC_COLUMNS, ID)},
@@ -120,6 +128,7 @@ class Rules:
             **{f"events/{column.name}": column for column in EVENT_COLUMNS},
             **{f"checkpoints/{column.name}": each(column) for column in EVENT_COLUMNS},
             **{f"checkpoints/{column.name}": column for column in CHECKPOINT_COLUMNS},
+            **{f"checkpoints/{name}": Column(name, "f8", shape) for name, shape in moving.items()},
             **{f"particles/discs/{column.name}/value": each(column) for column in EVENT_COLUMNS},
         }
         self._edges: dict[str, tuple[list[int], list[tuple[float, float]]]] = {}

@@ -65,12 +65,12 @@ def _in_step(time: float, rate: float, size: tuple[float, float]) -> bool:
 
 
 def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
-    """TOML text of a scene that starts from the state of a log, with piston and values in time as they are then.
+    """TOML text of a scene that starts from the state of a log, with pistons and values in time as they are then.
 
     time: of the state. source: path of the log in the scene.
 
     Raises:
-        UserError: if the log has no positions at this time, or if the piston is not known then.
+        UserError: if the log has no positions at this time, or if its pistons are not known then.
     """
     time, scene = _instant(log, time), log.scene
     columns, _ = _columns(log, time)
@@ -90,8 +90,8 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
         update["steering"] = scene.steering.after(time)
     if scene.thermostat is not None:
         update["thermostat"] = scene.thermostat.after(time)
-    if scene.piston is not None:
-        update["piston"] = _piston_at(log, scene, time)
+    if scene.piston:
+        update["piston"] = _pistons_at(log, scene, time)
     return dump_document(scene.model_copy(update=update))
 
 
@@ -104,13 +104,15 @@ def _known(wall: Any, species: Container[str]) -> Any:
     return wall.model_copy(update=update)
 
 
-def _piston_at(log: Log, scene: Scene, time: float) -> Any:
-    """Table of the piston at a time at which the log has a sample."""
+def _pistons_at(log: Log, scene: Scene, time: float) -> tuple[Any, ...]:
+    """Tables of the pistons at a time at which the log has a sample."""
     times, position = log.observables["piston_position"]
     k = int(np.abs(times - time).argmin()) if len(times) else 0
     if not len(times) or times[k] != time:
         nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
         raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
-    velocity = float(log.observables["piston_velocity"][1][k])
-    own = {"velocity": velocity} if scene.piston.mass is not None else {}
-    return scene.piston.after(time).model_copy(update={"position": float(position[k]), **own})
+    found, velocities = [], log.observables["piston_velocity"][1][k]
+    for piston, place, velocity in zip(scene.piston, position[k], velocities, strict=True):
+        own = {"velocity": float(velocity)} if piston.mass is not None else {}
+        found.append(piston.after(time).model_copy(update={"position": float(place), **own}))
+    return tuple(found)

@@ -20,7 +20,7 @@ from idealgas.files import check_output, written
 from idealgas.log import Log, LogState, takes_path
 from idealgas.movie.gif import GifWriter
 from idealgas.movie.painter import CROSSING, Colouring, Look, Painter
-from idealgas.movie.piston_track import piston_track
+from idealgas.movie.piston_track import piston_tracks
 
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
@@ -108,7 +108,7 @@ def animate(
         )
     if (size := look.get("size")) is not None:
         look["size"] = size[0] // 2 * 2, size[1] // 2 * 2
-    painter = Painter(log.scene, log.discs, piston_track(log, first, last), thermal, (first, last), some, **look)
+    painter = Painter(log.scene, log.discs, piston_tracks(log, first, last), thermal, (first, last), some, **look)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with written(path, kind, force) as part, writer(part, *painter.size, fps) as write:
         for k, state in enumerate(log.frames(times)):
@@ -140,7 +140,7 @@ def paint_frame(
     times = log.start_time, log.end_time
     some = _some_states(log, *times)
     _, thermal = speeds(log, some)
-    painter = Painter(log.scene, log.discs, piston_track(log, *times), thermal, times, some, **look)
+    painter = Painter(log.scene, log.discs, piston_tracks(log, *times), thermal, times, some, **look)
     grows = look.get("trails") or look.get("panel") == "left-right"
     for state in log.frames(np.linspace(log.start_time, time, HISTORY) if grows else np.array([time])):
         frame = painter.paint(state)

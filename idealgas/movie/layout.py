@@ -1,5 +1,6 @@
 """Layout of a frame: its size, and where the box and the panel beside it are."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from idealgas.movie.piston_track import PistonTrack
@@ -44,10 +45,10 @@ def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = Tr
     return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), other, scale)
 
 
-def view(box: tuple[float, float], piston: PistonTrack | None) -> tuple[tuple[float, float], tuple[float, float]]:
+def view(box: tuple[float, float], pistons: Sequence[PistonTrack]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Shown part of a box along x and y, length: the box, but of the room beyond a piston only BEYOND the gas."""
     shown = [(0.0, box[0]), (0.0, box[1])]
-    if piston is not None:
+    for piston in pistons:
         low, high = shown[piston.axis]
         if piston.outward > 0:
             high = min(high, BEYOND * float(piston.place.max()))

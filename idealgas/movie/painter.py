@@ -97,7 +97,7 @@ class Painter:
         self,
         scene: Scene,
         gas: Gas,
-        piston: PistonTrack | None,
+        pistons: Sequence[PistonTrack],
         rms_speed: float,
         times: tuple[float, float] = (0.0, 1.0),
         some: Sequence[LogState] = (),
@@ -122,10 +122,10 @@ class Painter:
         self._ink, self._line = (INK, INK) if dark else ("black", COLOURS[0])
         self._dark = dark
         self._flow = centre_of_mass_velocity(scene, gas)
-        self._scene, self._inside, self._gas, self._piston = scene, walls_inside(scene), gas, piston
+        self._scene, self._inside, self._gas, self._pistons = scene, walls_inside(scene), gas, pistons
         self._colouring, self._shows = colouring, panel
         self._panel: Panel | None = None
-        self._view = view(gas.box, piston)
+        self._view = view(gas.box, pistons)
         self.size = size or frame_size(self._view, panel != "none")
         self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}
         self._periodic = np.array(scene.properties.periodic)
@@ -202,16 +202,17 @@ class Painter:
             (line,) = axes.plot(*line_of, dash, color=self._ink, linewidth=1.5, animated=True)
             self._walls.append(line)
             self._names.append(self._name(axes, wall.label, max(wall.start, wall.end, key=lambda end: end[1])))
-        if self._piston is not None:
-            draw = axes.axhline if self._piston.axis else axes.axvline
-            self._piston_line = draw(0, color=COLOURS[1], linewidth=3, animated=True)
-            farthest = float(self._piston.place.max()) * (self._piston.axis == 0)
-            self._piston_name = self._name(axes, "piston", (farthest, self._view[1][1]))
+        self._piston_lines: list[tuple[Line2D, Annotation]] = []
+        for piston in self._pistons:
+            line = (axes.axhline if piston.axis else axes.axvline)(0, color=COLOURS[1], linewidth=3, animated=True)
+            farthest = float(piston.place.max()) * (piston.axis == 0)
+            self._piston_lines.append((line, self._name(axes, piston.name, (farthest, self._view[1][1]))))
 
     def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
         """Name of a wall beside a place of it, on the side with more room, legible on discs."""
         beyond = (self._figure.bbox.width - axes.transData.transform(place)[0]) * DPI / self._figure.dpi
-        right = place[0] < sum(self._view[0]) / 2 or (self._piston and self._piston.axis == 0 and beyond > NAME)
+        crossed = any(piston.axis == 0 for piston in self._pistons)
+        right = place[0] < sum(self._view[0]) / 2 or (crossed and beyond > NAME)
         halo = [Stroke(linewidth=3, foreground=axes.get_facecolor()), Normal()]
         return axes.annotate(
             name, place, (6 if right else -6, -6), textcoords="offset points", ha="left" if right else "right",
@@ -278,11 +279,11 @@ class Painter:
         return self._trails
 
     def _walls_at(self, time: float) -> list[Artist]:
-        """Draw the walls that are present at a time, as gates may be open, and the piston."""
+        """Draw the walls that are present at a time, as gates may be open, and the pistons."""
         drawn = list(compress((*self._walls, *self._names), [wall.is_there(time) for wall in self._inside] * 2))
-        if self._piston is None:
-            return drawn
-        place = self._piston.at(time)
-        self._piston_line.set(**{"ydata" if self._piston.axis else "xdata": [place] * 2})
-        self._piston_name.xy = (self._view[0][0], place) if self._piston.axis else (place, self._view[1][1])
-        return [*drawn, self._piston_line, self._piston_name]
+        for piston, (line, name) in zip(self._pistons, self._piston_lines, strict=True):
+            place = piston.at(time)
+            line.set(**{"ydata" if piston.axis else "xdata": [place] * 2})
+            name.xy = (self._view[0][0], place) if piston.axis else (place, self._view[1][1])
+            drawn += [line, name]
+        return drawn

@@ -12,7 +12,7 @@ from idealgas.log import Log
 class PistonTrack:
     """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: (K,), length/time². limits: of its way.
 
-    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides.
+    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides. name: in pictures.
     """
 
     axis: int
@@ -21,6 +21,7 @@ class PistonTrack:
     pull: np.ndarray
     limits: tuple[float, float]
     outward: float
+    name: str
 
     def at(self, time: float) -> float:
         """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""
@@ -31,24 +32,25 @@ class PistonTrack:
         return float(np.clip(place, *self.limits))
 
 
-def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
-    """Track of the piston between two times, from its samples and from the positions of discs that hit it.
+def piston_tracks(log: Log, start: float, end: float) -> list[PistonTrack]:
+    """Tracks between two times of the pistons whose positions are known."""
+    tracks = (_track(log, k, start, end) for k in range(len(log.scene.piston)))
+    return [track for track in tracks if track is not None]
 
-    None if there is no piston, or if its position is not known.
-    """
-    piston = log.scene.piston
-    if piston is None:
-        return None
+
+def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
+    """Track of piston k, from its samples and from the positions of discs that hit it; None if it is not known."""
+    piston, own = log.scene.piston[k], [wall.name for wall in log.walls].index(log.scene.piston[k].wall)
     sampled, places = log.observables["piston_position"]
     if not len(sampled):
         return None
     first = max(int(sampled.searchsorted(start, "right")) - 1, 0)
     some = slice(first, int(sampled.searchsorted(end)) + 1)
-    times, knots = [sampled[some]], [places[some]]
+    times, knots = [sampled[some]], [places[some, k]]
     outward = piston.outward_from(log.discs.position, log.box)
-    names, last = ("time", "disc", "kind", "position"), max(end, float(sampled[some][-1]))
+    names, last = ("time", "disc", "kind", "partner", "position"), max(end, float(sampled[some][-1]))
     for rows in log.chunks(names, log.row_at(sampled[first]), log.row_at(last, "right")):
-        hits = rows.kind == Kind.PISTON
+        hits = (rows.kind == Kind.PISTON) & (rows.partner == -1 - own)
         times.append(rows.time[hits])
         knots.append(rows.position[hits, piston.axis] + (outward * log.discs.radius)[rows.disc[hits]])
     time, unique = np.unique(np.concatenate(times), return_index=True)
@@ -56,4 +58,5 @@ def piston_track(log: Log, start: float, end: float) -> PistonTrack | None:
         return None
     pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
     limits = (0.0, log.box[piston.axis])
-    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward)
+    name = piston.name or "piston"
+    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward, name)

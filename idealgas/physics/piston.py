@@ -44,10 +44,11 @@ def piston_motion(piston, time):
     return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
 
 
-def end_epoch(piston: np.ndarray, length: float) -> None:
-    """Move the piston to the end of an epoch of some length (time), from where its local time counts."""
-    advance_piston(piston[0], length)
-    piston[0].t = 0.0
+def end_epoch(pistons: np.ndarray, length: float) -> None:
+    """Move all pistons to the end of an epoch of some length (time), from where their local time counts."""
+    for piston in pistons:
+        advance_piston(piston, length)
+        piston.t = 0.0
 
 
 @inline
@@ -154,17 +155,11 @@ def energy_at_piston(disc, energy, piston):
 
 @inline
 def is_piston_side(side, piston):
-    """Whether the piston stands in place of this side of the box."""
+    """Whether a piston stands in place of this side of the box."""
     if piston is not None:
-        return side == piston[0].wall
-    return False
-
-
-@inline
-def is_inner(piston):
-    """Whether the piston has gas on both sides."""
-    if piston is not None:
-        return piston[0].outward == 0.0
+        for k in range(len(piston)):
+            if side == piston[k].wall:
+                return True
     return False
 
 

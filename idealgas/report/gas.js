@@ -22,8 +22,9 @@ class Gas {
     this.tick = unpack("event_tick", Uint32Array);
     this.disc = unpack("event_disc", Uint32Array);
     this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
-    this.knots = unpack("piston_tick", Uint32Array); // when it is known where the piston is
-    this.places = unpack("piston_place", Float32Array);
+    this.pistons = head.pistons.map((piston, k) => ({ // with when it is known where it is
+      ...piston, knots: unpack("piston_tick_" + k, Uint32Array), places: unpack("piston_place_" + k, Float32Array),
+    }));
     this.number = this.radius.length;
     this.last = new Int32Array(this.number).fill(-1);
     this.row = 0; // events that have happened
@@ -113,10 +114,10 @@ class Gas {
     return Math.hypot(this.vx[i] - x, this.vy[i] - y);
   }
 
-  // Where the piston is: on a parabola between the times at which that is known.
-  pistonPlace() {
-    const { pull, limits } = this.head.piston, knot = k => ({ time: this.timeOf(this.knots[k]), place: this.places[k] });
-    const last = this.knots.length - 1, next = Math.min(firstAfter(last, k => knot(k).time, this.time), last);
+  // Where a piston is: on a parabola between the times at which that is known.
+  placeOf({ pull, limits, knots, places }) {
+    const knot = k => ({ time: this.timeOf(knots[k]), place: places[k] });
+    const last = knots.length - 1, next = Math.min(firstAfter(last, k => knot(k).time, this.time), last);
     const a = knot(next - 1), b = knot(next);
     const before = this.time - a.time, after = this.time - b.time, step = b.time - a.time;
     if (!(step > 0)) return a.place;

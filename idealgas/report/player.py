@@ -22,7 +22,7 @@ from idealgas.log import Log
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.painter import COLOUR_MAP, CROSSING, PALEST
 from idealgas.movie.panels import BRIGHTEST, FASTEST
-from idealgas.movie.piston_track import piston_track
+from idealgas.movie.piston_track import piston_tracks
 from idealgas.scene.walls import NumberedWall, walls_inside
 
 MOST_ROWS = 600_000
@@ -70,7 +70,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
     moving = state.velocity[state.inside]
     thermal = _rms_speed(moving - flow)
     kinds = classes(gas)
-    piston, knots = _piston(log, first, last)
+    pistons, knots = _pistons(log, first, last)
     shades = colormaps[COLOUR_MAP]
     head = {
         "box": gas.box,
@@ -104,7 +104,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
             }
             for w in walls_inside(log.scene)
         ],
-        "piston": piston,
+        "pistons": pistons,
     }
     arrays = {"radius": gas.radius, "mass": gas.mass, "species": gas.species.astype("<u2"), "velocity": state.velocity}
     if log.has_positions:
@@ -129,16 +129,17 @@ def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
     return [[opens, min(closes, 2 * last + 1)] for opens, closes in wall.absences]
 
 
-def _piston(log: Log, first: float, last: float) -> tuple[dict[str, Any] | None, dict[str, np.ndarray]]:
-    """Axis, acceleration and limits of the piston, and the known times and positions between two times."""
-    track = piston_track(log, first, last)
-    if track is None:
-        return None, {}
-    inside = (track.time > first) & (track.time < last)
-    time = np.concatenate(([first], track.time[inside], [last]))
-    place = np.concatenate(([track.at(first)], track.place[inside], [track.at(last)]))
-    head = {"axis": track.axis, "pull": float(track.pull[0]), "limits": track.limits}
-    return head, {"piston_tick": _ticks(time, first, last), "piston_place": place}
+def _pistons(log: Log, first: float, last: float) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """Axis, acceleration, limits and name of each piston, and the known times and positions between two times."""
+    heads: list[dict[str, Any]] = []
+    knots: dict[str, np.ndarray] = {}
+    for k, track in enumerate(piston_tracks(log, first, last)):
+        inside = (track.time > first) & (track.time < last)
+        time = np.concatenate(([first], track.time[inside], [last]))
+        place = np.concatenate(([track.at(first)], track.place[inside], [track.at(last)]))
+        heads.append({"axis": track.axis, "pull": float(track.pull[0]), "limits": track.limits, "name": track.name})
+        knots |= {f"piston_tick_{k}": _ticks(time, first, last), f"piston_place_{k}": place}
+    return heads, knots
 
 
 def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:

@@ -103,12 +103,12 @@ class DiscView {
       const from = wall.points[0], to = wall.points.at(-1), [x, y] = from[1] > to[1] ? from : to; // the upper end
       this.label(pen, theme, open ? `${wall.name}, open` : wall.name, inset + x * scale, height - y * scale);
     }
-    if (head.piston) {
+    for (const piston of gas.pistons) {
       pen.lineWidth = 3;
       pen.strokeStyle = head.pistonColour;
-      const place = gas.pistonPlace() * scale, along = head.piston.axis === 0;
+      const place = gas.placeOf(piston) * scale, along = piston.axis === 0;
       this.line(pen, along ? [[place, 0], [place, height]] : [[0, place], [boxX * scale, place]], inset, height);
-      this.label(pen, theme, "piston", inset + (along ? place : 0), along ? 0 : height - place);
+      this.label(pen, theme, piston.name, inset + (along ? place : 0), along ? 0 : height - place);
     }
     pen.lineWidth = 1;
     if (head.gravity.some(g => g !== 0)) this.arrow(pen, theme, head.gravity, width - inset - 28, 28);

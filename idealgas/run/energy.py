@@ -16,10 +16,10 @@ class Energy(NamedTuple):
         kinetic: of the discs.
         rotational: of the discs.
         potential: of the discs.
-        piston: kinetic and potential energy of a piston with a mass.
+        piston: kinetic and potential energy of the pistons with a mass.
         given: energy that walls, a heat bath and changes of a potential in time gave, less the losses at walls; without
-            a piston with a mass, whose energy is counted itself.
-        lost: energy lost in collisions between discs, and with a piston with a mass.
+            pistons with a mass, whose energy is counted itself.
+        lost: energy lost in collisions between discs, and with pistons with a mass.
     """
 
     kinetic: float
@@ -36,7 +36,7 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> float:
-        """Conserved energy: discs and piston plus losses, less the energy given from outside."""
+        """Conserved energy: discs and pistons plus losses, less the energy given from outside."""
         return self.gas + self.piston + self.lost - self.given
 
     @property
@@ -52,7 +52,7 @@ def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
     others = [values(sums) for sums in (effects.bath_energy, effects.step_energy) if sums is not None]
     given, lost = float(by_wall.sum() + sum(map(np.sum, others))), float(losses[:1].sum())
     for effect, state in present(effects):
-        if (wall := effect.own_wall(state)) is not None:
+        for wall in effect.own_walls(state):
             given -= float(by_wall[wall : wall + 1].sum())
             lost += float(losses[1 + wall : 2 + wall].sum())
     return Energy(gas.kinetic_energy, **energy_parts(effects, gas, local_time), given=given, lost=lost)

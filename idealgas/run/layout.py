@@ -103,8 +103,8 @@ def whole_state(effects: Effects) -> Values:
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
     """Return the gas at a checkpoint and set the effects to their state there; gas: the same discs at any time."""
-    bundle.restore_effects(effects, checkpoint.arrays, checkpoint.values)
     arrays = checkpoint.arrays
+    bundle.restore_effects(effects, arrays)
     restore_sums(effects, arrays)
     return replace(gas, position=arrays.get("position", gas.position).copy(), velocity=arrays["velocity"].copy())
 

@@ -54,7 +54,7 @@ def threads_of(scene: Scene, gas: Gas) -> Threads:
     """Threads that will share the work of a run; gas: the discs at time 0."""
     if scene.run.method != "event_driven":
         return Threads()
-    return expected_threads(gas, _threads(scene.run), scene.piston is not None, bool(scene.properties.shear))
+    return expected_threads(gas, _threads(scene.run), bool(scene.piston), bool(scene.properties.shear))
 
 
 def simulate(

@@ -11,7 +11,7 @@ from pydantic import Field, PrivateAttr, create_model
 
 from idealgas.effects import EFFECTS
 from idealgas.effects.effect import EffectSpec, Tables
-from idealgas.effects.piston import inner_piston
+from idealgas.effects.piston import Piston, inner_pistons
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
@@ -86,8 +86,13 @@ class Document(_DiscsAndEffects):
 
     @property
     def walls(self) -> tuple[Any, ...]:
-        """Walls inside the box: the segments, then an inner piston where it is at the start."""
-        return (*self.segments, *(inner_piston(self.piston, self.box.size) if self.box else ()))
+        """Walls inside the box: the segments, then inner pistons where they are at the start."""
+        return (*self.segments, *(inner_pistons(self.piston, self.box.size) if self.box else ()))
+
+    @property
+    def pistons(self) -> tuple[Piston, ...]:
+        """Valid tables [[piston]]."""
+        return tuple(piston for piston in self.piston if piston is not None)
 
     @property
     def solids(self) -> Solids:
@@ -104,7 +109,7 @@ class Document(_DiscsAndEffects):
         """Area of the room without solids and fixed discs, length²."""
         left, bottom, right, top = self.room
         area, solid = (right - left) * (top - bottom), self.solids.area
-        return area - solid if area > solid else area  # else some of it is beyond the piston
+        return area - solid if area > solid else area  # else some of it is beyond a piston
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
@@ -165,7 +170,9 @@ class Document(_DiscsAndEffects):
     @property
     def room(self) -> Rectangle:
         """Space of the gas at the start, x0, y0, x1, y1, length."""
-        return self.piston.room(self.box.size) if self.piston else (0.0, 0.0, *self.box.size)
+        rooms = [(0.0, 0.0, *self.box.size), *(piston.room(self.box.size) for piston in self.pistons)]
+        left, bottom, right, top = zip(*rooms, strict=True)
+        return max(left), max(bottom), min(right), min(top)
 
     @property
     def lattice(self) -> TriangularLattice | None:
@@ -178,9 +185,9 @@ class Document(_DiscsAndEffects):
         """Largest acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
         gravity = self.properties.strongest_pull
         body_force = list(gravity)
-        if self.piston:
-            axis = self.piston.axis
-            body_force[axis] = max(body_force[axis], self.piston.acceleration(self.box.size, gravity), key=abs)
+        for piston in self.pistons:
+            pull = piston.acceleration(self.box.size, gravity)
+            body_force[piston.axis] = max(body_force[piston.axis], pull, key=abs)
         return body_force[0], body_force[1]
 
     @property

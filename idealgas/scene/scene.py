@@ -15,7 +15,6 @@ from idealgas.scene.discs import Discs, Given
 from idealgas.scene.document import Document
 from idealgas.scene.start import StartError, read_start
 from idealgas.toml.issues import Issue, SceneError, as_issues, table_at
-from idealgas.toml.table import Table
 from idealgas.toml.text import Origin
 
 
@@ -51,11 +50,12 @@ class Scene(Document, metaclass=_SceneType):
 
     def resolved(self) -> Self:
         """This scene with the defaults that follow from other tables."""
-        update: dict[str, Table] = {}
-        if self.piston:
-            own = {} if self.piston.inner else {"side": self.piston.wall}
-            own |= {"position": self.piston.start(self.box.size)}
-            update["piston"] = self.piston.model_copy(update=own)
+        update: dict[str, Any] = {}
+        sides = [{} if piston.inner else {"side": piston.wall} for piston in self.piston]
+        update["piston"] = tuple(
+            piston.model_copy(update={**side, "position": piston.start(self.box.size)})
+            for piston, side in zip(self.piston, sides, strict=True)
+        )
         if self.restitution and not self.restitution.elastic:
             update["restitution"] = self.restitution.model_copy(update={"contact_duration": self.contact_duration})
         if self.start and self.start.digest is None:

@@ -1,4 +1,4 @@
-"""Walls of a scene by number: the sides of the box are walls 0 to 3, segments and an inner piston follow."""
+"""Walls of a scene by number: the sides of the box are walls 0 to 3, segments and inner pistons follow."""
 
 from __future__ import annotations
 
@@ -65,8 +65,7 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
     walls = []
     for name, ends, side in zip(SIDES, side_ends(scene.box.size), scene.box.sides, strict=True):
         action = side if isinstance(side, str) else side.action
-        if scene.piston and scene.piston.wall == name:
-            action = scene.piston.action
+        action = next((piston.action for piston in scene.piston if piston.wall == name), action)
         walls.append(NumberedWall(name, *ends, action))
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
         name = wall.name or f"wall {k}"

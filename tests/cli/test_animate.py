@@ -27,7 +27,7 @@ def folder(tmp_path_factory):
         "run": SCENE,
         "homogeneous": SCENE + 'run.method = "monte_carlo"\n',
         "eventless": SCENE + "log.events = false\n",
-        "piston": SCENE + 'piston = {side = "right", position = 15, mass = 20, pressure = 0.1}\n',
+        "piston": SCENE + 'piston = [{side = "right", position = 15, mass = 20, pressure = 0.1}]\n',
     }
     for name, text in logs.items():
         simulate(parse_scene(text), folder / f"{name}.h5")

@@ -97,7 +97,7 @@ def test_a_new_scene_is_valid(tmp_path):
     assert called("new", "gas", folder=tmp_path).returncode == 2
 
 
-@pytest.mark.parametrize("table", ["[[disc]]", "[[wall]]", "[gravity]", "[rotation]", "[restitution]", "[piston]"])
+@pytest.mark.parametrize("table", ["[[disc]]", "[[wall]]", "[gravity]", "[rotation]", "[restitution]", "[[piston]]"])
 def test_every_table_of_the_template_is_valid_without_its_comment_signs(table):
     before, block = (CONFIGS / "template.toml").read_text(encoding="utf-8").split(f"\n# {table}")
     lines, after = block.split("\n\n", 1)

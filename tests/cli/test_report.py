@@ -129,7 +129,7 @@ def test_the_first_words(pages):
     [
         ((), ["Pressure", "Temperature", "Speeds"]),
         (("gravity.acceleration=[0, -0.2]",), ["Profile"]),
-        (("piston={side='right', position=15.0, mass=20.0, pressure=1.5}",), ["Evolution"]),
+        (("piston=[{side='right', position=15.0, mass=20.0, pressure=1.5}]",), ["Evolution"]),
         (("species.0.region=[0,0,10,10]", "wall=[{from=[10,0], to=[10,10], opens_at=1.0}]"), ["Evolution"]),
         (("restitution.normal=0.95",), ["Cooling", "Evolution"]),
         (tuple(f'box.{side}="periodic"' for side in ("left", "right", "bottom", "top")), ["Transport"]),

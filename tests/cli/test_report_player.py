@@ -14,7 +14,7 @@ from selenium.webdriver.support.ui import Select, WebDriverWait
 
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.log import open_log
-from idealgas.movie.piston_track import piston_track
+from idealgas.movie.piston_track import piston_tracks
 
 pytestmark = pytest.mark.slow
 
@@ -36,10 +36,12 @@ def test_positions_are_those_of_the_log(opened, pages, name):
 def test_the_piston_is_where_discs_hit_it(opened, pages):
     browser = opened("piston")
     with open_log(pages("piston")[0]) as log:
-        track = piston_track(log, 0.0, log.end_time)
+        (track,) = piston_tracks(log, 0.0, log.end_time)
         for time in np.linspace(0, log.end_time, 41):
             seek(browser, time)
-            assert browser.execute_script("return player.gas.pistonPlace()") == pytest.approx(track.at(time), abs=1e-4)
+            assert browser.execute_script("return player.gas.placeOf(player.gas.pistons[0])") == pytest.approx(
+                track.at(time), abs=1e-4
+            )
 
 
 def test_a_gate_is_drawn_while_it_is_there(opened):

@@ -89,7 +89,7 @@ CASES = {
     ),
     "work of a piston": Case(
         "[box]\nsize = [5, 4]\n[thermostat]\ntemperature = 1\nrate = 0.5\n[[species]]\nname = 'gas'\ncount = 2\n"
-        f"radius = 0.5\ntemperature = 1\n[piston]\nvelocity = {STROKES}\n",
+        f"radius = 0.5\ntemperature = 1\n[[piston]]\nvelocity = {STROKES}\n",
         ("until = 2200", "until = 8800"),
         estimates.strokes,
         "events = false\n",
@@ -165,7 +165,7 @@ CASES = {
         steady=False,
     ),
     "held piston": Case(
-        "[box]\nsize = [20, 5]\n[piston]\nposition = 10\nmass = 50\npressure = 1.5\n[[species]]\nname = 'gas'\n"
+        "[box]\nsize = [20, 5]\n[[piston]]\nposition = 10\nmass = 50\npressure = 1.5\n[[species]]\nname = 'gas'\n"
         "count = 50\nradius = 0.05\ntemperature = 1\n",
         ("until = 3000", "until = 6000"),
         estimates.gauges,

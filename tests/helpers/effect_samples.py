@@ -33,7 +33,7 @@ BOX = (12.0, 9.0)
 ARC = (4.2, 8.2), (5.7, 7.3), (7.2, 8.2)
 
 NAMES = (*(effect.field for effect in EFFECTS), "gates", "inner")
-"""Effects by their fields of the bundle; gates are segments too, and an inner piston is the piston where both are."""
+"""Effects by their fields of the bundle; gates are segments too, and inner is an inner piston, before one at a side."""
 
 
 def make_gas(seed: int, columns: int = 4, rows: int = 3) -> Gas:
@@ -67,9 +67,9 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         arcs = [None] * len(walls) + [arc_through(*ARC)]
         walls += [(*ARC[0], *ARC[2], True)]
     if "gates" in names:
-        first, field = len(walls), [effect.field for effect in EFFECTS].index("segments")
+        gate, field = len(walls), [effect.field for effect in EFFECTS].index("segments")
         walls += [(8.6, 4.5, 8.6, 8.8, True), (0.5, 8.6, 3.5, 8.6, False)]
-        schedule = [(3.0, field, first, 0.0), (4.0, field, first + 1, 1.0), (7.0, field, first, 1.0)]
+        schedule = [(3.0, field, gate, 0.0), (4.0, field, gate + 1, 1.0), (7.0, field, gate, 1.0)]
     table = np.array(walls).reshape(-1, 5)
     inertia = 0.5 * gas.mass * gas.radius**2
     moves, inner, inside = not names.isdisjoint({"piston", "inner"}), "inner" in names, len(walls) + ("inner" in names)
@@ -77,12 +77,13 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     temperature[2] = 1.5
     passage = np.resize(np.array([[FROM_LEFT, FROM_RIGHT], [OPEN, SOLID]], np.uint8), (len(walls), 2))
     passage[2:] = SOLID
-    piston = aligned(1, PISTON)
-    piston[0].x, piston[0].a, piston[0].m, piston[0].length, piston[0].wall = 11.5, -0.8, 20.0, BOX[0], 1
-    piston[0].outward = 1.0
+    pistons = aligned(max(inner + ("piston" in names), 1), PISTON)
+    pistons.length = BOX[0]
+    last = pistons[-1]
+    last.x, last.a, last.m, last.wall, last.outward = 11.5, -0.8, 20.0, 1, 1.0
     if inner:
-        piston[0].x, piston[0].a, piston[0].m, piston[0].outward = 4.2, 0.0, 3.0, 0.0
-        piston[0].wall = FIRST_SEGMENT + len(walls)
+        first = pistons[0]
+        first.x, first.a, first.m, first.outward, first.wall = 4.2, 0.0, 3.0, 0.0, FIRST_SEGMENT + len(walls)
     own: dict[str, Any] = {
         "gravity": lambda: Gravity(0.1, -0.4),
         "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
@@ -93,7 +94,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         "rotation": lambda: Rotation(draw.normal(size=n), inertia, 0.6, 0.3),
         "restitution": lambda: Restitution(0.9, 0.95, 1e-6, np.full(n, -np.inf)),
         "thermal": lambda: Thermal(temperature, np.uint64(seed), np.zeros(n, np.uint64)),
-        "piston": lambda: piston,
+        "piston": lambda: pistons,
         "thermostat": lambda: make_thermostat(n, seed),
     }
     there = {*names, *(["segments"] if walls else []), *(["piston"] if inner else [])}
@@ -154,7 +155,7 @@ def allowed(names: set[str]) -> bool:
     moving = names & {"piston", "inner"}
     crossed = "periodic" in names and moving and names & {"thermal", "vibration"}
     sheared = "shear" in names and not names <= {"shear", "periodic", "rotation", "restitution", "thermostat"}
-    return len(moving) < 2 and not crossed and not sheared
+    return not crossed and not sheared
 
 
 def log_of(gas: Gas, effects: Effects, method, stop: Stop, rows: int) -> list[np.ndarray]:

@@ -43,12 +43,13 @@ SPEEDS = (1.0, 1e-8, 1e8, 2.0**10, 1e-3, 1e3)
 MASSES = (1.0, 1e-8, 1e8)
 
 
-def room_of(size, piston) -> tuple[float, float, float, float]:
-    """Where discs may be: up to a piston at a side."""
+def room_of(size, pistons) -> tuple[float, float, float, float]:
+    """Where discs may be: up to pistons at sides."""
     low, high = [0.0, 0.0], list(size)
-    if piston and "side" in piston:
-        axis, upper = divmod(SIDES.index(piston["side"]), 2)
-        (high if upper else low)[axis] = piston["position"]
+    for piston in pistons:
+        if "side" in piston:
+            axis, upper = divmod(SIDES.index(piston["side"]), 2)
+            (high if upper else low)[axis] = piston["position"]
     return (*low, *high)
 
 
@@ -143,28 +144,41 @@ def bend(draw, size, wall: dict[str, Any]) -> dict[str, Any]:
     return bent if min(low) >= 0 and high[0] <= size[0] and high[1] <= size[1] else wall
 
 
-def draw_piston(draw, size, mass: float) -> dict[str, Any]:
-    if draw(st.booleans()):
-        axis = pick(draw, 0, 1)
-        piston = {"inner": "xy"[axis], "position": size[axis] * pick(draw, 0.5, 0.4, 0.9, 1.0)}
-        if pick(draw, True, False, False):
-            return piston | {"velocity": in_steps(draw, 0.0, 0.1, -0.1, -0.003)}
-        return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "velocity": pick(draw, 0.0, 0.1, -1.0)}
-    side = pick(draw, *SIDES)
-    axis, upper = divmod(SIDES.index(side), 2)
-    share = pick(draw, 1.0, 0.9, 0.5)
-    piston = {"side": side, "position": size[axis] * (share if upper else 1 - share)}
-    if draw(st.booleans()):
+def draw_pistons(draw, size, mass: float) -> list[dict[str, Any]]:
+    """One piston, or two in order."""
+    axis = pick(draw, 0, 1)
+    low, high = SIDES[2 * axis : 2 * axis + 2]
+    inner = {"inner": "xy"[axis]}
+    if pick(draw, True, False):
+        kind = pick(draw, inner, {"side": low}, {"side": high})
+        share = pick(draw, 0.5, 0.4, 0.9, 1.0) if kind is inner else pick(draw, 1.0, 0.9, 0.5)
+        return [
+            draw_motion(draw, mass, kind | {"position": size[axis] * (1 - share if kind == {"side": low} else share)})
+        ]
+    second = inner | {"name": "second"}
+    kinds = pick(
+        draw, ({"side": low}, inner), (inner, {"side": high}), ({"side": low}, {"side": high}), (inner, second)
+    )
+    shares = pick(draw, (0.25, 0.75), (0.3, 0.6), (0.1, 0.9))
+    both = zip(kinds, shares, strict=True)
+    return [draw_motion(draw, mass, kind | {"position": size[axis] * share}) for kind, share in both]
+
+
+def draw_motion(draw, mass: float, piston: dict[str, Any]) -> dict[str, Any]:
+    """A piston with a velocity, or with a mass."""
+    if pick(draw, True, False) if "side" in piston else pick(draw, True, False, False):
         return piston | {"velocity": in_steps(draw, 0.0, 0.1, -0.1, -0.003)}
-    pressures = (mass * pressure for pressure in (1.0, 0.01, 30.0))
-    return piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3), "pressure": in_steps(draw, *pressures)}
-
-
-def keep_clear_of_piston(walls, size, piston) -> None:
-    """Press walls together at the side that the piston cannot reach; an inner one with a mass reaches all."""
+    piston = piston | {"mass": mass * pick(draw, 1.0, 1e-3, 1e3)}
     if "inner" in piston:
+        return piston | {"velocity": pick(draw, 0.0, 0.1, -1.0)}
+    return piston | {"pressure": in_steps(draw, *(mass * pressure for pressure in (1.0, 0.01, 30.0)))}
+
+
+def keep_clear_of_piston(walls, size, pistons) -> None:
+    """Press walls together at the side that a single piston cannot reach; an inner one with a mass reaches all."""
+    if len(pistons) != 1 or "inner" in pistons[0]:
         return
-    axis, upper = divmod(SIDES.index(piston["side"]), 2)
+    axis, upper = divmod(SIDES.index(pistons[0]["side"]), 2)
     walls[:, :, axis] *= 0.1
     if not upper:
         walls[:, :, axis] += 0.9 * size[axis]
@@ -174,12 +188,14 @@ def axis_of_piston(piston: dict[str, Any]) -> int:
     return "xy".index(piston["inner"]) if "inner" in piston else SIDES.index(piston["side"]) // 2
 
 
-def line_of_inner(size, piston: dict[str, Any]) -> np.ndarray:
-    """(1, 2, 2), both ends of an inner piston at the start, or (0, 2, 2)."""
-    axis = axis_of_piston(piston)
-    ends = np.array([[0.0, 0.0], size])
-    ends[:, axis] = piston["position"]
-    return ends[None] if "inner" in piston else np.empty((0, 2, 2))
+def lines_of_inner(size, pistons) -> np.ndarray:
+    """(I, 2, 2), both ends of inner pistons at the start."""
+    lines = np.empty((0, 2, 2))
+    for piston in (piston for piston in pistons if "inner" in piston):
+        ends = np.array([[0.0, 0.0], size])
+        ends[:, axis_of_piston(piston)] = piston["position"]
+        lines = np.concatenate((lines, ends[None]))
+    return lines
 
 
 def draw_species(draw, size, mass: float, largest: float, spins: bool) -> list[dict[str, Any]]:
@@ -201,26 +217,25 @@ def tables_of(draw) -> dict[str, Any]:
     size = pick(draw, (6.0, 5.0), (6.0, 6.0), (6.0, 1.5), (1.0, 6.0))
     periodic = np.array(["periodic x" in called, "periodic y" in called])
     masses = pick(draw, [1.0], [1.0, 3.0], [1.0, 1e8], [1e-8, 1.0, 1e4])
-    piston = draw_piston(draw, size, masses[0]) if "piston" in called else None
-    if piston:
-        periodic[axis_of_piston(piston)] = False
+    pistons = draw_pistons(draw, size, masses[0]) if "piston" in called else []
+    if pistons:
+        periodic[axis_of_piston(pistons[0])] = False
     walls = draw(walls_in(size)) if "walls" in called else np.empty((0, 2, 2))
-    if piston:
-        keep_clear_of_piston(walls, size, piston)
+    keep_clear_of_piston(walls, size, pistons)
     passages = [draw_passage(draw, *wall) if "permeable" in called else {} for wall in walls.tolist()]
     free = np.array(["permeable_to" in p and "permeable_from" not in p for p in passages], bool)
     tables_of_walls = [{"from": a, "to": b} | p for (a, b), p in zip(walls.tolist(), passages, strict=True)]
-    if "arcs" in called and not piston:
+    if "arcs" in called and not pistons:
         bent = [draw(st.booleans()) and "permeable_from" not in wall for wall in tables_of_walls]
         tables_of_walls = [bend(draw, size, w) if on else w for w, on in zip(tables_of_walls, bent, strict=True)]
     solid = [wall for wall, passes in zip(tables_of_walls, free, strict=True) if not passes]
-    straight = np.concatenate((walls[~free], line_of_inner(size, piston))) if piston else walls[~free]
+    straight = np.concatenate((walls[~free], lines_of_inner(size, pistons)))
     number = pick(draw, 4, 1, 2, 3, 9, 16, 40)
     share = pick(draw, 0.5, 1.0, 1 - 1e-9, 0.97, 0.1, 1e-3, 1e-6)
     factors = pick(draw, [1.0], [1.0, 0.5], [1.0, 0.1, 1e-3])
     gridded = draw(st.booleans())
     position, radius = place(
-        random, np.array(size), periodic, room_of(size, piston), straight, solid, number, share, gridded, factors
+        random, np.array(size), periodic, room_of(size, pistons), straight, solid, number, share, gridded, factors
     )
     n = len(position)
     velocity = move(random, pick(draw, "normal", "few directions", "one hot", "one moves", "all speeds"), n)
@@ -242,7 +257,7 @@ def tables_of(draw) -> dict[str, Any]:
             elif "vibration" in called and draw(st.booleans()):
                 amplitude = pick(draw, 1e-3, 0.02, 0.1) * min(size)
                 tables["box"][side] = {"vibrating": {"amplitude": amplitude, "frequency": pick(draw, 0.1, 1.0, 30.0)}}
-            elif "thermal" in called and draw(st.booleans()) and not (piston and piston.get("side") == side):
+            elif "thermal" in called and draw(st.booleans()) and not any(p.get("side") == side for p in pistons):
                 tables["box"][side] = {"thermal": in_steps(draw, *(masses[-1] * x for x in (1.0, 1e-4, 100.0)))}
     if len(walls):
         hot = {"temperature": masses[0] * 2.0} if "thermal" in called and draw(st.booleans()) else {}
@@ -258,7 +273,7 @@ def tables_of(draw) -> dict[str, Any]:
         pull = pick(draw, 1.0, 0.01, 1e-6, 100.0)
         direction = pick(draw, (0.0, -1.0), (0.3, 0.1), (-1.0, 1.0), (0.0, 1.0), (-1.0, 0.0))
         gravity = [pull * component for component in direction]
-        if not (piston and "mass" in piston) and draw(st.booleans()):
+        if not any("mass" in piston for piston in pistons) and draw(st.booleans()):
             gravity = [[0.0, gravity], [pick(draw, 0.02, 0.5), [-share * component for component in gravity]]]
         tables["gravity"] = {"acceleration": gravity}
     if spins:
@@ -267,8 +282,8 @@ def tables_of(draw) -> dict[str, Any]:
     if "restitution" in called:
         tables["restitution"] = {"normal": pick(draw, 0.9, 1.0, 0.3, 0.0), "wall": pick(draw, 1.0, 0.9, 0.0)}
         tables["restitution"]["contact_duration"] = pick(draw, 1e-6, 1e-3)
-    if piston:
-        tables["piston"] = piston
+    if pistons:
+        tables["piston"] = pistons
     if "steering" in called:
         tables["steering"] = {"reversed_at": pick(draw, 0.3, 1.0, [0.01, 0.02], [0.1, 1.0])}
     if "thermostat" in called:

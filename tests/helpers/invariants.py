@@ -93,9 +93,9 @@ class InvariantChecker(Paths):
         earlier = self.fastest if self.epochs == simulation.epoch else 0.0  # what was fast left its errors behind
         self.epochs = simulation.epoch
         self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
-        if self.piston is not None:
+        if self.pistons:
             before = self.pace  # after the last event: a light piston may give all of it to the disc that it meets
-            self.pace = abs(piston_motion(simulation.effects.piston[0], time - simulation.time)[1])
+            self.pace = self.fastest_piston(simulation.effects, time - simulation.time)
             self.fastest += max(before, self.pace) + self.push * (time - self.now)
         self.fastest = max(self.fastest, earlier)
         self.known = max(self.known, FEW * self.resolution(time))  # a place keeps its error
@@ -188,15 +188,16 @@ class InvariantChecker(Paths):
         coefficient = 1.0 if self.restitution is None else self.restitution.wall
         rebounds = self.rebounds([disc], coefficient, time)
         if kind == Kind.PISTON:
-            axis, piston = self.piston.axis, simulation.effects.piston[0]
-            normal[axis], edge, stand = -self.outward[disc], piston.x, piston.v
-            assert self.piston.wall == (SIDES[wall] if wall < 4 else "piston")
+            names = [*SIDES, *(w.name for w in self.gates), *self.fixed, *(p.wall for p in self.pistons if p.inner)]
+            k = [piston.wall for piston in self.pistons].index(names[wall])
+            axis, piston = self.pistons[k].axis, simulation.effects.piston[k]
+            normal[axis], edge, stand = -self.outward[k][disc], piston.x, piston.v
             distance = abs(place[axis] - edge)
         elif wall < 4:
             axis, upper = divmod(wall, 2)
             normal[axis] = -1.0 if upper else 1.0
             edge = self.size[axis] * upper
-            assert self.piston is None or self.piston.wall != SIDES[wall]
+            assert SIDES[wall] not in [piston.wall for piston in self.pistons]
             vibration = simulation.effects.vibration
             if vibration is not None and vibration[wall].amplitude > 0:
                 own, inward = vibration[wall], -1.0 if upper else 1.0
@@ -235,7 +236,7 @@ class InvariantChecker(Paths):
             beyond = (share < -along) | (share > 1 + along)
             assert not (beyond if kind == Kind.WALL else inside).all(), "foot"
         self.note("contact", abs(distance - radius), self.touches + self.sunk[disc])
-        if kind == Kind.PISTON and self.piston.mass is not None:
+        if kind == Kind.PISTON and self.pistons[k].mass is not None:
             return  # its own change is in the balance of energy
         speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
         bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
@@ -284,7 +285,7 @@ class InvariantChecker(Paths):
     # ── the whole gas ──
 
     def compare(self, time: float, simulation: Simulation) -> None:
-        """The engine's state is the one that follows from the log, the piston is beyond all discs, energies add up."""
+        """The engine's state is the one that follows from the log, no disc is beyond a piston, energies add up."""
         gas, effects = simulation.state()
         place, velocity = self.at(time)
         speed = self.fastest + np.hypot(*self.pull) * time
@@ -292,8 +293,8 @@ class InvariantChecker(Paths):
         apart = self.wrapped(gas.position - place)[~self.gone]
         assert np.abs(apart).max(initial=0.0) <= self.known, "state"
         assert np.abs(gas.velocity - velocity).max() <= FEW * U * (1 + self.epochs) * speed, "state"
-        if self.piston is not None:
-            self.behind_piston(place, effects.piston, time - simulation.time)
+        for k in range(len(self.pistons)):
+            self.behind_piston(place, k, effects.piston[k], time - simulation.time)
         energy = energy_of(gas, effects, time - simulation.time)
         self.scale = max(self.scale, energy.scale)
         weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
@@ -307,10 +308,10 @@ class InvariantChecker(Paths):
         assert drift <= bound, f"energy drifts by {drift}"
         self.max_errors.energy = max(self.max_errors.energy, drift / self.scale if self.scale else 0.0)
 
-    def behind_piston(self, place: np.ndarray, piston: np.ndarray, local_time: float) -> None:
-        """No disc is beyond the piston, which is in the box."""
-        edge, _ = piston_motion(piston[0], local_time)
-        axis = self.piston.axis
-        behind = self.outward * (edge - place[:, axis]) >= self.gas.radius - self.known
+    def behind_piston(self, place: np.ndarray, k: int, piston: np.record, local_time: float) -> None:
+        """No disc is beyond piston k, which is in the box."""
+        edge, _ = piston_motion(piston, local_time)
+        axis = self.pistons[k].axis
+        behind = self.outward[k] * (edge - place[:, axis]) >= self.gas.radius - self.known
         assert (behind | self.gone).all(), "beyond the piston"
         assert -self.known <= edge <= self.size[axis] + self.known, "piston beyond its stop"

@@ -50,10 +50,11 @@ class Paths:
         self.straight = np.array([w.arc is None for w in scene.wall], bool)
         self.gates = scene.wall
         self.fixed = [wall for wall in scene.walls[len(scene.wall) :] if wall.radius]  # not an inner piston
-        self.piston = scene.piston
-        self.outward = scene.piston.outward_from(gas.position, gas.box) if scene.piston else np.zeros(n)
-        self.push = abs(scene.piston.acceleration(gas.box, scene.properties.acceleration)) if scene.piston else 0.0
-        self.force = self.push * (scene.piston.mass or 0.0) if scene.piston else 0.0
+        self.pistons = scene.piston
+        self.outward = [piston.outward_from(gas.position, gas.box) for piston in scene.piston]
+        pushes = [abs(piston.acceleration(gas.box, scene.properties.acceleration)) for piston in scene.piston]
+        self.push = max(pushes, default=0.0)
+        self.force = sum(push * (piston.mass or 0.0) for push, piston in zip(pushes, scene.piston, strict=True))
         self.rotation, self.restitution = effects.rotation, effects.restitution
         self.since, self.last = np.zeros(n), np.full(n, -math.inf)
         self.hit, self.sunk, self.gone = np.zeros(n, int), np.zeros(n), np.zeros(n, bool)
@@ -65,9 +66,14 @@ class Paths:
         across, along = ((-1, 0, 1) if periodic else (0,) for periodic in self.periodic)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
-        self.pace = 0.0 if self.piston is None else abs(piston_motion(effects.piston[0], 0.0)[1])
+        self.pace = self.fastest_piston(effects, 0.0)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale
+
+    def fastest_piston(self, effects: Effects, local_time: float) -> float:
+        """Largest speed of a piston; 0 without one."""
+        both = zip(self.pistons, effects.piston, strict=False)
+        return max((abs(piston_motion(record, local_time)[1]) for _, record in both), default=0.0)
 
     def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Unwrapped positions and velocities of all discs; those that have left the gas stay where they left it."""

@@ -28,7 +28,7 @@ SCENES = {
     """,
     "piston": PLAIN
     + 'scene.description = "A gas that\\n<presses> on a piston.\\n\\nIts end."\n'
-    + 'piston = {side = "right", position = 15.0, mass = 20.0, pressure = 1.5}\n',
+    + 'piston = [{side = "right", position = 15.0, mass = 20.0, pressure = 1.5}]\n',
     "two species": PLAIN.replace("}]", '}, {name = "heavy", count = 5, radius = 0.5, mass = 9, speed = 0.1}]'),
     "dense": PLAIN.replace("[20, 10]", "[8, 4]"),
     "without positions": PLAIN + 'run.method = "monte_carlo"\nrun.v_ref = 12.0\n',

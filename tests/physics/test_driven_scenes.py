@@ -124,7 +124,7 @@ def piston_at(log, times):
     ]
     time, place = (np.concatenate(column) for column in zip(*rows, strict=True))
     place += log.discs.radius[0]
-    pull = log.scene.piston.acceleration(log.box, log.scene.properties.acceleration)
+    pull = log.scene.piston[0].acceleration(log.box, log.scene.properties.acceleration)
     k = time.searchsorted(times) - 1
     since, whole = times - time[k], np.diff(time)[k]
     return place[k] + np.diff(place)[k] * since / whole - pull * since * (whole - since) / 2

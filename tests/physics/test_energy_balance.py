@@ -26,8 +26,8 @@ species = [
 ]
 """
 HOT = "box.bottom = { thermal = 1.5 }\n"
-MASSIVE = 'piston = {side = "right", position = 32, mass = 20, pressure = 0.15}\n'
-DRIVEN = 'piston = {side = "right", position = 32, velocity = -0.002}\nrun.until = 6000\n'
+MASSIVE = 'piston = [{side = "right", position = 32, mass = 20, pressure = 0.15}]\n'
+DRIVEN = 'piston = [{side = "right", position = 32, velocity = -0.002}]\nrun.until = 6000\n'
 SLOPE = "wall = [{from = [3, 4], to = [9, 11]}, {from = [15, 2], to = [15, 9], opens_at = 300}]\n"
 
 

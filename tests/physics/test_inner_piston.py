@@ -40,7 +40,7 @@ def test_the_same_by_brute_force_and_resumed(tmp_path, path, overrides):
 
 HANDS = """
 box.size = [10, 2]
-piston = {{ inner = "x", position = 4, mass = {mass} {velocity} }}
+piston = [{{ inner = "x", position = 4, mass = {mass} {velocity} }}]
 disc = [
     {{ position = [2, 1], velocity = [2, 0], radius = 0.5 }},
     {{ position = [8, 1], velocity = [-1, 0], radius = 0.5 }},
@@ -132,7 +132,7 @@ def test_relaxation_keeps_the_energy():
 GASES = """
 scene.seed = {seed}
 box.size = [20, 10]
-piston = {{ inner = "x", mass = {mass} {position} }}
+piston = [{{ inner = "x", mass = {mass} {position} }}]
 species = [
     {{ name = "a", count = {a}, radius = {radius}, temperature = {hot}, region = [0, 0, {place}, 10] }},
     {{ name = "b", count = {b}, radius = {radius}, temperature = {cold}, region = [{place}, 0, 20, 10] }},
@@ -156,11 +156,11 @@ def test_equilibrium(run):
             )
         )
     )
-    place = (log.observables["piston_position"][1][5:] - 0.04) / (20 - 0.08)
+    place = (log.observables["piston_position"][1][5:, 0] - 0.04) / (20 - 0.08)
     agrees(mean(place, 4 / 10), 0.03)
     centred = place - 0.4
     agrees(estimate(lambda s, square: square - s**2, centred, centred**2, theory=0.4 * 0.6 / 11), 0.1)
-    energy = 0.75 * log.observables["piston_velocity"][1][5:] ** 2
+    energy = 0.75 * log.observables["piston_velocity"][1][5:, 0] ** 2
     agrees(mean(energy / 8, 1 / 17), 0.05)
 
 

@@ -70,7 +70,7 @@ def test_the_floor_carries_the_column(run_with):
 def test_a_piston_is_held_by_the_gas(run_with):
     """Its mean force is P L, and in a dilute gas all other walls have the same pressure (Pascal)."""
     log = run_with(
-        "box.size=[40, 10]", species(100, 0.005), "run.until=8000", "piston={ position = 10, mass = 5, pressure = 1 }"
+        "box.size=[40, 10]", species(100, 0.005), "run.until=8000", "piston=[{ position = 10, mass = 5, pressure = 1 }]"
     )
     found = walls(pressure(log))
     assert found["right wall"].theory == 1.0
@@ -136,7 +136,7 @@ def test_a_slow_compression_follows_the_adiabat(run_with):
     The error of a bin has some five degrees of freedom; Student's t is then beyond 4 in 1 % of all bins, and 5 % are
     four standard deviations more.
     """
-    log = run_with("box.size=[20, 10]", species(200, 0.02), "piston={ velocity = -0.0125 }", "run.until=800")
+    log = run_with("box.size=[20, 10]", species(200, 0.02), "piston=[{ velocity = -0.0125 }]", "run.until=800")
     course = evolution(log).pressure
     assert course.shown == ("right wall",)
     p, error = course.pressure["right wall"], course.error["right wall"]
@@ -155,7 +155,7 @@ def test_a_slow_compression_follows_the_adiabat(run_with):
     ("overrides", "wall"),
     [
         (("run.until=700",), "all sides"),
-        (("box.size=[40, 10]", "piston={ position = 10, mass = 5, pressure = 1 }", "run.until=700"), "right wall"),
+        (("box.size=[40, 10]", "piston=[{ position = 10, mass = 5, pressure = 1 }]", "run.until=700"), "right wall"),
     ],
     ids=["box", "piston"],
 )

@@ -71,7 +71,7 @@ def test_a_pressed_piston_comes_to_rest_on_discs(tmp_path):
     text = """
         box.size = [10, 3]
         restitution = { normal = 0.6, wall = 0.6 }
-        piston = { side = "right", position = 9, mass = 5, pressure = 1 }
+        piston = [{ side = "right", position = 9, mass = 5, pressure = 1 }]
         disc = [
             { position = [2, 1.5], velocity = [1, 0.1], radius = 0.5 },
             { position = [4, 1.4], velocity = [-1, 0.2], radius = 0.5 },

@@ -22,7 +22,7 @@ def is_shared(scene) -> bool:
     """Whether several threads may run a scene at all."""
     largest = max((kind.largest_radius for kind in scene.species), default=scene.box.size[1])
     rows = scene.box.size[1] / (2.001 * largest)
-    return scene.run.method == "event_driven" and scene.piston is None and rows >= 2 * MIN_ROWS
+    return scene.run.method == "event_driven" and not scene.piston and rows >= 2 * MIN_ROWS
 
 
 SHIPPED = [path.stem for path in sorted((ROOT / "configs").glob("*.toml")) if is_shared(load_scene(path))]

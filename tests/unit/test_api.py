@@ -65,7 +65,7 @@ run.until = 20
 STROKES = """
 box.size = [8, 8]
 thermostat = { temperature = 1, rate = 1 }
-piston = { side = "right", velocity = [[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]] }
+piston = [{ side = "right", velocity = [[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]] }]
 species = [{ name = "gas", count = 2, radius = 0.2, temperature = 1 }]
 run.until = 20
 """

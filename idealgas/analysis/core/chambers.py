@@ -1,11 +1,13 @@
 """Chambers into which walls from side to side divide a box, and those of them that hold discs."""
 
 from collections import defaultdict
+from itertools import pairwise
 
 import numpy as np
 
 from idealgas.columns import SIDES, axis_of, sides_across
 from idealgas.log import Log
+from idealgas.scene import Piston
 from idealgas.scene.walls import walls_inside
 
 
@@ -49,21 +51,29 @@ class Chambers:
         return not (0 < k < len(there) and cuts[k] == place) or bool(there[k - 1] and there[k])
 
 
-def outward(log: Log) -> float:
-    """Direction from the gas to the piston along its axis, +1 or -1; 0 without a piston or with gas on both sides."""
-    piston = log.scene.piston
-    directions = set() if piston is None else set(piston.outward_from(log.discs.position, log.box).tolist())
+def outward(log: Log, piston: Piston) -> float:
+    """Direction from the gas to a piston along its axis, +1 or -1; 0 with gas on both its sides."""
+    directions = set(piston.outward_from(log.discs.position, log.box).tolist())
     return directions.pop() if len(directions) == 1 else 0.0
 
 
-def beside_piston(log: Log) -> dict[str, np.ndarray]:
-    """Masks (N,) of the discs on each side of an inner piston, by the name of the side of the box there."""
-    piston = log.scene.piston
-    if piston is None or piston.inner is None:
+def piston_names(log: Log) -> list[str]:
+    """Names of the pistons for tables and pictures: of a single one piston, of several by their sides or own names."""
+    walls = [(piston.name or "inner") if piston.inner else piston.wall for piston in log.scene.piston]
+    return ["piston"] if len(walls) == 1 else [f"{wall} piston" for wall in walls]
+
+
+def beside_pistons(log: Log) -> dict[str, np.ndarray]:
+    """Masks (N,) of the discs of each gas beside inner pistons, by the name of the side of the box or the pistons."""
+    inner = [(piston, name) for piston, name in zip(log.scene.piston, piston_names(log), strict=True) if piston.inner]
+    if not inner:
         return {}
-    above = piston.outward_from(log.discs.position, log.box) < 0
-    low, high = (SIDES[side] for side in sides_across(piston.axis))
-    return {name: members for name, members in ((low, ~above), (high, above)) if members.any()}
+    places = [piston.start(log.box) for piston, _ in inner]
+    axis = inner[0][0].axis
+    low, high = (SIDES[side] for side in sides_across(axis))
+    names = [low, *(f"between {a} and {b}" for (_, a), (_, b) in pairwise(inner)), high]
+    chamber = np.searchsorted(places, log.discs.position[:, axis])
+    return {name: chamber == k for k, name in enumerate(names) if (chamber == k).any()}
 
 
 def _cuts(log: Log, axis: int, until: float) -> np.ndarray:

@@ -133,7 +133,7 @@ def wall_name(wall: int, name: str) -> str:
 class WallGauge:
     """Pressure on all walls of a log: the tallies that `stream` has to fill, and what follows from them.
 
-    impulses: momentum given to walls. moving: depth of the room below a piston; None without one.
+    impulses: momentum given to walls. moving: places of the pistons in time.
     """
 
     impulses: WallImpulses | SampledWalls
@@ -142,20 +142,34 @@ class WallGauge:
         """Take the walls of a log; sampled: what they were given, if it does not come from events."""
         self._log = log
         self.impulses = sampled or WallImpulses(log)
-        self.moving = moving_wall(log)
+        self.moving = tuple(MovingWall(log, k) for k in range(len(log.scene.piston)))
 
     @property
     def tallies(self) -> list[Tally]:
         """Tallies to fill from the events of the log."""
-        moving: list[Tally] = [self.moving] if self.moving else []
         impulses: list[Tally] = [self.impulses] if isinstance(self.impulses, WallImpulses) else []
-        return [*impulses, *moving]
+        return [*impulses, *self.moving]
+
+    @property
+    def bounded(self) -> bool:
+        """Whether a piston has gas on one side only."""
+        return any(piston.outward for piston in self.moving)
+
+    def _depth(self) -> np.ndarray:
+        """Mean length (B,) of the gas in each block of time along the axis of the pistons that bound it."""
+        low: Any = 0.0
+        high: Any = self._log.box[self.moving[0].axis]
+        for piston in self.moving:
+            low = piston.place if piston.outward < 0 else low
+        for piston in self.moving[::-1]:
+            high = piston.place if piston.outward > 0 else high
+        return np.asarray(high - low)
 
     def area(self, edges: np.ndarray) -> np.ndarray:
-        """Area (B,) of the gas in each block of time: of chambers with discs, or the room of a piston, length²."""
-        if self.moving is None or self.moving.both:
+        """Area (B,) of the gas in each block of time: of chambers with discs, or the room of pistons, length²."""
+        if not self.bounded:
             return np.full(len(edges) - 1, Chambers(self._log, float(edges[-1])).area)
-        return self.moving.depth * self.moving.across
+        return self._depth() * self.moving[0].across
 
     def faces(self, edges: np.ndarray) -> list[Face]:
         """Faces of sides that are not periodic and of wall segments; edges: (B + 1,), times between the blocks."""
@@ -187,45 +201,45 @@ class WallGauge:
     def _exposed(self, k: int, wall: NumberedWall, edges: np.ndarray) -> np.ndarray:
         """Length of wall k times the time that it is there, in each block; of a side, where gas is beside it."""
         width = np.diff(edges)
-        moving = None if self.moving is None or self.moving.both else self.moving
-        if k < len(SIDES) and moving is not None and axis_of(k) != moving.axis:
-            return moving.depth * width
+        if k < len(SIDES) and self.bounded and axis_of(k) != self.moving[0].axis:
+            return self._depth() * width
         absent = np.zeros(len(width))
         for opens, closes in wall.absences:
             absent += np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
         length = wall.arc.length if wall.arc else math.dist(wall.start, wall.end)
-        if k < len(SIDES) and moving is None:
+        if k < len(SIDES) and not self.bounded:
             length = Chambers(self._log, float(edges[-1])).length(k)
         return length * (width - absent)
 
 
 class MovingWall:
-    """Depth of the room between a piston and the side of the box beyond the gas, as a tally over the flights of a log.
+    """Place of a piston in time, as a tally over the flights of a log.
 
     The piston position is known at its samples and at every hit of a disc, and lies on a parabola in between. A
     bounce at the piston's end stop between two such times is left out.
 
     wall: number of the piston among the walls. axis: along which it moves, 0 for x, 1 for y. across: its
-    length. both: whether gas is on both its sides; the depth is then that of the lower one. depth: (B,), mean depth of
-    the room in each block of time, length.
+    length. outward: direction from the gas to it, 0 with gas on both its sides. place: (B,), its mean coordinate in
+    each block of time, length.
     """
 
-    columns = ("disc", "end", "kind", "end_position")
+    columns = ("disc", "end", "kind", "partner", "end_position")
     cut = False
 
-    def __init__(self, log: Log, table: Any) -> None:
-        """Take a log and the table of the piston in its scene."""
+    def __init__(self, log: Log, k: int) -> None:
+        """Take a log and the number of the piston among the tables of its scene."""
+        table = log.scene.piston[k]
         self.wall, self.axis = [wall.name for wall in log.walls].index(table.wall), table.axis
         self.across = log.box[1 - table.axis]
-        direction, self._to_piston = outward(log), table.outward_from(log.discs.position, log.box)
-        self.both, self._far = direction == 0, log.box[table.axis] if direction < 0 else 0.0
+        self.outward, self._to_piston = outward(log, table), table.outward_from(log.discs.position, log.box)
         self._outward, self._stop = table.outward, table.stop(log.box)
         self._pull = partial(table.acceleration, log.box, log.scene.properties.acceleration)
         self._mass = None if table.inner else table.mass
-        self._samples = log.observables["piston_position"]
-        if not len(self._samples[0]):
+        time, places = log.observables["piston_position"]
+        if not len(time):
             raise UserError(f"{log.path}: has no sample of its piston")
-        self._speeds = log.observables["piston_velocity"][1]
+        self._samples = time, places[:, k]
+        self._speeds = log.observables["piston_velocity"][1][:, k]
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start at time edges[0]; edges: (B + 1,), times between the blocks."""
@@ -239,15 +253,15 @@ class MovingWall:
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
         assert flights.end_position is not None
-        hits = flights.kind == Kind.PISTON
+        hits = (flights.kind == Kind.PISTON) & (flights.partner == -1 - self.wall)
         disc = flights.disc[hits]
         place = flights.end_position[hits, self.axis] + self._to_piston[disc] * self._radius[disc]
         self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
 
     def finish(self) -> None:
-        """Go on to the last edge, and turn the integrals into mean depths."""
+        """Go on to the last edge, and turn the integrals into mean places."""
         self._follow(np.empty((0, 2)), np.inf)
-        self.depth = np.abs(np.diff(self._sums) / np.diff(self._edges) - self._far)
+        self.place = np.diff(self._sums) / np.diff(self._edges)
 
     def _follow(self, hits: np.ndarray, until: float) -> None:
         """Integrate over the places (K, 2) at hits and those of the samples up to a time; at infinity to all edges."""
@@ -290,8 +304,3 @@ class MovingWall:
         if (reach >= self._outward * self._stop).any():
             return None
         return -self._outward * pull * self._mass / self.across
-
-
-def moving_wall(log: Log) -> MovingWall | None:
-    """Tally of the piston of a log; None without one."""
-    return MovingWall(log, log.scene.piston) if log.scene.piston else None

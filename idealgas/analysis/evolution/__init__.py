@@ -7,12 +7,13 @@ With a piston the picture has the pressure against the area, with the isotherm a
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import cycle
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.chambers import beside_piston
+from idealgas.analysis.core.chambers import beside_pistons, piston_names
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import detect_equilibration
@@ -22,7 +23,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, format_estimate, time_series
-from idealgas.analysis.evolution.account import PISTON, Series, account
+from idealgas.analysis.evolution.account import Series, account
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
 from idealgas.analysis.theory.values import Theory
@@ -54,16 +55,16 @@ class Evolution(Result):
         law: theory of the temperature at these times; None without one.
         samples: (P,), times of the samples; of more than MOST_SAMPLES, evenly chosen ones.
         parts: parts of the energy, (P,), by name.
-        given: energy from each wall, the piston (its work) and a heat bath since the start, (P,), by name.
-        piston: (P,), its coordinate, length; None without one.
-        balance: (P,), change since the start of the energy of discs and piston minus the energy from outside, relative
+        given: energy from each wall, each piston (its work) and a heat bath since the start, (P,), by name.
+        pistons: their coordinates, (P,), length, by name.
+        balance: (P,), change since the start of the energy of discs and pistons minus the energy from outside, relative
             to the largest part of the energy: rounding only.
         dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
         pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
-        rest: mean position of a piston with a mass once it is steady, length; None without one, or if it is not steady
-            by the end.
+        rest: mean position of the only piston, with a mass, once it is steady, length; None without one, or if it is
+            not steady by the end.
         rest_start: time from which on the piston is steady; None where `rest` is.
-        chambers: mean m v²/2 per disc on each side of an inner piston, (F,), by the name of the side of the box.
+        chambers: mean m v²/2 per disc of each gas beside inner pistons, (F,), by name as in `beside_pistons`.
     """
 
     time: np.ndarray
@@ -75,7 +76,7 @@ class Evolution(Result):
     samples: np.ndarray
     parts: Series
     given: Series
-    piston: Annotated[np.ndarray | None, OPTIONAL]
+    pistons: Series
     balance: np.ndarray
     dissipated: Series
     pressure: PressureSeries | None = None
@@ -84,17 +85,17 @@ class Evolution(Result):
     chambers: Series = field(default_factory=dict)
 
     @property
-    def track(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Times and coordinates of the piston, means over short blocks or samples; None without a piston."""
+    def track(self) -> tuple[np.ndarray, Series] | None:
+        """Times and coordinates of each piston, means over short blocks or samples; None without pistons."""
         if self.pressure and self.pressure.track:
             return self.pressure.track
-        return None if self.piston is None else (self.samples, self.piston)
+        return (self.samples, self.pistons) if self.pistons else None
 
     @property
     @reported
     def end(self) -> dict[str, float]:
         """Last value of each series, by name."""
-        series = {"temperature": self.temperature, "spin": self.spin, "piston": self.piston, "balance": self.balance}
+        series = {"temperature": self.temperature, "spin": self.spin, **self.pistons, "balance": self.balance}
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
 
@@ -137,7 +138,8 @@ class EvolutionAnalysis(Analysis):
         *energies, balance = account(log, samples, observed)
         parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
         pressure = pressure_series(log, first, last)
-        start_position = float(np.interp(first, *pressure.track)) if pressure and pressure.track else 0.0
+        track = pressure.track if pressure else None
+        start_position = float(np.interp(first, track[0], next(iter(track[1].values())))) if track else 0.0
         law = expected_law(log, frames[0], frames[-1], start_position)
         return Evolution(
             *frames[:-1],
@@ -146,7 +148,7 @@ class EvolutionAnalysis(Analysis):
             samples[inside],
             parts,
             given,
-            observed["piston_position"][inside] if "piston_position" in observed else None,
+            {name: observed["piston_position"][inside, k] for k, name in enumerate(piston_names(log))},
             balance[inside],
             lost,
             pressure,
@@ -184,7 +186,7 @@ class EvolutionAnalysis(Analysis):
             **{f"energy of {name}": values for name, values in result.parts.items()},
             **{_source_label(name): values for name, values in result.given.items()},
             **{f"lost by {name}": values for name, values in result.dissipated.items()},
-            "piston position": result.piston,
+            **{f"{name} position": place for name, place in result.pistons.items()},
             "balance, relative": result.balance,
         }
         return [*tables, time_series("Energy", energy)]
@@ -205,7 +207,8 @@ class EvolutionAnalysis(Analysis):
             said = agreement([("rest", result.rest)])
             found.append(f"The piston rests at {format_estimate(result.rest)}; {said}.")
         elif result.track:
-            found.append("The piston goes from {:.4g} to {:.4g}.".format(*result.track[1][[0, -1]]))
+            for name, places in result.track[1].items():
+                found.append(f"The {name} goes from {places[0]:.4g} to {places[-1]:.4g}.")
         for name, share in result.beyond.items():
             expected = [
                 replace(one, value=share[-1], theory=one.value) for n, one in result.spread.items() if n == name
@@ -233,7 +236,7 @@ class EvolutionAnalysis(Analysis):
         if result.spin is not None:
             ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
         for k, (name, values) in enumerate(result.chambers.items(), 1):
-            ax.plot(result.time, values, color=COLOURS[k], label=f"{name} of the piston")
+            ax.plot(result.time, values, color=COLOURS[k], label=_chamber_label(name))
             if law and law.chambers:
                 ax.plot(result.time, law.chambers[name], "--", color=COLOURS[k])
         if law is not None:
@@ -254,7 +257,8 @@ class EvolutionAnalysis(Analysis):
             draw_pressure(next(rest), series, law)
         if result.track:
             ax = next(rest)
-            ax.plot(*result.track, color=COLOURS[0], label="piston")
+            for (name, places), colour in zip(result.track[1].items(), cycle(COLOURS)):
+                ax.plot(result.track[0], places, color=colour, label=name)
             if law is not None and law.piston is not None:
                 ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
             ax.set_ylabel("piston position (length)")
@@ -274,8 +278,13 @@ class EvolutionAnalysis(Analysis):
 
 
 def _source_label(name: str) -> str:
-    """Heading of the energy that a wall, the piston or a heat bath gave to the discs."""
-    return "work done by the piston" if name == PISTON else f"energy from {name}"
+    """Heading of the energy that a wall, a piston or a heat bath gave to the discs."""
+    return f"work done by the {name}" if f" {name}".endswith(" piston") else f"energy from {name}"
+
+
+def _chamber_label(name: str) -> str:
+    """Name of the gas at a side of the box, or between two pistons."""
+    return name if name.startswith("between") else f"{name} of the piston"
 
 
 # ── measurement ──
@@ -301,7 +310,7 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
-    members = beside_piston(log)
+    members = beside_pistons(log)
     apart = {name: np.empty(len(time)) for name in members}
     for k, state in enumerate(frames(log, time, progress)):
         energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
@@ -318,10 +327,11 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
 
 
 def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
-    """Mean position of a piston with a mass once it is steady, compared with theory, and the time it is steady from."""
-    if not log.scene.piston or not log.scene.piston.mass or series is None or series.track is None:
+    """Mean position of the only piston, with a mass, once it is steady, compared with theory, and since when it is."""
+    masses = [piston.mass for piston in log.scene.piston]
+    if len(masses) != 1 or not masses[0] or series is None or series.track is None:
         return None, None
-    times, places = series.track
+    times, (places,) = series.track[0], series.track[1].values()
     start = detect_equilibration([Observable(places)])
     if start is None:
         return None, None

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from idealgas.analysis.core.chambers import piston_names
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
 
-PISTON, HEAT_BATH, STEPS = "piston", "the heat bath", "changes in time"
-"""Names of the wall that is the piston and of a heat bath among the sources of energy."""
+HEAT_BATH, STEPS = "the heat bath", "changes in time"
+"""Names among the sources of energy; pistons have those of `piston_names`."""
 
 ROUNDING = 1e-12
 """Energy that collisions lose, relative to the largest energy, that is rounding."""
@@ -21,18 +22,19 @@ def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Serie
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
     lost = observed.get("dissipated_energy", np.zeros((len(given), 1 + len(log.walls))))
     counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
-    piston = log.scene.piston
-    if piston and piston.mass:  # its energy is a part of the energy, so that it gives none from outside
-        own = [wall.name for wall in log.walls].index(piston.wall)
-        counted[own], unpaid = False, unpaid + lost[:, 1 + own]
-        pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
-        place, velocity = observed["piston_position"], observed["piston_velocity"]
-        parts["piston"] = piston_energy(piston.mass, place, velocity, pull)
+    walls = [wall.name for wall in log.walls]
+    for k, (piston, name) in enumerate(zip(log.scene.piston, piston_names(log), strict=True)):
+        own = walls.index(piston.wall)
+        walls[own] = name
+        if piston.mass:  # its energy is a part of the energy, so that it gives none from outside
+            counted[own], unpaid = False, unpaid + lost[:, 1 + own]
+            pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
+            place, velocity = (observed[column][:, k] for column in ("piston_position", "piston_velocity"))
+            parts[name] = piston_energy(piston.mass, place, velocity, pull)
     bath, steps = (observed.get(name, np.zeros(len(given))) for name in ("bath_energy", "step_energy"))
     from_outside = given[:, counted].sum(axis=1) + bath + steps
     total = sum(parts.values()) + unpaid - from_outside
     scale = max(float(np.abs(series).max(initial=0.0)) for series in (*parts.values(), from_outside, unpaid))
-    walls = [PISTON if piston and wall.name == piston.wall else wall.name for wall in log.walls]
     sources = dict(zip(walls, given.T, strict=False)) | {HEAT_BATH: bath, STEPS: steps}
     by_source = {name: series for name, series in sources.items() if series.any()}
     sinks = zip(("discs", *walls), lost.T, strict=True)

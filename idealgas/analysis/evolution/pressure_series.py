@@ -8,11 +8,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import special
 
+from idealgas.analysis.core.chambers import piston_names
 from idealgas.analysis.core.fields import OMITTED, Key
 from idealgas.analysis.core.statistics import ratio
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import WallGauge
-from idealgas.analysis.evolution.theory import Law, StateLines, room, state_lines
+from idealgas.analysis.evolution.theory import Law, StateLines, state_lines
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.log import Log
 
@@ -53,9 +54,9 @@ class PressureSeries:
         area: (B,), mean area that the gas has, length².
         pressure, error: (B,), momentum given per time and length and its standard error, energy/length², by the name of
             the wall; nan as the error of a wall that was not hit.
-        shown: walls in table and picture: a piston, all sides of a uniform gas together, or each of them.
-        lines: isotherm and adiabat through the start; None without a theory, a piston, or with gas on both its sides.
-        track: times (T,) and mean coordinates (T,) of the piston in POINTS blocks of time; None without a piston.
+        shown: walls in table and picture: pistons, all sides of a uniform gas together, or each of them.
+        lines: isotherm and adiabat through the start; None without a theory, one piston, or with gas on both its sides.
+        track: times (T,) and, by name, mean coordinates (T,) of pistons in POINTS blocks of time; None without pistons.
     """
 
     edges: np.ndarray
@@ -64,7 +65,7 @@ class PressureSeries:
     error: Annotated[dict[str, np.ndarray], Key("standard_error")]
     shown: Annotated[tuple[str, ...], OMITTED]
     lines: StateLines | None
-    track: tuple[np.ndarray, np.ndarray] | None
+    track: tuple[np.ndarray, dict[str, np.ndarray]] | None
 
     @property
     def middles(self) -> np.ndarray:
@@ -89,15 +90,14 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
         given[ALL_SIDES] = np.sum([face.push for face in sides], axis=0), np.sum([f.exposed for f in sides], axis=0)
         shown = [ALL_SIDES]
     else:
-        piston = log.scene.piston
-        own = [face for face in faces if piston and log.walls[face.wall].name == piston.wall]
+        own = [face for face in faces if face.wall in [piston.wall for piston in gauge.moving]]
         shown = [face.name for face in own or sides or faces]
     found = {name: _in_bins(*series, bins) for name, series in given.items()}
     lines = track = None
     if gauge.moving:
-        lines = None if gauge.moving.both else state_lines(log, gauge.area(blocks))
-        ends, depth = blocks[:: BLOCKS // POINTS], gauge.moving.depth.reshape(POINTS, -1).mean(axis=1)
-        track = (ends[1:] + ends[:-1]) / 2, room(log, depth)  # a mirror image: its own inverse
+        lines = state_lines(log, gauge.area(blocks)) if gauge.bounded else None
+        ends, places = blocks[:: BLOCKS // POINTS], (p.place.reshape(POINTS, -1).mean(axis=1) for p in gauge.moving)
+        track = (ends[1:] + ends[:-1]) / 2, dict(zip(piston_names(log), places, strict=True))
     return PressureSeries(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),

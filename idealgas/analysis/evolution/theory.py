@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import beside_piston, outward
+from idealgas.analysis.core.chambers import beside_pistons, outward
 from idealgas.analysis.core.ensemble import (
     becomes_uniform,
     centre_of_mass_velocity,
@@ -60,7 +60,7 @@ class Law:
         piston, piston_error: coordinate of the piston at rest, and its error, length.
         pressure: external pressure on the piston, energy/length².
         caveats: conditions of the law that are not met.
-        chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_piston`.
+        chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_pistons`.
     """
 
     text: str
@@ -105,14 +105,16 @@ def expected_law(
     )
     if single and alone and not properties.elastic and log.has_positions:
         return _haff(log, time)
-    piston = log.scene.piston
-    if piston and piston.inner and (piston.mass or not outward(log)):
+    if len(log.scene.piston) > 1:
+        return None
+    piston = next(iter(log.scene.piston), None)
+    if piston and piston.inner and (piston.mass or not outward(log, piston)):
         known = piston.mass and single and not log.discs.unlike
         return _adiabatic_piston(log, time, apart or {}, start) if known else None
     if single and alone and not properties.fixed_walls:
-        if properties.vibrates or (log.scene.piston.mass and properties.varies):
+        if piston is None or (piston.mass and properties.varies):
             return None
-        return _at_rest(log, one) if log.scene.piston and log.scene.piston.mass else _adiabat(log, time)
+        return _at_rest(log, one) if piston.mass else _adiabat(log, time)
     if properties.later_accelerations or properties.escapes:
         return None
     if any(log.gravity):
@@ -149,19 +151,22 @@ def _kinetic(log: Log) -> float:
     return float((gas.mass * ((gas.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)).sum() / 2)
 
 
-def room(log: Log, piston: np.ndarray) -> np.ndarray:
-    """Length (P,) of the gas along the axis of a piston at coordinates (P,)."""
-    table = log.scene.piston
-    if table is None:
-        return np.full_like(piston, log.box[0])
-    return piston if outward(log) >= 0 else log.box[table.axis] - piston
+def _track(log: Log) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times of the samples, and coordinates and velocities of the only piston at them."""
+    time, place = log.observables["piston_position"]
+    return time, place[:, 0], log.observables["piston_velocity"][1][:, 0]
+
+
+def room(log: Log, place: np.ndarray) -> np.ndarray:
+    """Length (P,) of the gas along the axis of the only piston at coordinates (P,)."""
+    (table,) = log.scene.piston
+    return place if outward(log, table) >= 0 else log.box[table.axis] - place
 
 
 def piston_force(log: Log, length: float) -> float:
     """Force on a piston at rest over N T, in 1/length: Z/(L - 2R), as the centres stay one radius away from it."""
-    gas, table = log.discs, log.scene.piston
-    size = list(gas.box)
-    size[0 if table is None else table.axis] = length
+    gas, size = log.discs, list(log.box)
+    size[log.scene.piston[0].axis] = length
     z = hard_discs.box_compressibility_factor(gas.radius[:1], [len(gas)], (size[0], size[1]), log.periodic)
     return z / (length - 2 * float(gas.radius[0]))
 
@@ -169,14 +174,15 @@ def piston_force(log: Log, length: float) -> float:
 def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     """Isotherm and adiabat through the start of a gas below a piston, over the range of areas that it has.
 
-    None without theory: for several species, above freezing, or where the gas is not uniform below the piston.
+    None without theory: for several species or pistons, above freezing, or where the gas is not uniform below it.
     """
-    table, gas = log.scene.piston, log.discs
-    lacking = log.scene.lacking("uniform", "straight_flight", "elastic")
-    if table is None or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike or not gas.radius[0] > 0:
+    gas, lacking = log.discs, log.scene.lacking("uniform", "straight_flight", "elastic")
+    if len(log.scene.piston) != 1 or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike:
         return None
-    across = log.box[1 - table.axis]
-    first = float(room(log, log.observables["piston_position"][1][:1])[0])
+    if not gas.radius[0] > 0:
+        return None
+    across = log.box[1 - log.scene.piston[0].axis]
+    first = float(room(log, _track(log)[1][:1])[0])
     lengths = np.linspace(min(areas.min() / across, first), max(areas.max() / across, first), STEPS + 1)
     if _crowded(log, lengths[0]):
         return None
@@ -190,8 +196,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
 
 def _crowded(log: Log, length: float) -> bool:
     """Whether the gas below the piston is denser than a fluid in a room of this length."""
-    table, gas = log.scene.piston, log.discs
-    across = gas.box[1 if table is None else 1 - table.axis]
+    gas, across = log.discs, log.box[1 - log.scene.piston[0].axis]
     return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)
 
 
@@ -206,14 +211,14 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
 
     None if the gas does not remain a fluid.
     """
-    at, places = log.observables["piston_position"]
+    at, places, speeds = _track(log)
     lengths = room(log, np.interp(time, at, places))
     first = float(room(log, places[:1])[0])
     grid = np.linspace(min(lengths.min(), first), max(lengths.max(), first), STEPS + 1)
     if _crowded(log, grid[0]):
         return None
     exponent = _work(log, grid, first) - _work(log, grid, lengths)
-    fastest = float(np.abs(log.observables["piston_velocity"][1]).max())
+    fastest = float(np.abs(speeds).max())
     at_first = _kinetic(log) / len(log.discs)
     share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
     said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
@@ -228,13 +233,13 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
     position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean. None for a few discs, and
     where the end stop holds the piston.
     """
-    table = log.scene.piston
-    if table is None or not table.pressure or len(log.discs) < FEW:
+    (table,), (_, places, speeds) = log.scene.piston, _track(log)
+    if not table.pressure or len(log.discs) < FEW:
         return None
     n, diameter = len(log.discs), 2 * float(log.discs.radius[0])
     force = table.pressure * log.box[1 - table.axis]
-    start = float(room(log, log.observables["piston_position"][1][:1])[0])
-    speed = float(log.observables["piston_velocity"][1][0])
+    start = float(room(log, places[:1])[0])
+    speed = float(speeds[0])
     energy = _kinetic(log) + (table.mass or 0.0) * speed**2 / 2 + force * (start - diameter)
     length, t = start, 0.0
     for _ in range(100):
@@ -255,13 +260,13 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     pressures on the temperatures follow `adiabatic_piston.relaxation`; how hot the gases are when unequal pressures
     have become equal is not known.
     """
-    table, gas = log.scene.piston, log.discs
+    (table,), gas = log.scene.piston, log.discs
     if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
         return None
     n, diameter = len(gas), 2 * float(gas.radius[0])
-    number = np.array([own.sum() for own in beside_piston(log).values()])
+    number = np.array([own.sum() for own in beside_pistons(log).values()])
     length = log.box[table.axis] - 2 * diameter
-    speed = float(log.observables["piston_velocity"][1][0])
+    speed = float(_track(log)[2][0])
     t = (_kinetic(log) + table.mass * speed**2 / 2) / (n + 0.5)
     rest = diameter + length * float(number[0] + 1) / (n + 2)
     text = f"in equilibrium T = {t:.6g} on both sides, piston at {rest:.6g}"

@@ -72,9 +72,9 @@ class HeatCapacityAnalysis(Analysis):
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
         if nonequilibrium_reason(log) or not log.has_positions:
             raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
-        has_piston = bool(scene.piston and scene.piston.mass)
-        if has_piston and scene.piston.inner:
-            raise UserError(f"{log.path}: no heat capacity of two gases with a piston between them")
+        has_piston = any(piston.mass for piston in scene.piston)
+        if has_piston and (scene.piston[0].inner or len(scene.piston) > 1):
+            raise UserError(f"{log.path}: no heat capacity of several pistons, or of one between two gases")
         present = {
             BATH: not properties.isolated,
             ROUGH: properties.spins,

@@ -70,7 +70,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
     """
     if log.has_events:
         window = measure(log, [], start, end)
-        if log.scene.piston is None:
+        if not log.scene.piston:
             return _in_events(log, window.edges[window.first :])
         start = window.start
     return _in_samples(log, start, log.end_time if end is None else end)
@@ -106,10 +106,10 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
     common = centre_of_mass_energy(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
-    if scene.piston and scene.piston.mass:
-        position, velocity = (observed[name][1][at] for name in ("piston_position", "piston_velocity"))
-        pull = scene.piston.acceleration(scene.box.size, scene.properties.acceleration)
-        energy = energy + piston_energy(scene.piston.mass, position, velocity, pull)
+    for piston in (piston for piston in scene.piston if piston.mass):
+        position, velocity = (observed[name][1][at, 0] for name in ("piston_position", "piston_velocity"))
+        pull = piston.acceleration(scene.box.size, scene.properties.acceleration)
+        energy = energy + piston_energy(piston.mass, position, velocity, pull)
     first = 0
     if start is None:
         first = equilibrated_from(log, time[at], (Observable(kinetic), Observable(energy)))
@@ -195,12 +195,13 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
         part = FEW_IN_COLUMN / len(gas) if scene.properties.isolated else 0.0
         if part > values.LARGEST_ERROR:
             return None, None
-    if series.position is None or scene.piston is None:
+    if series.position is None:
         return Theory(per_disc, part * per_disc, SOURCE), None
     if mixture:
         return None, None
-    across = gas.box[1 - scene.piston.axis]
-    room = abs(series.position.mean() - (gas.box[scene.piston.axis] - scene.piston.stop(gas.box)))
+    (piston,) = scene.piston
+    across = gas.box[1 - piston.axis]
+    room = abs(series.position.mean() - (gas.box[piston.axis] - piston.stop(gas.box)))
     phi = gas.packing_fraction * gas.area / (room * across)
     if phi > hard_discs.HIGHEST:
         return None, None

@@ -13,7 +13,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import Chambers
+from idealgas.analysis.core.chambers import Chambers, outward
 from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.collisions import (
     CollisionRate,
@@ -32,7 +32,7 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.samples import SampledImpacts, sampled
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.walls import SampledWalls, WallGauge, moving_wall
+from idealgas.analysis.core.walls import SampledWalls, WallGauge
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.pressure.routes import PAIRS, WALLS, Route, bulk_in_events, bulk_in_samples, routes_of
 from idealgas.analysis.theory import hard_discs
@@ -195,7 +195,7 @@ def _without_theory(
         gauge, moments = WallGauge(log), Moments(log.gravity)
         window = measure(log, [moments, *gauge.tallies], start, end, progress)
         energies = window.of(moments.flights)[:, :, 1:3].sum(axis=(1, 2))
-    elif (moving := moving_wall(log)) and not moving.both:
+    elif any(outward(log, piston) for piston in log.scene.piston):
         raise UserError(f"{log.path}: has no events, and samples do not follow a piston closely enough")
     else:
         window, impacts = sampled(log, start, end, ())

@@ -84,8 +84,8 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
 
 def _external_pressure(gauge: WallGauge, face: Face, window: Window) -> float | None:
     """Pressure that holds a piston from outside; None for other walls."""
-    moving = gauge.moving
-    return moving.balance(window.start, window.end) if moving is not None and face.wall == moving.wall else None
+    held = (piston.balance(window.start, window.end) for piston in gauge.moving if piston.wall == face.wall)
+    return next(held, None)
 
 
 def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[Face, float | None]]) -> np.ndarray:

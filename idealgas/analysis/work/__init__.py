@@ -79,18 +79,19 @@ class WorkAnalysis(Analysis):
         piston is not 0, after a time in which it is.
 
         Raises:
-            UserError: without a piston of given velocities, without a thermostat or thermal walls of one temperature,
-                or if no stroke lies in the window.
+            UserError: without a single piston, of given velocities, without a thermostat or thermal walls of one
+                temperature, or if no stroke lies in the window.
         """
         must_apply(log, 0.0, ("elastic", "lossless"))
-        piston, temperatures = log.scene.piston, log.scene.properties.temperatures
-        if piston is None or piston.mass is not None or len(temperatures) != 1:
-            needs = "a piston of given velocities and a heat bath or thermal walls of one temperature"
+        temperatures = log.scene.properties.temperatures
+        if [piston.mass for piston in log.scene.piston] != [None] or len(temperatures) != 1:
+            needs = "one piston, of given velocities, and a heat bath or thermal walls of one temperature"
             raise NotApplicableError(f"{log.path}: work requires {needs}")
+        (piston,) = log.scene.piston
         first, last = span(log, start, end)
         observed, own = log.observables, [wall.name for wall in log.walls].index(piston.wall)
         time, given = observed["wall_energy"]
-        place, energy = observed["piston_position"][1], observed["kinetic_energy"][1]
+        place, energy = observed["piston_position"][1][:, 0], observed["kinetic_energy"][1]
         found: dict[tuple[Any, ...], list[tuple[float, float]]] = {}
         for begun, ended, protocol in _strokes(piston.velocity_steps, log.end_time):
             if first <= begun and ended <= last:
@@ -232,16 +233,16 @@ def _strokes(
 
 def _difference(log: Log, ends: Sequence[float], temperature: float) -> Theory | None:
     """ΔF between two positions of the piston by theory; None with walls inside, a field or discs that do not fit."""
-    properties = log.scene.properties
+    properties, (piston,) = log.scene.properties, log.scene.piston
     if (
-        log.scene.piston.inner
+        piston.inner
         or not properties.straight_flight
         or not properties.empty
         or properties.vibrates
         or len(log.walls) > 4
     ):
         return None
-    rooms = (log.scene.piston.model_copy(update={"position": place}).room(log.box) for place in ends)
+    rooms = (piston.model_copy(update={"position": place}).room(log.box) for place in ends)
     before, after = (log_configurations(log.discs, (x1 - x0, y1 - y0), properties.periodic) for x0, y0, x1, y1 in rooms)
     if before is None or after is None:
         return None

@@ -79,7 +79,7 @@ def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_cro
 def axis_crossing(disc, along_y, cells, own, now, effects):
     """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
 
-    The time is NEVER at the piston's side, where contacts belong to the piston, and at a vibrating side.
+    The time is NEVER at the side of a piston, where contacts belong to it, and at a vibrating side.
     """
     cell = np.int64(disc.row) if along_y else np.int64(disc.column)
     size = cells.height if along_y else cells.width

@@ -12,7 +12,7 @@ from idealgas.columns import BATH, FIRST_SEGMENT
 from idealgas.engine.event_driven.cells import cell_index, clear_cells, enter, find_cell, leave, own_cells
 from idealgas.engine.event_driven.contacts import predict_contact
 from idealgas.engine.event_driven.crossings import cross_cell, is_thermostat_collision, move_to_cell, predict_crossing
-from idealgas.engine.event_driven.piston import is_piston, offer_to_piston, predict_piston
+from idealgas.engine.event_driven.piston import is_piston, offer_to_pistons, predict_piston, predict_pistons
 from idealgas.engine.event_driven.prediction import (
     SIDE_OF_BOX,
     contact_is_next,
@@ -71,7 +71,7 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
             predict_crossing(record, ids, state, i, now, effects)
     push_to_owner(record, ids, state, i, subdomain)
     if change > Repredict.STALE:
-        offer_to_piston(record, ids, state, i, effects.piston, effects)
+        offer_to_pistons(record, ids, state, i, effects.piston, effects)
 
 
 @inline
@@ -115,7 +115,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     capacity = batch_capacity(batch)
     if state.unpredicted[0]:
         state.unpredicted[0] = False
-        predict_piston(record, ids, state, effects.piston, effects)
+        predict_pistons(record, ids, state, effects.piston, effects)
         for k in range(record.shape[0]):
             if if_owned(record, k, subdomain) >= 0:
                 predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, subdomain)
@@ -162,15 +162,16 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             i = other = np.int64(-1)
             continue
         if of_piston:
+            leaf, piston = i, i - record.shape[0]
             i = np.int64(prediction.partner)
             hit = at_contact and record[U(i)].count == prediction.partner_count
             if hit:
                 remove(state.tree, state.prediction, ids, i)
-                wall = resolve_piston(record[U(i)], ids[U(i)], time, effects.piston, effects)
+                wall = resolve_piston(record[U(i)], ids[U(i)], piston, time, effects.piston, effects)
                 rows += write_hit(batch, rows, epoch_start + time, ids[U(i)], -1 - wall, PISTON, record[U(i)], effects)
             elif not at_contact:
-                resolve_stop(time, effects.piston)
-            predict_piston(record, ids, state, effects.piston, effects)
+                resolve_stop(piston, time, effects.piston)
+            predict_piston(record, ids, state, leaf, effects.piston, effects)
             if not hit:
                 change = np.int64(Repredict.STALE)
                 i = np.int64(-1)

@@ -1,4 +1,4 @@
-"""The piston in the schedule: one more leaf of the tree, which owns the contacts of all discs with the piston."""
+"""Pistons in the schedule: one more leaf of the tree for each, which owns the contacts of all discs with the piston."""
 
 import numpy as np
 
@@ -13,15 +13,15 @@ U = np.uintp
 
 @inline
 def is_piston(i, ids, piston):
-    """Whether leaf i of the schedule is the piston's."""
+    """Whether leaf i of the schedule is that of a piston."""
     if piston is not None:
-        return i == ids.shape[0]
+        return i >= ids.shape[0]
     return False
 
 
 @inline
 def keep_if_earlier(record, ids, prediction, j, piston, effects):
-    """Store disc j's contact with the piston as the piston's next if it is the earliest; return whether it is."""
+    """Store disc j's contact with a piston as the piston's next if it is the earliest; return whether it is."""
     if has_left(record[U(j)], effects.absorbing):
         return False
     if misses_piston_until(record[U(j)], piston, effects.gravity, prediction.contact):
@@ -39,15 +39,17 @@ def keep_if_earlier(record, ids, prediction, j, piston, effects):
 
 
 @inline
-def predict_piston(record, ids, state, piston, effects):
-    """Predict the piston's next event, a contact with a disc or a side of the box, and enter it in the schedule."""
+def predict_piston(record, ids, state, leaf, piston, effects):
+    """Predict the next event of a piston, a contact with a disc or a side of the box, and enter it in the schedule.
+
+    leaf: of the piston.
+    """
     if piston is not None:
-        leaf = ids.shape[0]
-        p = piston[0]
+        p = piston[U(leaf - ids.shape[0])]
         prediction = state.prediction[U(leaf)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-        for j in range(leaf):
+        for j in range(ids.shape[0]):
             keep_if_earlier(record, ids, prediction, j, p, effects)
         prediction.crossing = stop_contact(p)
         prediction.crossing_code = SIDE_OF_BOX + p.wall
@@ -55,9 +57,18 @@ def predict_piston(record, ids, state, piston, effects):
 
 
 @inline
-def offer_to_piston(record, ids, state, i, piston, effects):
-    """Update the piston's next contact after disc i's record has changed."""
+def predict_pistons(record, ids, state, piston, effects):
+    """Predict the next events of all pistons."""
     if piston is not None:
-        leaf = ids.shape[0]
-        if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[0], effects):
-            update(state.tree, state.prediction, ids, leaf)
+        for k in range(piston.shape[0]):
+            predict_piston(record, ids, state, ids.shape[0] + k, piston, effects)
+
+
+@inline
+def offer_to_pistons(record, ids, state, i, piston, effects):
+    """Update the next contact of each piston after disc i's record has changed."""
+    if piston is not None:
+        for k in range(piston.shape[0]):
+            leaf = ids.shape[0] + k
+            if keep_if_earlier(record, ids, state.prediction[U(leaf)], i, piston[U(k)], effects):
+                update(state.tree, state.prediction, ids, leaf)

@@ -102,7 +102,7 @@ def contact_is_next(prediction, ids, i):
     """
     if prediction.contact != prediction.crossing:
         return prediction.contact < prediction.crossing
-    if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i == ids.shape[0]:
+    if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i >= ids.shape[0]:
         return False
     own = np.int64(ids[U(i)])
     return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.crossing_code - SIDE_OF_BOX))
@@ -112,12 +112,12 @@ def contact_is_next(prediction, ids, i):
 def event_ids(prediction, ids, i):
     """The two ids by which a disc's next event is ordered among simultaneous ones.
 
-    The last leaf, beyond the discs, is the piston's: it meets a disc in its contact, a side of the box in its crossing.
+    Leaves beyond the discs are pistons': they meet a disc in their contact, a side of the box in their crossing.
     """
     contact = contact_is_next(prediction, ids, i)
     side = np.int64(wall_rank(prediction.crossing_code - SIDE_OF_BOX))
-    if i == ids.shape[0]:
-        return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), np.int64(-1))
+    if i >= ids.shape[0]:
+        return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), side)
     own = np.int64(ids[U(i)])
     if contact:
         return own, partner_rank(ids, prediction.partner)

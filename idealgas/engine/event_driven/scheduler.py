@@ -23,7 +23,7 @@ U = np.uintp
 
 
 class Tree(NamedTuple):
-    """Tournament tree of the discs' next events; its leaves are the discs in order of index, then the piston.
+    """Tournament tree of the discs' next events; its leaves are the discs in order of index, then the pistons.
 
     Attributes:
         time: (total,) f8, local time of the earliest event below each node.

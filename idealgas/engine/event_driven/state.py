@@ -23,8 +23,8 @@ class EventDrivenState(NamedTuple):
         cells: cells of the neighbour search.
         coarse: coarse cells of the largest discs; None if all are in the same cells.
         tree: schedule of the discs' next events.
-        prediction: (N,) PREDICTION by index, next events of each disc; with a piston (N + 1,), the last is the
-            piston's.
+        prediction: (N,) PREDICTION by index, next events of each disc; with K pistons (N + K,), the last
+            ones are theirs.
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
@@ -47,7 +47,7 @@ class EventDrivenState(NamedTuple):
 
 def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effects) -> EventDrivenState:
     """Event-driven state of n discs, without any prediction, and before the walls are known."""
-    leaves = n if effects.piston is None else n + 1
+    leaves = n if effects.piston is None else n + len(effects.piston)
     most = 9 if effects.shear is None else 25  # images in which each disc is a candidate, in a box of one cell
     room = most * n + 16
     tree = make_tree(leaves)

@@ -98,7 +98,7 @@ def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check that the discs lie in the space of the gas, and are not too large, too small or too many."""
     box, space, discs = scene.box, scene.room, scene.given
     kinds = [(i, s) for i, s in scene.placed if s.count]
-    outside = [*_regions_outside(box, space, kinds), *_discs_outside(scene)]
+    outside = [*_regions_outside(scene, space, kinds), *_discs_outside(scene)]
     yield from outside
     smallest = RESOLUTION * max(box.size)
     small: list[tuple[tuple[Key, ...], str, float]] = [
@@ -115,10 +115,9 @@ def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
         yield from _crowding(scene, _name_of(box, space), kinds)
 
 
-def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
+def _regions_outside(scene: Document, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     left, bottom, right, top = space
-    place = _name_of(box, space)
-    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    place, others = _name_of(scene.box, space), _limits(scene)
     for i, s in kinds:
         key: Key = ("species", i, "region")
         x0, y0, x1, y1 = s.region or space
@@ -135,7 +134,7 @@ def _regions_outside(box: Box, space: Rectangle, kinds: list[tuple[int, Species]
 def _discs_outside(scene: Document) -> Iterator[Issue]:
     """Check given discs, at most MOST_OVERLAPS."""
     box, space, discs = scene.box, scene.room, scene.given
-    others: tuple[Key, ...] = (("box", "size"), ("piston", "position"))
+    others = _limits(scene)
     place, widest = _name_of(box, space), min(space[2] - space[0], space[3] - space[1])
     slack = rounding(max(box.size), 2 * discs.radius) + scene.accepted_overlap
     inside = 2 * discs.radius <= widest
@@ -160,6 +159,11 @@ def _discs_outside(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, f"{which or 'disc '}not in the {place}", str(discs.position[k].tolist()), allowed)
 
 
+def _limits(scene: Document) -> tuple[Key, ...]:
+    """Keys that say how much room the gas has."""
+    return (("box", "size"), *(("piston", k, "position") for k in range(len(scene.piston))))
+
+
 def _name_of(box: Box, space: Rectangle) -> str:
     return "box" if space == (0.0, 0.0, *box.size) else "space before the piston"
 
@@ -182,7 +186,7 @@ def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> I
             place = name if region == whole else "region"
             allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
             yield Issue(
-                (("species", most, "count"), *others, ("box", "size"), ("piston", "position")),
+                (("species", most, "count"), *others, *_limits(scene)),
                 f"too many discs for the {place}",
                 f"packing fraction {packing:.4g}",
                 allowed,

@@ -1,11 +1,12 @@
-"""Checks of the piston: its sides, position and motion, and walls in its range."""
+"""Checks of pistons: their sides, positions and motion, walls in their range, and the room of the gases between."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,34 +27,71 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
+def called(number: int) -> list[str]:
+    """What the pistons of a scene are called in messages: by their tables, or a single one the piston."""
+    return ["the piston"] if number == 1 else [f"piston {k}" for k in range(number)]
+
+
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check the piston of a scene whose tables are valid."""
-    piston = scene.piston
-    if piston is None or invalid:
+    """Check the pistons of a scene whose tables are valid."""
+    if invalid or not scene.piston:
         return
+    found = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)] or list(_row_issues(scene))
+    yield from found
+    if not found:
+        yield from _holes_between(scene)
+        for k in range(len(scene.piston)):
+            yield from _walls_in_the_way(scene, k)
+
+
+def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
+    """Check one piston by itself."""
+    piston = scene.piston[k]
     if piston.inner and piston.side:
         got = f'side = "{piston.side}", inner = "{piston.inner}"'
-        yield Issue((("piston", "inner"), ("piston", "side")), "at a side and inner", got, "one of them")
+        yield Issue((("piston", k, "inner"), ("piston", k, "side")), "at a side and inner", got, "one of them")
         return
-    for name in sorted((SIDES[k] for k in sides_across(piston.axis)), key=lambda name: name != piston.wall):
+    for name in sorted((SIDES[side] for side in sides_across(piston.axis)), key=lambda name: name != piston.wall):
         side, allowed = getattr(scene.box, name), "reflecting" if name == piston.wall else "reflecting or thermal"
         if side == PERIODIC or (name == piston.wall and side != "reflecting"):
             got = side if isinstance(side, str) else side.action.split(",")[0]
-            keys: tuple[Key, ...] = (("piston", "inner" if piston.inner else "side"), ("box", name))
+            keys: tuple[Key, ...] = (_place_key(scene, k), ("box", name))
             yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
     start = piston.start(scene.box.size)
     if not 0 <= start <= length:
-        keys = (("piston", "position"), ("box", "size"))
+        keys = (("piston", k, "position"), ("box", "size"))
         yield Issue(keys, "piston not in the box", f"{start}", f"0 <= position <= {length}")
         return
-    found = list(_motion_issues(piston))
+    found = list(_motion_issues(piston, k))
     yield from found
     if not found:
-        found = list(_forced_issues(scene, piston) if piston.mass is None else _massive_issues(scene, piston))
-        yield from found
-    if not found:
-        yield from _walls_in_the_way(scene, piston)
+        yield from _forced_issues(scene, k) if piston.mass is None else _massive_issues(scene, k)
+
+
+def _place_key(scene: Document, k: int) -> Key:
+    """Key that says where a piston is among the sides of the box."""
+    return ("piston", k, "inner" if scene.piston[k].inner else "side")
+
+
+def _row_issues(scene: Document) -> Iterator[Issue]:
+    """Check that pistons move along one axis, and are in order along it, one at most at each side."""
+    for k in range(1, len(scene.piston)):
+        before, piston = scene.piston[k - 1 : k + 1]
+        starts = [table.start(scene.box.size) for table in (before, piston)]
+        if piston.axis != before.axis:
+            keys: tuple[Key, ...] = (_place_key(scene, k), _place_key(scene, k - 1))
+            got = f"{'xy'[before.axis]} and {'xy'[piston.axis]}"
+            yield Issue(keys, "pistons along two axes", got, "all of them along one")
+            return
+        if piston.outward and piston.outward == before.outward:
+            keys = (_place_key(scene, k), _place_key(scene, k - 1))
+            yield Issue(keys, "two pistons at one side", piston.wall, "one at each side")
+        elif piston.outward < before.outward or starts[0] >= starts[1]:
+            keys = (("piston", k, "position"), ("piston", k), ("piston", k - 1, "position"))
+            texts = (f"{table.wall} at {start:g}" for table, start in zip((before, piston), starts, strict=True))
+            allowed = "in order of position, those at sides outside"
+            yield Issue(keys, "pistons not in order", ", then ".join(texts), allowed)
 
 
 def _facing(piston: Piston) -> str:
@@ -61,11 +99,11 @@ def _facing(piston: Piston) -> str:
     return SIDES[opposite(SIDES.index(piston.wall))]
 
 
-def _motion_issues(piston: Piston) -> Iterator[Issue]:
+def _motion_issues(piston: Piston, k: int) -> Iterator[Issue]:
     given = [key for key in ("velocity", "mass", "pressure") if getattr(piston, key) is not None]
     pressed = [] if piston.inner else ["pressure"]
     if given not in (["velocity"], ["mass", *pressed], ["velocity", "mass", *pressed]):
-        keys: tuple[Key, ...] = (("piston",), *(("piston", key) for key in given))
+        keys: tuple[Key, ...] = (("piston", k), *(("piston", k, key) for key in given))
         what = "not one motion" if given else "no motion"
         yield Issue(
             keys,
@@ -74,7 +112,7 @@ def _motion_issues(piston: Piston) -> Iterator[Issue]:
             "velocity, mass or both" if piston.inner else "velocity, mass and pressure, or all three",
         )
     elif piston.mass is not None and len(steps_of(piston.velocity)) > 1:
-        key: Key = ("piston", "velocity")
+        key: Key = ("piston", k, "velocity")
         yield Issue((key,), "steps of a piston with a mass", description(piston.velocity), "its velocity at the start")
 
 
@@ -89,118 +127,193 @@ def least_depth(scene: Document, axis: int) -> float:
     return heights + max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - axis], 2 * scene.largest_radius)
 
 
-def _forced_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check pistons of given velocity, which nothing stops; the gases of an inner one are not known yet."""
-    velocities = [velocity for _, velocity in steps_of(piston.velocity) if velocity]
+def _moving_keys(*numbers: int) -> tuple[Key, ...]:
+    """Keys by which pistons of given velocity come too far."""
+    own = ((("piston", k, "velocity"), ("piston", k, "position")) for k in numbers)
+    return (*(key for keys in own for key in keys), ("run", "until"), ("box", "size"))
+
+
+def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
+    """Check a piston of given velocity, which nothing stops; gases on both sides of one are not known yet."""
+    piston, keys = scene.piston[k], _moving_keys(k)
+    velocities = [velocity for _, velocity in piston.velocity_steps if velocity]
     if not velocities:
         return
-    keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
     if scene.run.until is None:
         inward = velocities[-1] * piston.outward < 0 or piston.inner
         what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
         yield Issue(keys, what, "a run without until", "a run with until")
         return
     places, length, least = track(scene, piston), scene.box.size[piston.axis], least_depth(scene, piston.axis)
-    depth, when = min((_depth(scene, piston, place), when) for place, when in places)
-    farthest = max(places, key=lambda place: abs(place[0] - length / 2))
-    if depth < least and when and not piston.inner:
-        got = f"a depth of {depth:.6g} {when}"
+    depth, time = min((_depth(scene, piston, place), time) for time, place in places)
+    farthest = max(places, key=lambda place: abs(place[1] - length / 2))
+    if depth < least and time and not piston.inner and len(scene.piston) == 1:
+        got = f"a depth of {depth:.6g} {_when(scene, time)}"
         yield Issue(keys, "crushes the gas before the run ends", got, f">= {least:.6g}")
-    elif not 0 <= farthest[0] <= length:
-        got = f"a position of {farthest[0]:.6g} {farthest[1]}"
+    elif not 0 <= farthest[1] <= length:
+        got = f"a position of {farthest[1]:.6g} {_when(scene, farthest[0])}"
         yield Issue(keys, "leaves the box before the run ends", got, f"0 <= position <= {length}")
 
 
-def track(scene: Document, piston: Piston) -> list[tuple[float, str]]:
-    """Positions of a piston of given velocity at the start, at changes of its velocity and at the end, and when."""
-    until, place = scene.run.until or 0.0, piston.start(scene.box.size)
-    steps = [(time, velocity) for time, velocity in steps_of(piston.velocity) if time < until]
-    found = [(place, "")]
+def track(scene: Document, piston: Piston) -> list[tuple[float, float]]:
+    """Times and positions of a piston of given velocity: at the start, at changes of its velocity and at the end."""
+    until, place = scene.run.until, piston.start(scene.box.size)
+    if until is None:  # then it has no velocity
+        return [(0.0, place)]
+    steps = [(time, velocity) for time, velocity in piston.velocity_steps if time < until]
+    found = [(0.0, place)]
     for (time, velocity), later in zip(steps, [*(time for time, _ in steps[1:]), until], strict=True):
         place += velocity * (later - time)
-        found.append((place, "at the end" if later == until else f"at t = {later:g}"))
+        found.append((later, place))
     return found
 
 
-def _massive_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
+def _when(scene: Document, time: float) -> str:
+    """Words for a time of a track."""
+    return "at the start" if not time else "at the end" if time == scene.run.until else f"at t = {time:g}"
+
+
+def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
     """Check that a piston with a mass is under one gravity and, unless it is inner, pressed on the gas."""
+    piston = scene.piston[k]
     if scene.properties.later_accelerations:
-        both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", "mass"))
+        both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", k, "mass"))
         yield Issue(both, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
     if piston.inner:
-        yield from _resting_issues(scene, piston)
+        yield from _resting_issues(scene, k)
         return
     times = [time for time, _ in steps_of(piston.pressure)]
     accelerations = (piston.acceleration(scene.box.size, scene.properties.acceleration, time) for time in times)
     acceleration = max(accelerations, key=lambda a: a * piston.outward)
     if acceleration * piston.outward >= 0:
-        keys: tuple[Key, ...] = (("piston", "pressure"), ("piston", "mass"), ("gravity", "acceleration"))
+        keys: tuple[Key, ...] = (("piston", k, "pressure"), ("piston", k, "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"
         yield Issue(keys, "nothing presses the piston on the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
 
 
-def _resting_issues(scene: Document, piston: Piston) -> Iterator[Issue]:
+def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
     """Check that gravity does not press an inner piston at rest on a side of the box."""
-    size, start = scene.box.size, piston.start(scene.box.size)
-    pull = piston.acceleration(size, scene.properties.acceleration)
+    piston, size = scene.piston[k], scene.box.size
+    start, pull = piston.start(size), piston.acceleration(size, scene.properties.acceleration)
     if not piston.velocity and ((start == 0 and pull < 0) or (start == size[piston.axis] and pull > 0)):
-        keys: tuple[Key, ...] = (("piston", "position"), ("gravity", "acceleration"))
+        keys: tuple[Key, ...] = (("piston", k, "position"), ("gravity", "acceleration"))
         yield Issue(keys, "a piston at rest on a side", f"{start:g}", f"0 < position < {size[piston.axis]}")
 
 
-def _walls_in_the_way(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check walls that the piston may reach."""
-    if piston.inner:
-        yield from _walls_of_inner(scene, piston)
+def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
+    """Check walls that a piston may reach."""
+    piston = scene.piston[k]
+    if piston.inner or len(scene.piston) > 1:
+        yield from _walls_in_range(scene, k)
         return
     if piston.mass is not None:
         depth = least_depth(scene, piston.axis)
     else:
-        depth = min(_depth(scene, piston, place) for place, _ in track(scene, piston))
+        depth = min(_depth(scene, piston, place) for _, place in track(scene, piston))
     for i, wall in enumerate(scene.segments):
         reach = wall.radius + max(
             _depth(scene, piston, end[piston.axis]) for end in bounds(wall.start, wall.end, wall.arc)
         )
         if reach > depth:
-            place: Key = getattr(wall, "place", ("wall", i))
-            keys: tuple[Key, ...] = (place, ("piston", "position"), ("piston", "velocity"), ("run", "until"))
             why = ", where it cannot come" if piston.mass is None else WAY
             allowed = f"no farther than {depth:.6g}{why}"
-            yield Issue(keys, "wall in the way of the piston", f"{reach:.6g} from the {_facing(piston)} side", allowed)
+            got = f"{reach:.6g} from the {_facing(piston)} side"
+            yield Issue(_in_the_way(wall, i, k), "wall in the way of the piston", got, allowed)
 
 
-def _walls_of_inner(scene: Document, piston: Piston) -> Iterator[Issue]:
-    """Check walls that an inner piston may reach: one with a mass comes everywhere."""
-    places = [0.0, scene.box.size[piston.axis]]
-    if piston.mass is None:
-        places = [place for place, _ in track(scene, piston)]
+def _in_the_way(wall: Any, i: int, k: int) -> tuple[Key, ...]:
+    """Keys of wall i in the way of piston k."""
+    place: Key = getattr(wall, "place", ("wall", i))
+    return (place, ("piston", k, "position"), ("piston", k, "velocity"), ("run", "until"))
+
+
+def _range(scene: Document, k: int) -> tuple[float, float]:
+    """Where a piston may come, one with a mass up to others of given velocity, and what is beyond it at its side."""
+    piston, size = scene.piston[k], scene.box.size
+    ways = [[place for _, place in track(scene, p)] if p.mass is None else [] for p in scene.piston]
+    places = ways[k] or [
+        max((max(way) for way in ways[:k] if way), default=0.0),
+        min((min(way) for way in ways[k + 1 :] if way), default=size[piston.axis]),
+    ]
+    reached = [*places, *([] if piston.inner else [piston.stop(size)])]
+    return min(reached), max(reached)
+
+
+def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
+    """Check walls in the range of a piston."""
+    axis, (least, most) = scene.piston[k].axis, _range(scene, k)
     for i, wall in enumerate(scene.segments):
-        low, high = (end[piston.axis] for end in bounds(wall.start, wall.end, wall.arc))
-        if low - wall.radius < max(places) and high + wall.radius > min(places):
-            place: Key = getattr(wall, "place", ("wall", i))
-            keys: tuple[Key, ...] = (place, ("piston", "position"), ("piston", "velocity"), ("run", "until"))
-            allowed = f"none from {min(places):.6g} to {max(places):.6g} along {piston.inner}, where it may come"
-            yield Issue(keys, "wall in the way of the piston", f"from {low:.6g} to {high:.6g}", allowed)
+        low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
+        if low - wall.radius < most and high + wall.radius > least:
+            allowed = f"none from {least:.6g} to {most:.6g} along {'xy'[axis]}, where it may come"
+            got = f"from {low:.6g} to {high:.6g}"
+            yield Issue(_in_the_way(wall, i, k), f"wall in the way of {called(len(scene.piston))[k]}", got, allowed)
 
 
-def crushed_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> Iterator[Issue]:
-    """One issue for each gas to which an inner piston of given velocity leaves too little room.
+def _holes_between(scene: Document) -> Iterator[Issue]:
+    """Check that no gas between two pistons, which cannot meet as long as it has a disc, escapes."""
+    axis, starts = scene.piston[0].axis, [piston.start(scene.box.size) for piston in scene.piston]
+    for i, wall in enumerate(scene.wall):
+        low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
+        if wall.absorbing and starts[0] <= low and high <= starts[-1]:
+            got, allowed = f"from {low:.6g} to {high:.6g}", f"none from {starts[0]:.6g} to {starts[-1]:.6g}"
+            keys: tuple[Key, ...] = (("wall", i, "absorbing"), ("piston", 0), ("piston", len(starts) - 1))
+            yield Issue(keys, "a hole between two pistons", got, f"{allowed} along {'xy'[axis]}")
+
+
+def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> Iterator[Issue]:
+    """One issue for each two pistons with no disc between them, and for each gas that has too little room some time.
 
     position: (N, 2), of all discs at the start, length. radii: (N,), length.
     """
-    piston = scene.piston
-    if piston is None or not piston.inner or piston.mass is not None:
+    if not scene.piston:
         return
-    outward, axis = piston.outward_from(position, scene.box.size), piston.axis
-    for side, sign in zip(sides_across(axis), (1.0, -1.0), strict=True):
-        radius = radii[outward == sign]
-        if not len(radius):
+    axis, size = scene.piston[0].axis, scene.box.size
+    chamber = np.searchsorted([piston.start(size) for piston in scene.piston], position[:, axis])
+    gases = [radii[chamber == c] for c in range(len(scene.piston) + 1)]
+    names = called(len(scene.piston))
+    for k in range(1, len(scene.piston)):
+        if not len(gases[k]):
+            keys: tuple[Key, ...] = (("piston", k, "position"), ("piston", k - 1, "position"))
+            what = f"no disc between {names[k - 1]} and {names[k]}"
+            yield Issue(keys, what, "nothing", "a disc at least, as pistons do not collide")
+    yield from _crushed_issues(scene, gases)
+
+
+def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]:
+    """One issue for each two neighbours that do not give way, if they leave the gases in between too little room.
+
+    gases: radii (n,) of the discs before, between and after the pistons.
+    """
+    last, axis, across = len(scene.piston), scene.piston[0].axis, scene.box.size[1 - scene.piston[0].axis]
+    sides = dict(zip((-1, last), sides_across(axis), strict=True))
+    for (a, low), (b, high) in pairwise(_given_places(scene)):
+        least = sum(_least_room(radius, across) for radius in gases[a + 1 : b + 1] if len(radius))
+        moving = [k for k in (b, a) if k not in sides]
+        if not least or not moving:
             continue
-        covered = math.pi * float(radius @ radius) / CLOSE_PACKING / scene.box.size[1 - axis]
-        least = reach(scene.box.sides[side]) + max(covered, 2 * float(radius.max()))
-        rooms = ((place if sign > 0 else scene.box.size[axis] - place, when) for place, when in track(scene, piston))
-        room, when = min(rooms)
+        least += sum(reach(scene.box.sides[sides[k]]) for k in (a, b) if k in sides)
+        times = sorted({time for time, _ in (*low, *high)})
+        rooms = np.interp(times, *np.array(high).T) - np.interp(times, *np.array(low).T)
+        room, time = min(zip(rooms.tolist(), times, strict=True))
         if room < least:
-            keys: tuple[Key, ...] = (("piston", "velocity"), ("piston", "position"), ("run", "until"), ("box", "size"))
-            got = f"a distance of {room:.6g} from the {SIDES[side]} side {when or 'at the start'}"
-            yield Issue(keys, "crushes the gas before the run ends", got, f">= {least:.6g}")
+            other = next((f"the {SIDES[sides[k]]} side" for k in (a, b) if k in sides), called(last)[max(a, 0)])
+            got = f"a distance of {room:.6g} from {other} {_when(scene, time)}"
+            yield Issue(_moving_keys(*moving), "crushes the gas before the run ends", got, f">= {least:.6g}")
+
+
+def _given_places(scene: Document) -> list[tuple[int, list[tuple[float, float]]]]:
+    """Numbers and tracks of what does not give way: sides of the box, -1 and K, and pistons of given velocity.
+
+    A piston of given velocity at a side replaces it.
+    """
+    tables, length = scene.piston, scene.box.size[scene.piston[0].axis]
+    found = [(k, track(scene, piston)) for k, piston in enumerate(tables) if piston.mass is None]
+    replaced = {piston.outward for piston in tables if piston.mass is None}
+    low = [] if -1.0 in replaced else [(-1, [(0.0, 0.0)])]
+    return [*low, *found, *([] if 1.0 in replaced else [(len(tables), [(0.0, length)])])]
+
+
+def _least_room(radius: np.ndarray, across: float) -> float:
+    """Smallest length of a room of some width for discs of these radii (n,)."""
+    return max(math.pi * float(radius @ radius) / CLOSE_PACKING / across, 2 * float(radius.max()))

@@ -71,7 +71,7 @@ def test_a_case_takes_a_scene_to_a_time(case):
 
 @pytest.mark.parametrize(
     ("more", "message"),
-    [("[[wall]]\nfrom=[5, 0]\nto=[5, 4]\n", "wall segments"), ('[piston]\nside="right"\nvelocity=-0.1\n', "piston")],
+    [("[[wall]]\nfrom=[5, 0]\nto=[5, 4]\n", "wall segments"), ('[[piston]]\nside="right"\nvelocity=-0.1\n', "piston")],
 )
 def test_what_time_steps_cannot_do_is_refused(more, message):
     with pytest.raises(UserError, match=message):

@@ -299,7 +299,7 @@ def test_laws_of_dilute_gases_take_one(made):
 
 
 def test_the_adiabat_takes_a_slow_piston(made):
-    piston = ("piston={side='right', position=8, velocity=%g}", "run.collisions_per_disc=")
+    piston = ("piston=[{side='right', position=8, velocity=%g}]", "run.collisions_per_disc=")
     fast = made(piston[0] % -0.5, piston[1], "run.until=6")
     only(registry.analyse(fast, "evolution"), "of the mean speed of the discs, but the law is that of a slow one")
     slow = made(piston[0] % -0.05, piston[1], "run.until=6")

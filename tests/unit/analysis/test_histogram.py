@@ -20,7 +20,7 @@ species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
 
 WITHOUT = {
     "restitution.normal=0.9": "the gas loses energy (restitution)",
-    "piston={ velocity = -0.05 }": "the gas is driven (piston)",
+    "piston=[{ velocity = -0.05 }]": "the gas is driven (piston)",
     "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "walls have 2 temperatures",
 }
 
@@ -51,7 +51,7 @@ def test_without_a_stationary_state_the_window_is_the_whole_log(make):
 
 
 @pytest.mark.parametrize(
-    "override", ["gravity.acceleration=[0, -0.3]", "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"]
+    "override", ["gravity.acceleration=[0, -0.3]", "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"]
 )
 def test_maxwell_at_the_measured_temperature(override, make):
     log = make(override)

@@ -115,7 +115,7 @@ def test_instants_of_a_log_without_events_are_its_checkpoints(make):
     [
         (["log.events=false"], "has no events"),
         ([*WALLS, "run.method=monte_carlo"], "no positions"),
-        ([*WALLS, "piston={ position = 1, mass = 5, pressure = 80 }"], "no answer for a gas with"),
+        ([*WALLS, "piston=[{ position = 1, mass = 5, pressure = 80 }]"], "no answer for a gas with"),
     ],
 )
 def test_what_cannot_be_measured_is_refused(make, overrides, message):

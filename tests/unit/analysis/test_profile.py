@@ -186,7 +186,7 @@ def test_layers_at_the_cold_side_are_larger(make):
 @pytest.mark.parametrize(
     "override",
     [
-        "piston={ position = 12, mass = 5, pressure = 2 }",
+        "piston=[{ position = 12, mass = 5, pressure = 2 }]",
         "wall=[{ from = [6, 0], to = [6, 1] }]",
         "wall=[{ from = [6, 0], to = [6, 1], opens_at = 3 }]",
         "rotation.roughness=0",

@@ -199,7 +199,7 @@ def test_a_relaxation_time_takes_a_start_like_that_of_its_error(made):
 
 def test_a_law_of_a_piston_takes_a_fluid(made):
     piston = (
-        "piston={side='right', position=8, velocity=-0.4}",
+        "piston=[{side='right', position=8, velocity=-0.4}]",
         "species.gas.radius=0.4",
         "run.collisions_per_disc=",
         "run.until=10",
@@ -207,9 +207,9 @@ def test_a_law_of_a_piston_takes_a_fluid(made):
     found = registry.analyse(made(*piston), "evolution")
     assert found.law is None
     assert json.dumps(found.as_dict(), allow_nan=False)
-    stopped = ("piston={side='right', position=7, mass=5, pressure=0.01}", "run.collisions_per_disc=", "run.until=20")
+    stopped = ("piston=[{side='right', position=7, mass=5, pressure=0.01}]", "run.collisions_per_disc=", "run.until=20")
     assert registry.analyse(made(*stopped), "evolution").law is None  # the gas pushes it to its end stop
-    held = ("piston={side='right', position=6, mass=5, pressure=1}", "run.collisions_per_disc=", "run.until=20")
+    held = ("piston=[{side='right', position=6, mass=5, pressure=1}]", "run.collisions_per_disc=", "run.until=20")
     law = registry.analyse(made(*held), "evolution").law
     assert law.piston_error == pytest.approx(0.12 / 40 * law.piston)  # side='right': the gas begins at 0
 

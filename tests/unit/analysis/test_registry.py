@@ -42,7 +42,7 @@ WAVES = (
 )
 STROKES = (
     "thermostat={temperature=1, rate=1}",
-    "piston.velocity=[[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]]",
+    "piston=[{velocity=[[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]]}]",
     "run.collisions_per_disc=",
     "run.until=20",
 )

@@ -48,10 +48,10 @@ def scene(extra=""):
     """)
 
 
-def paint(extra="", state=STATE, piston=None, by_species=False, size=SIZE):
+def paint(extra="", state=STATE, pistons=(), by_species=False, size=SIZE):
     """(height, width, 3) of a frame, and at(x, y): its pixel there in the box."""
     made = scene(extra)
-    painter = Painter(made, make_gas(made), piston, 1.0, size=size, colouring="species" if by_species else "speed")
+    painter = Painter(made, make_gas(made), pistons, 1.0, size=size, colouring="species" if by_species else "speed")
     frame = painter.paint(state).copy()[..., :3].astype(int)
     place = layout(size, (10.0, 10.0))
 
@@ -76,11 +76,11 @@ def test_box_and_speeds_are_in_the_frame_and_apart(size, box):
 
 def test_the_room_beyond_a_piston_is_shown_in_part():
     place = np.array([4.0, 5.0])
-    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0)
-    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0)
-    assert view((40.0, 10.0), right) == ((0.0, 6.25), (0.0, 10.0))
-    assert view((40.0, 10.0), left) == ((33.75, 40.0), (0.0, 10.0))
-    assert view((40.0, 10.0), None) == ((0.0, 40.0), (0.0, 10.0))
+    right = PistonTrack(0, place, place, 0 * place, (0.0, 40.0), 1.0, "piston")
+    left = PistonTrack(0, place, 40 - place, 0 * place, (0.0, 40.0), -1.0, "piston")
+    assert view((40.0, 10.0), [right]) == ((0.0, 6.25), (0.0, 10.0))
+    assert view((40.0, 10.0), [left]) == ((33.75, 40.0), (0.0, 10.0))
+    assert view((40.0, 10.0), []) == ((0.0, 40.0), (0.0, 10.0))
 
 
 def test_discs_are_where_they_are():
@@ -103,7 +103,7 @@ def test_discs_at_joined_sides_show_their_other_half():
     made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
         f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
     ))  # fmt: skip
-    painter = Painter(made, make_gas(made), None, 1.0, size=SIZE)
+    painter = Painter(made, make_gas(made), (), 1.0, size=SIZE)
     frame = painter.paint(state)[..., :3]
     place = layout(SIZE, (10.0, 10.0))
     for x, y in ((0.25, 9.75), (9.75, 9.75), (0.25, 0.25), (9.75, 0.25)):
@@ -117,24 +117,24 @@ def test_a_gate_is_there_until_it_opens():
 
 
 def test_the_piston_is_drawn():
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), np.zeros(2), (0.0, 10.0), 1.0)
-    red, green, blue = paint(piston=track)[1](6.5, 5)
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([4.0, 8.0]), np.zeros(2), (0.0, 10.0), 1.0, "piston")
+    red, green, blue = paint(pistons=[track])[1](6.5, 5)
     assert red > 150 > green > blue
-    assert paint(piston=track)[1](6.2, 5).min() > WHITE
+    assert paint(pistons=[track])[1](6.2, 5).min() > WHITE
 
 
 def test_the_name_of_a_piston_at_the_edge_is_whole():
     made = scene()
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, 10.0]), np.zeros(2), (0.0, 10.0), 1.0)
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, 10.0]), np.zeros(2), (0.0, 10.0), 1.0, "piston")
     for size in ((720, 720), (360, 360)):
-        painter = Painter(made, make_gas(made), track, 1.0, size=size, panel="none")
+        painter = Painter(made, make_gas(made), [track], 1.0, size=size, panel="none")
         frame = painter.paint(STATE._replace(time=4.0))[..., :3]
         assert frame[:, -2:].min() > WHITE
 
 
 def test_frames_of_the_same_state_are_the_same_whatever_came_before():
     made = scene()
-    painter = Painter(made, make_gas(made), None, 1.0, size=SIZE)
+    painter = Painter(made, make_gas(made), (), 1.0, size=SIZE)
     first = painter.paint(STATE).copy()
     painter.paint(STATE._replace(time=9.0, position=STATE.position + 1, velocity=3 * STATE.velocity))
     assert np.array_equal(painter.paint(STATE), first)
@@ -217,7 +217,7 @@ def test_ffmpeg_of_a_package(monkeypatch):
 )
 def test_the_size_follows_the_box(box, size):
     made = parse_scene(f"box.size = {list(box)}\nrun.until = 1\nspecies = [{{name='a', count=9, radius=0.1, speed=1}}]")
-    painter = Painter(made, make_gas(made), None, 1.0)
+    painter = Painter(made, make_gas(made), (), 1.0)
     assert painter.size == size
     assert painter.paint(STATE._replace(position=made_up(9, box), velocity=np.ones((9, 2)))).shape[:2] == size[::-1]
 
@@ -232,7 +232,7 @@ def test_other_panels(panel):
 
     def frame():
         made = scene()
-        painter = Painter(made, make_gas(made), None, 1.0, (0.0, 3.0), [STATE], size=SIZE, panel=panel)
+        painter = Painter(made, make_gas(made), (), 1.0, (0.0, 3.0), [STATE], size=SIZE, panel=panel)
         painter.paint(STATE._replace(time=0.0))
         return painter.paint(STATE).copy()
 
@@ -269,13 +269,13 @@ def test_a_trail_is_a_line_between_the_frames_with_gaps_at_joined_sides():
     made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
         f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.1\n" for x in (2, 8)
     ))  # fmt: skip
-    painter, place = Painter(made, make_gas(made), None, 1.0, size=SIZE, trails=[1]), layout(SIZE, (10.0, 10.0))
+    painter, place = Painter(made, make_gas(made), (), 1.0, size=SIZE, trails=[1]), layout(SIZE, (10.0, 10.0))
     for x in (6.0, 9.0, 1.0, 3.0):
         frame = painter.paint(STATE._replace(position=np.array([[5.0, 9.0], [x, 4.0]])))[..., :3]
     at = lambda x, y: frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)].max()  # noqa: E731
     assert [bool(at(x, 4.0) < 200) for x in (7.5, 2.0, 5.0, 9.6)] == [True, True, False, False]
     with pytest.raises(UserError, match=r"^trail: no disc 2 \(allowed 0 to 1\)$"):
-        Painter(made, make_gas(made), None, 1.0, trails=[0, 2])
+        Painter(made, make_gas(made), (), 1.0, trails=[0, 2])
 
 
 def test_a_video_that_fails_says_why_and_leaves_nothing(path, tmp_path, monkeypatch):
@@ -314,7 +314,7 @@ def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
             for k, velocity in enumerate(velocities)
         )
         made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
-        frame = Painter(made, make_gas(made), None, 1.0, size=SIZE).paint(STATE._replace(velocity=np.array(velocities)))
+        frame = Painter(made, make_gas(made), (), 1.0, size=SIZE).paint(STATE._replace(velocity=np.array(velocities)))
         x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).panel)
         return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()
 

@@ -12,7 +12,6 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,
-    is_inner,
     is_piston_side,
     misses_piston_until,
     normal_of_piston,
@@ -177,4 +176,4 @@ def test_sides():
     assert is_piston_side(1, [some_piston()])
     assert not is_piston_side(0, [some_piston()])
     assert not is_piston_side(1, None)
-    assert [is_inner(piston) for piston in ([some_piston(4)], [some_piston()], None)] == [True, False, False]
+    assert [is_piston_side(side, [some_piston(4), some_piston(1)]) for side in (0, 1)] == [False, True]

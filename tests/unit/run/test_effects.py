@@ -135,7 +135,7 @@ def test_a_thermostat():
 
 
 def test_a_piston_of_given_velocity():
-    (record,) = effects_of("piston.velocity=-0.5")[1].piston
+    (record,) = effects_of("piston=[{ velocity = -0.5 }]")[1].piston
     assert (record.x, record.v, record.a, record.m, record.length, record.wall, record.outward) == (
         20,
         -0.5,
@@ -148,7 +148,7 @@ def test_a_piston_of_given_velocity():
 
 
 def test_a_piston_with_a_mass_under_pressure_and_gravity():
-    piston = "piston={ side = 'bottom', position = 0.25, mass = 4, pressure = 0.5 }"
+    piston = "piston=[{ side = 'bottom', position = 0.25, mass = 4, pressure = 0.5 }]"
     region = "species.b.region=[0, 1, 5, 9]"
     (record,) = effects_of(piston, region, "gravity.acceleration=[0, 0.125]")[1].piston
     assert (record.x, record.v, record.m, record.length, record.wall, record.outward) == (0.25, 0, 4, 10, 2, -1)
@@ -159,14 +159,14 @@ def test_a_piston_with_a_mass_under_pressure_and_gravity():
 
 def test_an_inner_piston_is_the_last_wall_with_two_faces():
     wall = "wall=[{ from = [1, 1], to = [1, 3] }]"
-    inner = "piston={ inner = 'x', position = 12, velocity = 0.25 }"
+    inner = "piston=[{ inner = 'x', position = 12, velocity = 0.25 }]"
     effects = effects_of(wall, inner, "box.left={ thermal = 2 }", "log.pressure=true")[1]
     (record,) = effects.piston
     assert (record.x, record.v, record.a, record.m, record.length) == (12, 0.25, 0, 0, 20)
     assert (record.wall, record.axis, record.outward) == (5, 0, 0)
     assert (len(effects.segments), len(effects.wall_energy), len(effects.flow.hits)) == (1, 6, 4 + 2 * 2)
     assert effects.thermal.temperature.tolist() == [2, -1, -1, -1, -1, -1]
-    (record,) = effects_of("piston={ inner = 'y', position = 8, mass = 3 }", "gravity.acceleration=[0, -0.125]")[
+    (record,) = effects_of("piston=[{ inner = 'y', position = 8, mass = 3 }]", "gravity.acceleration=[0, -0.125]")[
         1
     ].piston
     assert (record.x, record.a, record.axis, record.wall, record.length) == (8, -0.125, 1, 4, 10)
@@ -182,9 +182,8 @@ def test_an_inner_piston_is_the_last_wall_with_two_faces():
         ("restitution.normal=0.5", False),
         ("restitution.wall=0.5", True),
         ("box.top={ thermal = 1 }", True),
-        ("piston.velocity=0.25", True),
+        ("piston=[{ velocity = 0.25, position = 15 }]", True),
     ],
 )
 def test_an_account_is_kept_only_where_walls_can_give_or_take_energy(override, kept):
-    piston = ["piston.position=15"] if "piston" in override else []
-    assert (effects_of(override, *piston)[1].wall_energy is not None) == kept
+    assert (effects_of(override)[1].wall_energy is not None) == kept

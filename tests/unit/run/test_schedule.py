@@ -15,7 +15,7 @@ from idealgas.log.flights import Flights
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "steps.toml"
 FALLS = GOLDEN.with_name("gravity-in-steps.toml")
-DRIVEN = "piston={ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8, -0.125]] }"
+DRIVEN = "piston=[{ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8, -0.125]] }]"
 DISC = "[[disc]]\nposition = {}\nvelocity = {}\nradius = 0.5\n"
 
 
@@ -89,12 +89,12 @@ def test_a_side_reflects_where_its_step_says_so(tmp_path):
 @pytest.mark.usefixtures("uncompiled")
 def test_a_piston_falls_on_the_parabolas_of_its_pressures(tmp_path):
     """X = 9 - t²/4 up to 2, then 8 - s - s²/2 up to 3, then 6.5 - 2 s - s²/8: a = -P L/m is -1/2, -1, -1/4."""
-    piston = "[piston]\nside = 'top'\nposition = 9\nmass = 4\npressure = [[0, 1], [2, 2], [3, 0.5]]\n"
+    piston = "[[piston]]\nside = 'top'\nposition = 9\nmass = 4\npressure = [[0, 1], [2, 2], [3, 0.5]]\n"
     scene = "[box]\nsize = [2, 10]\n" + piston + DISC.format([1, 1], [0, 0]) + "[run]\nuntil = 4\n"
     summary = simulate(parse_scene(scene), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         place, given = log.observables["piston_position"], log.observables["step_energy"][1]
-    assert dict(zip(*(values.tolist() for values in place), strict=True)) == {0: 9, 2: 8, 3: 6.5, 4: 4.375}
+    assert dict(zip(*(values.tolist() for values in place), strict=True)) == {0: [9], 2: [8], 3: [6.5], 4: [4.375]}
     assert given[-1] == (2 * 8) + (-3 * 6.5)  # ΔP L X
     assert summary.energy_drift == 0
 
@@ -145,7 +145,7 @@ def test_later_scenes_have_the_rest_of_the_steps():
     assert scene.wall[0].later(1.0).absences == ((0, 3.5), (6, 9))
     assert scene.box.left.after(4.0).thermal == ((0, 0.25), (2, "reflecting"), (5, 1))
     assert scene.box.left.after(7.0).thermal == ((0, "reflecting"), (2, 1))
-    assert scene.piston.after(8.0).pressure == 1
+    assert scene.piston[0].after(8.0).pressure == 1
     assert description(scene.box.left.thermal) == "2, 0.25 from t = 3, reflecting from t = 6, 1 from t = 9"
     assert (value_at(3.0, 7), steps_of(3.0)) == (3, ((0, 3),))
     assert value_at(((0.0, 1.0), (2.0, 3.0)), np.array([0, 1.9, 2, 5])).tolist() == [1, 1, 3, 3]

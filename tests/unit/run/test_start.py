@@ -37,7 +37,8 @@ EFFECTS = {
     "periodic": 'box.left = "periodic"\nbox.right = "periodic"\n',
     "rotation": "rotation.roughness = 0.5\n",
     "lossy": "restitution.normal = 0.9\n",
-    "piston": 'piston = { side = "right", mass = 50, pressure = 4 }\n',
+    "piston": 'piston = [{ side = "right", mass = 50, pressure = 4 }]\n',
+    "pistons": 'piston = [{ side = "left", mass = 50, pressure = 4 }, { inner = "x", mass = 5 }, { velocity = 0 }]\n',
     "wall": "wall = [{ from = [4, 0], to = [4, 6], opens_at = 0.5 }, { from = [2, 0], to = [2, 1] }]\n",
     "brute force": 'run.method = "brute_force"\n',
 }

@@ -39,7 +39,7 @@ CASES = {
     + "rotation = {roughness = 0.4, wall_roughness = 0.2}\nrestitution = {normal = 0.97, wall = 0.9}\n"
     + "gravity.acceleration = [0.1, -0.3]\nbox.bottom = { thermal = 1.5 }\n"
     + 'wall = [{name = "shelf", from = [3, 4], to = [7, 6]}, {from = [10, 1], to = [10, 5], opens_at = 9}]\n'
-    + 'piston = {side = "right", velocity = -0.01}\nrun.until = 300\n',
+    + 'piston = [{side = "right", velocity = -0.01}]\nrun.until = 300\n',
 }
 
 
@@ -207,7 +207,7 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
 
 
 def test_samples_do_not_follow_a_piston(tmp_path):
-    piston = GAS + 'piston = {side = "right", velocity = -0.01}\n'
+    piston = GAS + 'piston = [{side = "right", velocity = -0.01}]\n'
     simulate(
         parse_scene(piston, overrides=["log.events=false", "run.events=3000", "run.until=300"]), tmp_path / "run.h5"
     )

@@ -13,7 +13,7 @@ run.until = 5
 species = [{ name = "gas", count = 20, radius = 0.2, speed = 2, region = [0, 0, 8, 8] }]
 """
 FALL = "gravity.acceleration=[0, -3]"
-PISTON = 'piston={ side="right", position=9, mass=4, pressure=0.5 }'
+PISTON = 'piston=[{ side="right", position=9, mass=4, pressure=0.5 }]'
 
 
 def scene(*overrides):
@@ -25,7 +25,7 @@ def test_without_a_force_it_is_far_below_every_free_time():
     assert found.body_force == (0, 0)
     assert found.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
     assert found.rest is None
-    assert scene("piston={ position=9, velocity=-0.1 }").restitution == found.restitution
+    assert scene("piston=[{ position=9, velocity=-0.1 }]").restitution == found.restitution
 
 
 def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
@@ -45,7 +45,7 @@ def test_a_piston_that_is_pressed_is_a_force():
     found = scene(PISTON)
     assert found.body_force == (-0.5 * 8 / 4, 0)
     assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
-    assert found.mean_free_time < scene("piston={ position=9, velocity=0 }").mean_free_time
+    assert found.mean_free_time < scene("piston=[{ position=9, velocity=0 }]").mean_free_time
 
 
 def test_what_is_given_stays():

@@ -72,7 +72,7 @@ def test_a_seed_that_nothing_is_drawn_from_makes_no_other_run():
 
 def test_walls_of_another_temperature_hold_the_same_gas():
     assert gas_digest(scene("box.left={thermal = 1}")) == gas_digest(scene("box.left={thermal = 2}"))
-    piston = "piston={mass = 2, pressure = 1, position = %g}"
+    piston = "piston=[{mass = 2, pressure = 1, position = %g}]"
     assert gas_digest(scene(piston % 6)) == gas_digest(scene(piston % 7))
 
 

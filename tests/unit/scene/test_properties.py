@@ -23,7 +23,7 @@ TABLES = {
     "rotation": ["rotation.roughness=1"],
     "restitution": ["restitution.normal=0.9"],
     "thermal walls": ["box.bottom={thermal=2}"],
-    "piston": ["piston={side='top', position=9, velocity=0}"],
+    "piston": ["piston=[{side='top', position=9, velocity=0}]"],
     "thermostat": ["thermostat={temperature=3, rate=0.5}"],
 }
 """Each effect alone, in a form that goes with the others."""
@@ -110,8 +110,8 @@ def test_what_keys_decide(overrides, changed):
 
 
 def test_a_piston_is_driven_if_it_moves_whatever_hits_it():
-    assert properties("piston.velocity=-0.5").driven
-    assert not properties("piston.velocity=0").driven
+    assert properties("piston=[{ velocity = -0.5 }]").driven
+    assert not properties("piston=[{ velocity = 0 }]").driven
 
 
 def test_temperatures_by_the_numbers_of_walls():

@@ -91,9 +91,9 @@ def test_an_override_in_a_table_that_is_unknown_or_not_whole():
     (unknown,) = refused("foo.bar=1")
     assert unknown.startswith("--set foo.bar=1: foo: unknown table (got foo; allowed scene, ")
     assert refused("gravity.accelerations=1")[0].startswith("--set gravity.accelerations=1: gravity")
-    two = ("piston.mass=5", "piston.side=middle")
-    (wrong,) = [error for error in refused(*two) if "piston.side" in error]
-    assert wrong.startswith("--set piston.side=middle: ")
+    two = ("thermostat.rate=5", "thermostat.temperature=hot")
+    (wrong,) = [error for error in refused(*two) if "thermostat.temperature" in error]
+    assert wrong.startswith("--set thermostat.temperature=hot: ")
     assert [error.split(": ")[0] for error in refused("foo.bar=1", text="x = 1\n[foo]\n" + TWO)] == [
         "s.toml:1",
         "s.toml:2",  # the file has it too

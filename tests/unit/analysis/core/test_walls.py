@@ -9,11 +9,11 @@ import pytest
 from helpers.crafted import craft
 
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.walls import WallGauge, WallImpulses, moving_wall
+from idealgas.analysis.core.walls import MovingWall, WallGauge, WallImpulses
 from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import open_log
-from idealgas.movie.piston_track import piston_track
+from idealgas.movie.piston_track import piston_tracks
 
 GAS = """
 scene.seed = 3
@@ -102,33 +102,32 @@ def test_a_gate_is_exposed_while_it_is_there(make):
 @pytest.mark.parametrize("side", ["right", "top", "left"])
 def test_the_room_below_a_piston_with_a_mass(side, make):
     """The mean of its place, looked up at many times on the path that films show."""
-    log = make(f'piston={{side="{side}", position=4, mass=3, pressure=2}}', "run.events=1500")
+    log = make(f'piston=[{{side="{side}", position=4, mass=3, pressure=2}}]', "run.events=1500")
     edges = np.linspace(0.0, 1.0, 9) * log.end_time
-    tally = moving_wall(log)
+    tally = MovingWall(log, 0)
     stream(log, edges, [tally])
-    track = piston_track(log, 0.0, log.end_time)
+    (track,) = piston_tracks(log, 0.0, log.end_time)
     places = np.array([[track.at(t) for t in a + (b - a) * (np.arange(400) + 0.5) / 400] for a, b in pairwise(edges)])
-    depth = places.mean(axis=1) if side != "left" else 9 - places.mean(axis=1)
-    assert tally.depth == pytest.approx(depth, rel=1e-4)
-    assert np.ptp(tally.depth) > 0.1
+    assert tally.place == pytest.approx(places.mean(axis=1), rel=1e-4)
+    assert np.ptp(tally.place) > 0.1
 
 
 def test_a_piston_without_a_sample_is_one_line(make, tmp_path):
-    log = make('piston={side="right", velocity=-0.3}', "run.events=", "run.until=10")
+    log = make('piston=[{side="right", velocity=-0.3}]', "run.events=", "run.until=10")
     path = craft(shutil.copyfile(log.path, tmp_path / "none.h5"), lambda file: None, {"observables": 0})
     with open_log(path) as other, pytest.raises(UserError, match="has no sample of its piston"):
-        moving_wall(other)
+        MovingWall(other, 0)
 
 
 def test_the_room_below_a_driven_piston_is_exact(make):
-    log = make('piston={side="right", velocity=-0.3}', "run.events=", "run.until=10")
+    log = make('piston=[{side="right", velocity=-0.3}]', "run.events=", "run.until=10")
     edges = np.linspace(1, 9, 5)
     gauge = WallGauge(log)
     stream(log, edges, gauge.tallies)
     expected = 9 - 0.3 * (edges[1:] + edges[:-1]) / 2
-    assert gauge.moving.depth == pytest.approx(expected, rel=1e-12)
+    assert gauge.moving[0].place == pytest.approx(expected, rel=1e-12)
     assert gauge.area(edges) == pytest.approx(6 * expected, rel=1e-12)
     exposed = {face.name: face.exposed for face in gauge.faces(edges)}
     assert exposed["top wall"] == pytest.approx(2 * expected, rel=1e-12)
     assert exposed["right wall"] == pytest.approx([12.0] * 4)
-    assert gauge.moving.balance(1.0, 9.0) is None
+    assert gauge.moving[0].balance(1.0, 9.0) is None

@@ -22,7 +22,7 @@ EXPANSION = (
 )
 NEVER = {
     "cooling": BOX + GAS + "[restitution]\nnormal = 0.9\n" + RUN,
-    "driven": '[box]\nsize = [2, 1]\n[piston]\nside = "right"\nvelocity = -0.05\n' + GAS + "[run]\nuntil = 10\n",
+    "driven": '[box]\nsize = [2, 1]\n[[piston]]\nside = "right"\nvelocity = -0.05\n' + GAS + "[run]\nuntil = 10\n",
 }
 
 

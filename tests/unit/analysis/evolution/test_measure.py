@@ -102,14 +102,14 @@ def test_what_elastic_discs_lose_by_rounding_is_no_loss(make):
 
 def test_adiabat(make):
     """Of points T A stays the same; the discs' size makes it a little more."""
-    found = evolution(make("piston={ velocity = -0.2 }", "species.radius=0.001"))
+    found = evolution(make("piston=[{ velocity = -0.2 }]", "species.radius=0.001"))
     assert found.law.temperature[-1] == pytest.approx(1.5 * 12 / 8, rel=1e-3)
-    assert found.piston[[0, -1]] == pytest.approx([12, 8])
+    assert found.pistons["piston"][[0, -1]] == pytest.approx([12, 8])
     assert found.given["piston"][-1] == pytest.approx(found.parts["motion"][-1] - 60)
 
 
 def test_a_piston_with_a_mass_keeps_its_balance_and_has_a_place(make):
-    found = evolution(make("piston={ side = 'left', position = 4, mass = 5, pressure = 1 }", "species.radius=0.001"))
+    found = evolution(make("piston=[{ side = 'left', position = 4, mass = 5, pressure = 1 }]", "species.radius=0.001"))
     assert np.abs(found.balance).max() < 1e-12
     assert set(found.parts) == {"motion", "piston"}
     energy, n = 60 + 8 * (8 - 0.002), 40
@@ -144,7 +144,7 @@ def test_times_that_are_not_there(make):
 
 def test_pressure_in_bins_of_time(make):
     """The bins together are the mean over the log, and the picture has one panel for P(t) and one for P(A)."""
-    log = make("piston={ velocity = -0.1 }", "species.radius=0.001")
+    log = make("piston=[{ velocity = -0.1 }]", "species.radius=0.001")
     found = evolution(log)
     series, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
     assert series.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
@@ -167,9 +167,9 @@ def states_of(found):
 
 def test_states_of_a_piston_are_a_path_until_it_rests(make):
     """One with a mass oscillates first; all the time at rest is one point. One that is moved never rests."""
-    moved = evolution(make("piston={ velocity = -0.1 }"))
+    moved = evolution(make("piston=[{ velocity = -0.1 }]"))
     assert (moved.rest_start, len(states_of(moved))) == (None, len(moved.pressure.area))
-    log = make("piston={ position = 12, mass = 100, pressure = 3 }", "species.count=60", "run.until=1000")
+    log = make("piston=[{ position = 12, mass = 100, pressure = 3 }]", "species.count=60", "run.until=1000")
     found, late = evolution(log), evolution(log, 500.0)
     assert 100 < found.rest_start < 500 < late.rest_start
     areas = states_of(found)
@@ -197,10 +197,10 @@ def test_without_hits_there_is_no_pressure(make):
 @pytest.mark.parametrize(
     ("overrides", "isotherm", "adiabat"),
     [
-        (("piston={ velocity = -0.1 }",), True, True),
-        (("piston={ velocity = -0.1 }", "box={ size = [12, 8], left = { thermal = 1.5 } }"), True, False),
-        (("piston={ velocity = -0.1 }", "gravity.acceleration=[0, -0.1]"), False, False),
-        (("piston={ velocity = -0.1 }", "species.radius=0.7"), False, False),  # above freezing at the end
+        (("piston=[{ velocity = -0.1 }]",), True, True),
+        (("piston=[{ velocity = -0.1 }]", "box={ size = [12, 8], left = { thermal = 1.5 } }"), True, False),
+        (("piston=[{ velocity = -0.1 }]", "gravity.acceleration=[0, -0.1]"), False, False),
+        (("piston=[{ velocity = -0.1 }]", "species.radius=0.7"), False, False),  # above freezing at the end
     ],
 )
 @pytest.mark.slow

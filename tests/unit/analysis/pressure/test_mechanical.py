@@ -20,7 +20,7 @@ species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1.5 }]
 
 EFFECTS = {
     "gravity.acceleration=[0, -0.3]": "gravity",
-    "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }": "piston",
+    "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]": "piston",
     "wall=[{ from = [4, 0], to = [4, 3] }]": "wall segments",
     "restitution.normal=0.95": "restitution",
     "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "several temperatures",
@@ -55,7 +55,7 @@ def test_a_plain_box_has_routes_and_no_more(make):
 
 
 def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
-    up = "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"
+    up = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
     walls = {wall.name: wall.pressure for wall in pressure(make(up)).mechanical.walls}
     assert {name: value.theory for name, value in walls.items()} == {
         "left wall": None,
@@ -66,23 +66,23 @@ def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
     heavy = pressure(make(up, "gravity.acceleration=[0, -0.5]")).mechanical
     assert {wall.name: wall.pressure.theory for wall in heavy.walls}["top wall"] == pytest.approx(2 + 8 * 0.5 / 8)
     assert heavy.forces[-1].y.theory == pytest.approx(-15.0)  # the weight of 30 discs
-    at_its_stop = pressure(make("piston={ side = 'top', mass = 8, pressure = 0.2 }"))
+    at_its_stop = pressure(make("piston=[{ side = 'top', mass = 8, pressure = 0.2 }]"))
     assert {wall.name: wall.pressure.theory for wall in at_its_stop.mechanical.walls}["top wall"] is None
 
 
 def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
-    found = pressure(make("piston={ velocity = -0.05 }"))
+    found = pressure(make("piston=[{ velocity = -0.05 }]"))
     assert (found.window.start, found.window.detected) == (0.0, False)
     assert found.mechanical.unsteady == "the gas is driven (piston)"
     assert any("`evolution` shows P(t)" in note for note in pressure_tables(found)[0].notes)
     assert found.area == pytest.approx(6 * 7)
     assert found.packing_fraction == pytest.approx(30 * np.pi * 0.01 / 42)
     assert found.mechanical.forces[-1].x.theory is None
-    assert pressure(make("piston={ velocity = -0.05 }"), start=20.0).area == pytest.approx(6 * 6.5)
+    assert pressure(make("piston=[{ velocity = -0.05 }]"), start=20.0).area == pytest.approx(6 * 6.5)
 
 
 def test_a_piston_is_held_in_a_gas_that_cools_too(make):
-    up = "piston={ side = 'top', position = 4, mass = 8, pressure = 2 }"
+    up = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
     walls = {wall.name: wall.pressure for wall in pressure(make(up, "restitution.normal=0.99")).mechanical.walls}
     assert walls["top wall"].theory == 2.0
     assert walls["top wall"].standard_error < 0.2 * walls["left wall"].standard_error
@@ -126,7 +126,7 @@ def test_a_wall_that_is_never_hit_has_no_error_bar(make):
 @pytest.mark.usefixtures("uncompiled")
 def test_samples_alone_do_not_follow_a_piston(make):
     log = make(
-        "piston={ mass = 8, pressure = 2, position = 6 }", "log={ events=false, pressure=true }", "run.until=0.1"
+        "piston=[{ mass = 8, pressure = 2, position = 6 }]", "log={ events=false, pressure=true }", "run.until=0.1"
     )
     with pytest.raises(UserError, match="has no events, and samples do not follow a piston") as error:
         pressure(log)

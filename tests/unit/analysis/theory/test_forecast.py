@@ -173,7 +173,7 @@ def test_only_walls_are_hit():
         ("gravity.acceleration=[0, -1]", "gravity"),
         ("restitution.normal=0.9", "restitution"),
         ("rotation.roughness=0.5", "rotation"),
-        ("piston={ mass = 1, pressure = 10 }", "piston"),
+        ("piston=[{ mass = 1, pressure = 10 }]", "piston"),
     ],
 )
 def test_what_is_beyond_theory_is_not_known(override, beyond):
@@ -187,7 +187,7 @@ def test_what_is_beyond_theory_is_not_known(override, beyond):
 
 
 def test_the_packing_fraction_is_that_of_the_space_before_a_piston():
-    expected = forecast_of("piston={ position = 8, mass = 1, pressure = 10 }")
+    expected = forecast_of("piston=[{ position = 8, mass = 1, pressure = 10 }]")
     assert expected.packing_fraction == pytest.approx(math.pi * 0.1**2 * 1000 / 160, rel=1e-12)
 
 

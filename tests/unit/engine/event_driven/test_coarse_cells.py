@@ -40,7 +40,7 @@ SCENES = {
     + DISCS
     + "[[wall]]\nfrom = [0.3, 1]\nto = [1.2, 1.2]\n[gravity]\nacceleration = [0, -1]\n",
     "rotation and losses": BOX + DISCS + "[rotation]\nroughness = 0.5\n[restitution]\nnormal = 0.95\n",
-    "piston": BOX + DISCS.replace("events", "until = 3\nevents") + "[piston]\nvelocity = -0.01\n",
+    "piston": BOX + DISCS.replace("events", "until = 3\nevents") + "[[piston]]\nvelocity = -0.01\n",
     "thermostat": BOX + SIDES + DISCS + "[thermostat]\ntemperature = 1\nrate = 1\n",
 }
 
