@@ -18,10 +18,10 @@ from idealgas.analysis.core.equilibration import (
     memory_time,
 )
 from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.impacts import contacts
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
 from idealgas.analysis.core.stream import add_to, block_edges, frames, stream
+from idealgas.analysis.core.stress import PassedOn
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import Theory, enskog_error, fluid
@@ -73,7 +73,7 @@ class ShearFlow(Result):
 class Carried:
     """Momentum that discs carry relative to the flow, and the part of their velocity that grows with y.
 
-    stress: (B, 3), integrals of m c_x², m c_x c_y and m c_y² over time. excess: (B,), integral of m y c_x, with y from
+    stress: (B, 3), integrals of m c_x², m c_y² and m c_x c_y over time. excess: (B,), integral of m y c_x, with y from
     the middle. moment: (B,), integral of m y².
     """
 
@@ -96,8 +96,8 @@ class Carried:
         height, c, slope = y - 0.5 * self._height, vx - flow_at(y, self._rate, self._height), -self._rate * vy
         integrals = (
             _product(c, slope, c, slope, t),
-            _product(c, slope, vy, np.zeros_like(vy), t),
             vy * vy * t,
+            _product(c, slope, vy, np.zeros_like(vy), t),
             _product(height, vy, c, slope, t),
             _product(height, vy, height, vy, t),
         )
@@ -112,37 +112,6 @@ class Carried:
 def _product(a: np.ndarray, da: np.ndarray, b: np.ndarray, db: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Integral of (a + da t)(b + db t) from 0 to t."""
     return t * (a * b + t * ((a * db + b * da) / 2 + t * (da * db / 3)))
-
-
-class PassedOn:
-    """Momentum that discs pass on in collisions, over their distance.
-
-    stress: (B, 3), sums of Δp_x x, Δp_x y and Δp_y y. collisions: (B,), their number.
-    """
-
-    columns = ("disc", "block", "end", "kind", "partner", "end_velocity", "new_velocity", "end_position")
-    cut = False
-
-    def __init__(self, rate: float, box: tuple[float, float]) -> None:
-        """Take the shear rate and the size of the box."""
-        self._rate, self._box = rate, box
-
-    def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with a number of blocks."""
-        self._mass, self._sums = gas.mass, np.zeros((4, len(edges) - 1))
-
-    def add(self, flights: Flights) -> None:
-        """Add the collisions at the ends of flights, with the second disc of each."""
-        second, apart = contacts(flights, self._box, (True, True), self._rate)
-        x, y = apart.T
-        given = flights.new_velocity.take(second, axis=0) - flights.end_velocity.take(second, axis=0)
-        px, py = self._mass.take(flights.disc[second]) * given.T
-        for sums, values in zip(self._sums, (px * x, px * y, py * y, np.ones_like(x)), strict=True):
-            add_to(sums, flights.block[second], values)
-
-    def finish(self) -> None:
-        """Make the sums known."""
-        self.stress, self.collisions = self._sums[:3].T, self._sums[3]
 
 
 def shear(
@@ -165,14 +134,14 @@ def shear(
             f"{log.path}: shear requires sheared sides, box.bottom and box.top = {{ shear = rate }}"
         )
     edges = block_edges(log, start, end)
-    carried, passed_on = Carried(rate, height), PassedOn(rate, (width, height))
+    carried, passed_on = Carried(rate, height), PassedOn(1, np.array([0.0, height]), log.periodic, rate)
     stream(log, edges, [carried, passed_on], progress)
     block = edges[1] - edges[0]
-    pressure = (carried.stress + passed_on.stress) / (width * height * block)
-    temperatures = (carried.stress[:, 0] + carried.stress[:, 2]) / (2 * len(gas) * block)
+    pressure = (carried.stress + passed_on.stress[:, 0]) / (width * height * block)
+    temperatures = carried.stress[:, :2].sum(axis=1) / (2 * len(gas) * block)
     if not (temperatures > 0).all():
         raise NotApplicableError(f"{log.path}: no disc moves relative to the flow")
-    viscosities = -pressure[:, 1] / rate
+    viscosities = -pressure[:, 2] / rate
     reduced, heats = viscosities / np.sqrt(temperatures), bool(nonstationary_reason(log))
     series = [reduced] if heats else [reduced, temperatures]
     first = _first(log, edges, series) if start is None else 0
@@ -183,7 +152,7 @@ def shear(
     collisions = 2 * passed_on.collisions[first:].sum() / (len(gas) * window.duration)
     reduced_rate = rate / collisions if collisions else math.inf
     expected, law = _theories(log, reduced_rate)
-    isotropic = (p[:, 0] + p[:, 2]) / 2
+    isotropic = p[:, :2].mean(axis=1)
     return ShearFlow(
         window=window,
         rate=rate,
@@ -191,7 +160,7 @@ def shear(
         temperature=temperature,
         viscosity=mean(reduced[first:], expected).times(math.sqrt(temperature.value)),
         pressure=mean(isotropic / t, law).times(temperature.value),
-        normal_stress=ratio(p[:, 0] - p[:, 2], isotropic),
+        normal_stress=ratio(p[:, 0] - p[:, 1], isotropic),
         slope=estimate(lambda a, b: 1 + a / (rate * b), carried.excess[first:], carried.moment[first:], theory=1.0),
         y=(np.arange(STRIPS) + 0.5) * height / STRIPS,
         velocity=_profile(log, np.linspace(window.start, window.end, INSTANTS)),

@@ -7,8 +7,8 @@ from helpers.support import ROOT
 from idealgas import load_scene, open_log, parse_scene, profile, shear, simulate
 from idealgas.analysis.core.currents import PASSED_ON, XX, XY, YY, Currents
 from idealgas.analysis.core.stream import stream
+from idealgas.analysis.core.stress import PassedOn
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.profile.stress import PassedOn
 
 GAS = """
 scene.seed = 4
