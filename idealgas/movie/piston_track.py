@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from idealgas.analysis.core.chambers import piston_names
 from idealgas.columns import Kind
 from idealgas.log import Log
 
@@ -58,5 +59,5 @@ def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
         return None
     pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
     limits = (0.0, log.box[piston.axis])
-    name = piston.name or "piston"
-    return PistonTrack(piston.axis, time, np.concatenate(knots)[unique], pull, limits, piston.outward, name)
+    place, name = np.concatenate(knots)[unique], piston_names(log)[k]
+    return PistonTrack(piston.axis, time, place, pull, limits, piston.outward, name)

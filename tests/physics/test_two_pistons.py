@@ -48,7 +48,7 @@ def test_the_same_by_brute_force_and_resumed(tmp_path):
         assert {*partner[kind == Kind.PISTON].tolist()} == {-2, -5}
         found = evolution(log)
     assert found.law is None
-    assert list(found.pistons) == ["inner piston", "right piston"]
+    assert list(found.pistons) == ["piston", "right piston"]
     assert list(found.chambers) == ["left", "right"]
     assert np.abs(found.balance).max() < 1e-12
     assert summary.deepest_overlap < 1e-14

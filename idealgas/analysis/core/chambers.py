@@ -58,9 +58,9 @@ def outward(log: Log, piston: Piston) -> float:
 
 
 def piston_names(log: Log) -> list[str]:
-    """Names of the pistons for tables and pictures: of a single one piston, of several by their sides or own names."""
-    walls = [(piston.name or "inner") if piston.inner else piston.wall for piston in log.scene.piston]
-    return ["piston"] if len(walls) == 1 else [f"{wall} piston" for wall in walls]
+    """Names of the pistons in tables and pictures, unique: "piston" for a single one, else with side or own name."""
+    walls = [piston.wall for piston in log.scene.piston]
+    return ["piston"] if len(walls) == 1 else [wall if wall == "piston" else f"{wall} piston" for wall in walls]
 
 
 def beside_pistons(log: Log) -> dict[str, np.ndarray]:

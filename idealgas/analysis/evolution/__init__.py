@@ -7,7 +7,6 @@ With a piston the picture has the pressure against the area, with the isotherm a
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from itertools import cycle
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -235,10 +234,12 @@ class EvolutionAnalysis(Analysis):
         ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
         if result.spin is not None:
             ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
-        for k, (name, values) in enumerate(result.chambers.items(), 1):
-            ax.plot(result.time, values, color=COLOURS[k], label=_chamber_label(name))
+        several = any(name.startswith("between") for name in result.chambers)
+        for k, (name, values) in enumerate(result.chambers.items(), 1 if result.spin is None else 2):
+            colour, line, _ = curve_style(k)
+            ax.plot(result.time, values, line, color=colour, label=_chamber_label(name, several))
             if law and law.chambers:
-                ax.plot(result.time, law.chambers[name], "--", color=COLOURS[k])
+                ax.plot(result.time, law.chambers[name], "--", color=colour)
         if law is not None:
             ax.plot(result.time, law.temperature, "--", color=BLACK, label=law.text)
         low, high = result.temperature.min(), result.temperature.max()
@@ -257,8 +258,9 @@ class EvolutionAnalysis(Analysis):
             draw_pressure(next(rest), series, law)
         if result.track:
             ax = next(rest)
-            for (name, places), colour in zip(result.track[1].items(), cycle(COLOURS)):
-                ax.plot(result.track[0], places, color=colour, label=name)
+            for k, (name, places) in enumerate(result.track[1].items()):
+                colour, line, _ = curve_style(k)
+                ax.plot(result.track[0], places, line, color=colour, label=name)
             if law is not None and law.piston is not None:
                 ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
             ax.set_ylabel("piston position (length)")
@@ -282,9 +284,9 @@ def _source_label(name: str) -> str:
     return f"work done by the {name}" if f" {name}".endswith(" piston") else f"energy from {name}"
 
 
-def _chamber_label(name: str) -> str:
-    """Name of the gas at a side of the box, or between two pistons."""
-    return name if name.startswith("between") else f"{name} of the piston"
+def _chamber_label(name: str, several: bool) -> str:
+    """Name of the gas between two pistons, or at a side of the box beside one or several."""
+    return name if name.startswith("between") else f"{name} of the piston{'s' if several else ''}"
 
 
 # ── measurement ──

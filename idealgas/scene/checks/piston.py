@@ -276,7 +276,7 @@ def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> 
         if not len(gases[k]):
             keys: tuple[Key, ...] = (("piston", k, "position"), ("piston", k - 1, "position"))
             what = f"no disc between {names[k - 1]} and {names[k]}"
-            yield Issue(keys, what, "nothing", "a disc at least, as pistons do not collide")
+            yield Issue(keys, what, "nothing", "at least one disc, as pistons do not collide")
     yield from _crushed_issues(scene, gases)
 
 

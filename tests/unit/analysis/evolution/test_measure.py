@@ -45,6 +45,23 @@ def test_without_events_it_has_the_samples(make):
     assert found.spin == pytest.approx(found.parts["spin"] * 2 / 40)
 
 
+def test_more_gases_than_colours(make):
+    """Eight inner pistons, with a disc before each and a gas beyond the last."""
+    pistons = [f'{{ inner = "x", name = "{name}", position = {k}, mass = 9 }}' for k, name in enumerate("abcdefg", 2)]
+    inside = [f"{{ position = [{k + 1.5}, 4], velocity = [0.1, 0], radius = 0.1 }}" for k in range(8)]
+    last = '{ inner = "x", position = 9, mass = 9 }'
+    log = make(
+        f"piston=[{', '.join([*pistons, last])}]", f"disc=[{', '.join(inside)}]", "species.0.region=[9, 0, 12, 8]"
+    )
+    found = evolution(log)
+    assert [*found.pistons] == [*(f"{name} piston" for name in "abcdefg"), "piston"]
+    assert [*found.chambers][-2:] == ["between g piston and piston", "right"]
+    lines = EvolutionAnalysis().figure(found).axes[0].lines
+    looks = {(line.get_color(), line.get_linestyle()) for line in lines}
+    assert len(lines) == len(looks) == 1 + len(found.chambers)
+    assert lines[1].get_label() == "left of the pistons"
+
+
 @pytest.mark.slow
 def test_of_very_many_samples_some_are_read(make, tmp_path):
     """A small log may have millions of equal samples, as they are compressed; all at once would need much memory."""
