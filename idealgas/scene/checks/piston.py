@@ -36,7 +36,8 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check the pistons of a scene whose tables are valid."""
     if invalid or not scene.piston:
         return
-    found = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)] or list(_row_issues(scene))
+    own = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)]
+    found = [*own, *_gravity_issues(scene)] or list(_row_issues(scene))
     yield from found
     if not found:
         yield from _holes_between(scene)
@@ -67,6 +68,14 @@ def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
     yield from found
     if not found:
         yield from _forced_issues(scene, k) if piston.mass is None else _massive_issues(scene, k)
+
+
+def _gravity_issues(scene: Document) -> Iterator[Issue]:
+    """Check that pistons with a mass are under one gravity."""
+    masses: list[Key] = [("piston", k, "mass") for k, piston in enumerate(scene.piston) if piston.mass is not None]
+    if masses and scene.properties.later_accelerations:
+        keys: tuple[Key, ...] = (("gravity", "acceleration"), *masses)
+        yield Issue(keys, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
 
 
 def _place_key(scene: Document, k: int) -> Key:
@@ -174,11 +183,8 @@ def _when(scene: Document, time: float) -> str:
 
 
 def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check that a piston with a mass is under one gravity and, unless it is inner, pressed on the gas."""
+    """Check that a piston with a mass is pressed on the gas, or not on a side if it is inner."""
     piston = scene.piston[k]
-    if scene.properties.later_accelerations:
-        both: tuple[Key, ...] = (("gravity", "acceleration"), ("piston", k, "mass"))
-        yield Issue(both, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
     if piston.inner:
         yield from _resting_issues(scene, k)
         return
