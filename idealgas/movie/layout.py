@@ -8,7 +8,7 @@ from idealgas.movie.piston_track import PistonTrack
 BEYOND = 1.25
 """Length of the shown room along the way of a piston, relative to the largest one of the gas."""
 
-LEFT, RIGHT, BOTTOM, TOP, NAME = 64, 22, 58, 48, 60  # margins, and the name of a piston, pixels of the usual size
+LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins, and a letter of a name, pixels of the usual size
 PANEL = 0.3
 """Smallest share of a frame for the panel beside or below the box."""
 

@@ -27,7 +27,7 @@ from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
 from idealgas.analysis.theory.conserved import centre_of_mass_velocity
 from idealgas.errors import UserError
 from idealgas.log import LogState
-from idealgas.movie.layout import LEFT, NAME, TOP, Rectangle, frame_size, layout, lengths, view
+from idealgas.movie.layout import LEFT, LETTER, TOP, Rectangle, frame_size, layout, lengths, view
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, Panel, SidesPanel, SpeedPanel
 from idealgas.movie.piston_track import PistonTrack
@@ -212,7 +212,7 @@ class Painter:
         """Name of a wall beside a place of it, on the side with more room, legible on discs."""
         beyond = (self._figure.bbox.width - axes.transData.transform(place)[0]) * DPI / self._figure.dpi
         crossed = any(piston.axis == 0 for piston in self._pistons)
-        right = place[0] < sum(self._view[0]) / 2 or (crossed and beyond > NAME)
+        right = place[0] < sum(self._view[0]) / 2 or (crossed and beyond > LETTER * len(name))
         halo = [Stroke(linewidth=3, foreground=axes.get_facecolor()), Normal()]
         return axes.annotate(
             name, place, (6 if right else -6, -6), textcoords="offset points", ha="left" if right else "right",

@@ -123,9 +123,10 @@ def test_the_piston_is_drawn():
     assert paint(pistons=[track])[1](6.2, 5).min() > WHITE
 
 
-def test_the_name_of_a_piston_at_the_edge_is_whole():
+@pytest.mark.parametrize(("name", "place"), [("piston", 10.0), ("right piston", 9.4), ("right piston", 10.0)])
+def test_the_name_of_a_piston_at_the_edge_is_whole(name, place):
     made = scene()
-    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, 10.0]), np.zeros(2), (0.0, 10.0), 1.0, "piston")
+    track = PistonTrack(0, np.array([0.0, 4.0]), np.array([9.0, place]), np.zeros(2), (0.0, 10.0), 1.0, name)
     for size in ((720, 720), (360, 360)):
         painter = Painter(made, make_gas(made), [track], 1.0, size=size, panel="none")
         frame = painter.paint(STATE._replace(time=4.0))[..., :3]
