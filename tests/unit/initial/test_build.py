@@ -159,7 +159,7 @@ def test_discs_stand_before_the_piston():
     for side, low, high in (("right", [0, 0], [4, 10]), ("left", [4, 0], [10, 10]), ("top", [0, 0], [10, 4])):
         piston = f"piston=[{{ side = '{side}', position = 4, mass = 1, pressure = 1 }}]"
         for placement in ("random", "lattice"):
-            gas = gas_of(species("a", count=40, radius=0.3, speed=1, placement=f'"{placement}"'), overrides=[[piston]])
+            gas = gas_of(species("a", count=40, radius=0.3, speed=1, placement=f'"{placement}"'), overrides=[piston])
             assert (gas.position >= np.add(low, 0.3)).all()
             assert (gas.position <= np.subtract(high, 0.3)).all()
 
