@@ -54,6 +54,7 @@ def test_the_same_by_brute_force_and_resumed(tmp_path):
     assert summary.deepest_overlap < 1e-14
 
 
+@pytest.mark.slow
 def test_equilibrium(run):
     """At fixed energy E the lengths x₁, x₂ of the gases' centres have the weight x₁^N₁ x₂^N₂ (E - F (x₁ + x₂))^N.
 
