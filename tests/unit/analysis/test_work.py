@@ -134,7 +134,7 @@ def test_theory_of_the_shipped_scene(log):
     [
         (("piston.velocity=[[0, -0.01], [25, 0]]",), UserError, "no stroke of the piston after a rest"),
         pytest.param(
-            ("thermostat=",), NotApplicableError, "requires a piston of given velocities", marks=pytest.mark.slow
+            ("thermostat=",), NotApplicableError, "requires one piston, of given velocities", marks=pytest.mark.slow
         ),
         pytest.param(
             ("restitution.normal=0.9",), NotApplicableError, "has no answer for a gas", marks=pytest.mark.slow
