@@ -30,10 +30,11 @@ disc = [
 @pytest.mark.parametrize(
     "others",
     [
-        pytest.param((), marks=pytest.mark.slow, id="falling"),
+        pytest.param((), id="falling"),
         pytest.param(("gravity=", "rotation=", "box.bottom=reflecting"), id="straight"),
     ],
 )
+@pytest.mark.slow
 def test_the_same_by_brute_force_and_resumed(tmp_path, others):
     summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, others, "run.until=4", "run.until=11")
     with open_log(tmp_path / "whole.h5") as log:

@@ -21,6 +21,7 @@ temperature = 1
 """
 
 
+@pytest.mark.slow
 def test_the_same_by_brute_force_and_resumed(tmp_path):
     summary = same_by_brute_force_and_resumed(
         tmp_path, ROOT / "tests" / "cases" / "golden" / "chute.toml", (), "run.until=4", "run.until=6"
