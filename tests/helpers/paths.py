@@ -52,7 +52,10 @@ class Paths:
         self.fixed = [wall for wall in scene.walls[len(scene.wall) :] if wall.radius]  # not an inner piston
         self.pistons = scene.piston
         self.outward = [piston.outward_from(gas.position, gas.box) for piston in scene.piston]
-        pushes = [abs(piston.acceleration(gas.box, scene.properties.acceleration)) for piston in scene.piston]
+        pushes = [
+            max(abs(p.acceleration(gas.box, scene.properties.acceleration, time)) for time in (0.0, *p.times))
+            for p in scene.piston
+        ]
         self.push = max(pushes, default=0.0)
         self.force = sum(push * (piston.mass or 0.0) for push, piston in zip(pushes, scene.piston, strict=True))
         self.rotation, self.restitution = effects.rotation, effects.restitution
