@@ -23,9 +23,8 @@ from idealgas.log.hdf5.commit import Commit, commit_of, table_of
 from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
-_CACHED, _CACHED_OTHERS = 256, 16
-"""Number of chunks of events in the cache, so that all analyses of a report read a million rows once, at most 256 MB;
-and of small chunks of other tables."""
+_CACHED = 8
+"""Number of chunks of events in the cache, and half the number of small chunks of other tables."""
 _SMALL = 2**20
 """Largest size of a small chunk, bytes."""
 ATTEMPTS = 10
@@ -63,7 +62,7 @@ class LogFile:
         self._source: Any = None
         self._file: Any = None
         self._events = lru_cache(_CACHED)(self._chunk)
-        self._others = lru_cache(_CACHED_OTHERS)(self._chunk)
+        self._others = lru_cache(2 * _CACHED)(self._chunk)
         keep_freed_memory()
         try:
             self._read(self._open)

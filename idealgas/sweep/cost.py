@@ -57,7 +57,7 @@ def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:
     """Time of a sweep with the costs of its points on a number of workers of this machine, seconds."""
     seconds = [cost.seconds for cost in costs]
-    return START + max(sum(seconds) / workers, max(seconds))
+    return START + max(sum(seconds) / workers, max(seconds, default=0.0))
 
 
 def _cost(scene: Scene, trial: _Trial, analyses: int) -> Cost:

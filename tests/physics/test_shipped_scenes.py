@@ -152,7 +152,7 @@ def test_rough(run):
 def test_brownian_motion(run):
     """A heavy disc forgets its velocity at first at the rate γ of Enskog's friction: over a fiftieth of 1/γ.
 
-    Later its own wake carries it along: 3 % more slowly by 0.1/γ, 9 % by 0.4/γ.
+    Later its own wake carries it along.
     The other discs recoil, so that the velocity relative to them decays at γ/(1 - M/M_all).
     """
     rates, friction = [], math.nan

@@ -183,7 +183,7 @@ class EvolutionAnalysis(Analysis):
         energy = {
             "t": result.samples,
             **{f"energy of {name}": values for name, values in result.parts.items()},
-            **{_source_label(name): values for name, values in result.given.items()},
+            **{_source_label(name, result): values for name, values in result.given.items()},
             **{f"lost by {name}": values for name, values in result.dissipated.items()},
             **{f"{name} position": place for name, place in result.pistons.items()},
             "balance, relative": result.balance,
@@ -268,7 +268,8 @@ class EvolutionAnalysis(Analysis):
             ax = next(rest)
             for k, (name, energy) in enumerate(result.given.items()):
                 colour, line, marker = curve_style(k)
-                ax.plot(result.samples, energy, line, marker=marker, ms=3, color=colour, label=_source_label(name))
+                label = _source_label(name, result)
+                ax.plot(result.samples, energy, line, marker=marker, ms=3, color=colour, label=label)
             ax.set_ylabel("energy (k_B = 1)")
         for ax in axes:
             ax.time_axis()
@@ -279,9 +280,9 @@ class EvolutionAnalysis(Analysis):
         return figure
 
 
-def _source_label(name: str) -> str:
+def _source_label(name: str, result: Evolution) -> str:
     """Heading of the energy that a wall, a piston or a heat bath gave to the discs."""
-    return f"work done by the {name}" if f" {name}".endswith(" piston") else f"energy from {name}"
+    return f"work done by the {name}" if name in result.pistons else f"energy from {name}"
 
 
 def _chamber_label(name: str, several: bool) -> str:

@@ -67,6 +67,10 @@ class Wave:
     early: Estimate
 
 
+SMALL_ERRORS = "Standard errors of some curves may be up to 1.3 times too small, those of the longest wave above all."
+"""Caveat of all results: rows of the table of calibration are up to 1.26."""
+
+
 @dataclass(frozen=True)
 class Scattering(Result):
     """Density and current correlations of the gas of one log.
@@ -135,7 +139,7 @@ class ScatteringAnalysis(Analysis):
         if not waves:
             least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
             raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
-        caveats = (*narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
+        caveats = (SMALL_ERRORS, *narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
         others = distinct_parts(log, window, [0.0, *(own.time for own in displaced)])
         return Scattering(
             window, speed, tuple(waves), tuple(displaced), others, *non_gaussian(moments), caveats=caveats
