@@ -113,7 +113,7 @@ def driving_speed(gas: Gas, effects: Effects) -> float:
 
 
 def driving_energy(gas: Gas, effects: Effects) -> float:
-    """Largest energy that a piston with a mass can bring on its way across the box; 0 without one."""
+    """Largest energy that pistons with a mass can bring on their ways across the box; 0 without one."""
     if effects.piston is None:
         return 0.0
-    return float(np.abs(effects.piston["m"] * effects.piston["a"]).max()) * max(gas.box)
+    return float(np.abs(effects.piston["m"] * effects.piston["a"]).sum()) * max(gas.box)

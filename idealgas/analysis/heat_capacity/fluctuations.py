@@ -106,7 +106,8 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
     common = centre_of_mass_energy(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
-    for piston in (piston for piston in scene.piston if piston.mass):
+    if scene.piston and scene.piston[0].mass:
+        (piston,) = scene.piston
         position, velocity = (observed[name][1][at, 0] for name in ("piston_position", "piston_velocity"))
         pull = piston.acceleration(scene.box.size, scene.properties.acceleration)
         energy = energy + piston_energy(piston.mass, position, velocity, pull)

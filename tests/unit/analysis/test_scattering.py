@@ -108,6 +108,10 @@ def test_exact_values_and_continuity(found):
     assert abs(found.non_gaussian.value[0] + 2 / 60) < 4 * found.non_gaussian.error[0] + 0.01
 
 
+def test_that_errors_are_too_small_is_said(found):
+    assert "up to 1.3 times too small" in found.caveats[0]
+
+
 def test_displacements_are_normal_but_for_their_non_gaussian_parameter(found):
     """∫ G_s d²r = 1 up to 3 rms, exp(-9) beyond; the bins against a normal distribution times 1 + α₂ L₂(r²/⟨Δr²⟩).
 
