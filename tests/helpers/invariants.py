@@ -18,7 +18,7 @@ from helpers.paths import FEW, Paths, U
 from idealgas.columns import BATH, OUTSIDE, SIDES, EventBatch, Kind
 from idealgas.engine.simulation import Simulation
 from idealgas.physics.arc_geometry import nearest_points
-from idealgas.physics.permeable import OPEN, SOLID
+from idealgas.physics.permeable import OPEN, SOLID, TOUCHING
 from idealgas.physics.piston import piston_motion
 from idealgas.physics.vibration import height_on, parabola_at
 from idealgas.run.energy import energy_of
@@ -109,8 +109,11 @@ class InvariantChecker(Paths):
         touching = (misses <= self.touches) | (misses == misses.min())
         return self.fitting((away / distances[:, None])[touching], before, after, rebounds), float(misses.min())
 
-    def at_one_way(self, kind, disc: int, k: int, place, before, after, rebounds) -> tuple[np.ndarray, float]:
-        """Normal of such a wall for a disc that bounces off it, and by how much the disc misses its place there."""
+    def at_one_way(self, kind, disc: int, k: int, turned, place, before, after, rebounds) -> tuple[np.ndarray, float]:
+        """Normal of such a wall for a disc that bounces off it, and by how much the disc misses its place there.
+
+        turned: whether something else turned the disc at this instant, perhaps when it had all but come out.
+        """
         (start, end), radius = self.walls[k], self.gas.radius[disc]
         images = place + self.shifts
         if kind == Kind.WALL:
@@ -119,7 +122,8 @@ class InvariantChecker(Paths):
             share = (images - start) @ (end - start) / ((end - start) @ (end - start))
             margin = self.known / np.hypot(*(end - start))
             misses = np.where((share > -margin) & (share < 1 + margin), 0.0, np.inf)
-            return normal, float((misses + np.minimum(np.abs(height - radius), np.abs(height))).min())
+            off = np.where(turned & (height > TOUCHING * radius) & (height < radius), 0.0, np.abs(height - radius))
+            return normal, float((misses + np.minimum(off, np.abs(height))).min())
         return self.at_points(np.concatenate((images - start, images - end)), radius, before, after, rebounds)
 
     # ── collisions ──
@@ -213,7 +217,9 @@ class InvariantChecker(Paths):
             assert kind == Kind.WALL_END
         elif self.passage[wall - 4, disc] != SOLID:
             assert self.passage[wall - 4, disc] != OPEN
-            normal, miss = self.at_one_way(kind, disc, wall - 4, place, before, after, rebounds)
+            normal, miss = self.at_one_way(
+                kind, disc, wall - 4, self.since[disc] == time, place, before, after, rebounds
+            )
             distance = radius + miss
         else:
             gate = self.gates[wall - 4]
@@ -235,7 +241,8 @@ class InvariantChecker(Paths):
             inside = (share > along) & (share < 1 - along)
             beyond = (share < -along) | (share > 1 + along)
             assert not (beyond if kind == Kind.WALL else inside).all(), "foot"
-        self.note("contact", abs(distance - radius), self.touches + self.sunk[disc])
+        clock = U * time * abs(stand)  # a wall that moves is where it is at a rounded time
+        self.note("contact", abs(distance - radius), self.touches + self.sunk[disc] + clock)
         if kind == Kind.PISTON and self.pistons[k].mass is not None:
             return  # its own change is in the balance of energy
         speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
