@@ -90,6 +90,7 @@ class InvariantChecker(Paths):
 
     def look(self, time: float, simulation: Simulation) -> None:
         """How well all is known now; what happened since the last event."""
+        self.weight = max(self.weight, self.gas.mass.sum() * np.hypot(*self.pull))
         earlier = self.fastest if self.epochs == simulation.epoch else 0.0  # what was fast left its errors behind
         self.epochs = simulation.epoch
         self.fastest = max(np.hypot(*self.at(t)[1].T).max() for t in (self.now, time))
@@ -304,8 +305,8 @@ class InvariantChecker(Paths):
             self.behind_piston(place, k, effects.piston[k], time - simulation.time)
         energy = energy_of(gas, effects, time - simulation.time)
         self.scale = max(self.scale, energy.scale)
-        weight = self.gas.mass.sum() * np.hypot(*self.pull) + self.force
-        bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + weight * self.size.max())
+        work = (self.weight + self.force) * self.size.max()
+        bound = FEW * U * (10 + self.events + self.epochs) * (self.scale + work)
         sums = [entry for entry in (effects.wall_energy, effects.dissipated, effects.bath_energy) if entry is not None]
         bound += sum(self.events / entry.per_unit.min() for entry in sums)  # each event adds a rounded term to each
         kept = energy.balance - energy.lost

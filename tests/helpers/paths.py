@@ -69,6 +69,7 @@ class Paths:
         across, along = ((-1, 0, 1) if periodic else (0,) for periodic in self.periodic)
         self.shifts = np.array([(x, y) for x in across for y in along]) * self.size
         self.now, self.known, self.epochs, self.events, self.fastest = 0.0, 0.0, 0, 0, 0.0
+        self.weight = 0.0  # the largest so far
         self.pace = self.fastest_piston(effects, 0.0)
         self.start = energy_of(gas, effects)
         self.lowest, self.scale = self.start.balance, self.start.scale

@@ -87,10 +87,14 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
         piston=beyond,
         thermostat=Thermostat(0.0, 0.0, np.uint64(0), np.full(n, math.inf), np.zeros(n, np.uint64)),
     )
-    inner = inner_energy(called, gas)
-    neutral = with_sums(neutral, scene, gas, gives_energy=True, loses_energy=True, inner_energy=inner)
-    neutral = neutral._replace(bath_energy=make_sums([1.0]))
-    return Effects(*(other if own is None else own for own, other in zip(called, neutral, strict=True)))
+    inner, effects = inner_energy(called, gas), _filled(called, neutral)
+    every = with_sums(effects, scene, gas, gives_energy=True, loses_energy=True, inner_energy=inner)
+    return _filled(called, every._replace(bath_energy=make_sums([1.0])))
+
+
+def _filled(effects: Effects, others: Effects) -> Effects:
+    """The effects, and of the others those that are missing among them."""
+    return Effects(*(other if own is None else own for own, other in zip(effects, others, strict=True)))
 
 
 def log_of_brute_force(scene: Scene, gas: Gas, stop: Stop) -> EventBatch:
