@@ -150,13 +150,13 @@ class HeatCapacityAnalysis(Analysis):
         from idealgas.analysis.core.style import COLOURS, name_rows, panels
 
         figure, (ax,) = panels(1)
-        names = []
-        for k, route in enumerate(result.routes[::-1]):
+        names = [] if result.routes else [f"no {name}" for name in result.refused]
+        for k, route in enumerate(result.routes[::-1], len(names)):
             ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
             ax.theory_of_row(k, route.value, None)
             gas = _listed(route.kind, route.gas)
-            names.append((f"{gas}: {route.name}" if gas else route.name).replace(" of the kinetic energy", ""))
-        name_rows(ax, names, fontsize="small")
+            names.append(f"{gas}: {route.name}" if gas else route.name)
+        name_rows(ax, [name.replace(" of the kinetic energy", "") for name in names], fontsize="small")
         ax.locator_params(axis="x", nbins=6)
         ax.plot([], [], "o", color=COLOURS[0], label="measured")
         ax.plot([], [], color=COLOURS[1], label="theory")

@@ -16,11 +16,14 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston(tmp_path):
     simulate(load_scene(ROOT / "configs/piston.toml", ["run.until=300", "log.snapshot_every=5"]), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         measured = heat_capacity(log, start=20.0)
-    refused = HeatCapacityAnalysis.combine([measured]).refused
+    result = HeatCapacityAnalysis.combine([measured])
+    refused = result.refused
     assert "independent samples of the energy are too few (128 needed)" in refused["fluctuations of the kinetic energy"]
     assert "it requires" not in refused["fluctuations of the kinetic energy"]
     assert refused["γ"].startswith("no heat capacity of the gas with the piston was measured")
     assert refused["Var(E)/T²"].startswith("it requires thermal walls")
+    rows = [label.get_text() for label in HeatCapacityAnalysis.figure(result).axes[0].get_yticklabels()]
+    assert rows == ["no dE/dT", "no E/T", "no Var(E)/T²", "no fluctuations", "no γ"]
 
 
 def test_few_samples_of_the_energy_name_the_key_that_stores_more(tmp_path):
