@@ -33,7 +33,7 @@ from idealgas.physics.arc import wall_contact
 from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
-from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
+from idealgas.physics.motion import NEVER, position_after, time_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
@@ -163,7 +163,7 @@ def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
             here = position_after(position, velocity, pull, dt) - crossings * length
             speed = velocity_after(velocity, pull, dt)
             down, up = time_to_plane(here, speed, pull), time_to_plane(length - here, -speed, -pull)
-            return disc.t + dt + min(down, up), up < down
+            return time_after(max(now, disc.t), min(down, up)), up < down
     forward = velocity > 0.0
     return disc.t + arrival_delay(position, velocity, (crossings + (1 if forward else 0)) * length), forward
 

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from idealgas.jit import inline
 
 NEVER = 1e300
@@ -64,6 +66,16 @@ def time_to_plane(height, velocity, acceleration):
     if acceleration < 0.0:
         return (velocity + root) / -acceleration
     return NEVER
+
+
+@inline
+def time_after(now, delay):
+    """Time (now plus a delay), later than now for any delay above zero, even one that rounding would take away.
+
+    Else a body that turns back at the border of a cell would cross it to and fro for ever.
+    """
+    time = now + delay
+    return np.nextafter(now, np.inf) if (time == now) & (delay > 0.0) else time
 
 
 @inline

@@ -7,7 +7,7 @@ from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
-from idealgas.physics.motion import NEVER, position_after, time_to_plane, velocity_after
+from idealgas.physics.motion import NEVER, position_after, time_after, time_to_plane, velocity_after
 from idealgas.physics.periodic import boundary_crossings_along, is_periodic
 from idealgas.physics.piston import is_piston_side
 from idealgas.physics.shear import crossing_time
@@ -55,11 +55,11 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
     if first:
         down = disc.t + time_to_plane(position - low, velocity, pull)
     else:
-        down = max(now, disc.t) + time_to_plane(here - (cell - 1) * size, speed, pull)
+        down = time_after(max(now, disc.t), time_to_plane(here - (cell - 1) * size, speed, pull))
     if last:
         up = disc.t + time_to_plane(high - position, -velocity, -pull)
     else:
-        up = max(now, disc.t) + time_to_plane(cell * size - here, -speed, -pull)
+        up = time_after(max(now, disc.t), time_to_plane(cell * size - here, -speed, -pull))
     return (up, True, last) if up < down else (down, False, first)
 
 

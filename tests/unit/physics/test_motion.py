@@ -6,7 +6,7 @@ import pytest
 from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.gravity import Gravity, acceleration_along
-from idealgas.physics.motion import advance, position_after, velocity_after
+from idealgas.physics.motion import advance, position_after, time_after, velocity_after
 
 pytestmark = pytest.mark.interpreted
 
@@ -34,6 +34,11 @@ def test_arrays_and_numbers_give_the_same_bits():
     straight = [position_after(p, q, None, s) for p, q, s in zip(x, v, t, strict=True)]
     assert position_after(x, v, None, t).tolist() == straight
     assert velocity_after(v, a, t).tolist() == [velocity_after(*values) for values in zip(v, a, t, strict=True)]
+
+
+@pytest.mark.parametrize(("now", "delay", "time"), [(3.0, 0.5, 3.5), (3.0, 0.0, 3.0), (3.0, 1e-20, 3.0 + 2.0**-51)])
+def test_a_delay_always_takes_time(now, delay, time):
+    assert time_after(now, delay) == time
 
 
 @pytest.mark.parametrize("gravity", [None, Gravity(0.3, -1.7)])
