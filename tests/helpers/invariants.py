@@ -186,7 +186,7 @@ class InvariantChecker(Paths):
         """A disc touches a wall or the piston, and leaves it by the law."""
         disc, wall = int(rows.disc[0]), -1 - partner
         place, after, radius = rows.position[0], rows.velocity[0], self.gas.radius[disc]
-        stand, normal = 0.0, np.zeros(2)
+        stand, turn, normal = 0.0, 0.0, np.zeros(2)
         height = np.hypot(*self.pull) * (time - self.since[disc]) ** 2 / 8
         if kind != Kind.PISTON and self.hit[disc] == partner and height <= self.known:
             self.sunk[disc] += 2 * U * self.size.sum()
@@ -207,7 +207,7 @@ class InvariantChecker(Paths):
             if vibration is not None and vibration[wall].amplitude > 0:
                 own, inward = vibration[wall], -1.0 if upper else 1.0
                 local = time - simulation.time
-                height, speed, _ = height_on(own, parabola_at(own, local), local)
+                height, speed, turn = height_on(own, parabola_at(own, local), local)
                 edge, stand = edge + inward * height, inward * speed
             distance = abs(place[axis] - edge)
         elif wall - 4 >= len(self.gates):
@@ -247,7 +247,7 @@ class InvariantChecker(Paths):
         if kind == Kind.PISTON and self.pistons[k].mass is not None:
             return  # its own change is in the balance of energy
         speeds = np.hypot(*before) + np.hypot(*after) + abs(stand) + np.hypot(*self.pull) * time
-        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius)
+        bound = speeds * (FEW * U * (1 + self.epochs) + 4 * self.touches / radius) + 2 * U * time * abs(turn)
         motion = stand * np.abs(normal)
         incoming, outgoing = (before - motion) @ normal, (after - motion) @ normal
         grazing = math.sqrt(2 * self.touches * (np.hypot(*self.pull) + self.push + before @ before / radius))
