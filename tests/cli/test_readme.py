@@ -40,8 +40,8 @@ README, SCENES, ENGINE, LOG, RUN, ACCURACY, SWEEP = (
     "idealgas/sweep/README.md",
 )
 ANALYSES = [page for page in PAGES if page.startswith("idealgas/analysis/")]
-NOT_RUN = {"toml", "bibtex", "text"}
-"""Languages of blocks that are not programs: scenes are run by the commands about them."""
+NOT_RUN = {"toml", "bibtex", "sql", "text"}
+"""Languages of blocks that are not run: scenes are run by the commands about them, queries by another program."""
 
 
 @pytest.fixture
