@@ -114,7 +114,8 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
         why_not = why_not or f"above φ = {DENSEST_COUNTS:g} none is known for numbers of collisions"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
     rate = discs.shares @ per_disc
-    time = float(min(COUNTED / rate.max(), (last - first) / 64))
+    fewest, most = 64, max(len(log), 64)  # times: no more than rows, even if hardly anything happens in most of them
+    time = float(np.clip(COUNTED / rate.max(), (last - first) / most, (last - first) / fewest))
     tally = CollisionCounts(time, MOST_COUNTED, max(STRIDE, int((last - first) / time * len(log.discs) / INTERVALS)))
     window = measure(log, [tally], start, end, progress)
     begin = int(tally.begins.searchsorted(window.start))
