@@ -72,7 +72,7 @@ def time_to_plane(height, velocity, acceleration):
 def time_after(now, delay):
     """Time (now plus a delay), later than now for any delay above zero, even one that rounding would take away.
 
-    Else a body that turns back at the border of a cell would cross it to and fro for ever.
+    Otherwise a body that turns back on the border of a cell would cross it back and forth indefinitely.
     """
     time = now + delay
     return np.nextafter(now, np.inf) if (time == now) & (delay > 0.0) else time
