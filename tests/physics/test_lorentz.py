@@ -14,9 +14,10 @@ GOLDEN = ROOT / "tests" / "cases" / "golden" / "fixed-discs.toml"
 LORENTZ = ROOT / "configs" / "lorentz.toml"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gravity",
-    [pytest.param((), id="falling"), pytest.param(("gravity=", "restitution="), marks=pytest.mark.slow, id="straight")],
+    [pytest.param((), id="falling"), pytest.param(("gravity=", "restitution="), id="straight")],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
     summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, gravity, "run.until=12")

@@ -17,11 +17,12 @@ GOLDEN = ROOT / "tests" / "cases" / "golden" / "permeable.toml"
 OSMOSIS = ROOT / "configs" / "osmosis.toml"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gravity",
     [
         pytest.param((), id="falling"),
-        pytest.param(("gravity=", "box.bottom=reflecting"), marks=pytest.mark.slow, id="straight"),
+        pytest.param(("gravity=", "box.bottom=reflecting"), id="straight"),
     ],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):

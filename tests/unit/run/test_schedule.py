@@ -19,12 +19,13 @@ DRIVEN = "piston=[{ side = 'right', velocity = [[0, -0.25], [4, 0], [6, 0.5], [8
 DISC = "[[disc]]\nposition = {}\nvelocity = {}\nradius = 0.5\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "overrides", "changes"),
     [
         pytest.param(GOLDEN, (), {3, 4, 5, 6, 8}, id="pressed"),
-        pytest.param(GOLDEN, (DRIVEN,), {3, 4, 5, 6, 8}, marks=pytest.mark.slow, id="driven"),
-        pytest.param(FALLS, (), {1.5, 4, 7}, marks=pytest.mark.slow, id="falls"),
+        pytest.param(GOLDEN, (DRIVEN,), {3, 4, 5, 6, 8}, id="driven"),
+        pytest.param(FALLS, (), {1.5, 4, 7}, id="falls"),
     ],
 )
 def test_the_same_by_brute_force_and_resumed(tmp_path, scene, overrides, changes):
