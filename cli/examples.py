@@ -21,7 +21,10 @@ def _complete(_: click.Context, __: click.Parameter, incomplete: str) -> list[st
     "-o", "--output", type=FILE, metavar="FILE", help="File to write.  [default: the example's name, in this folder]"
 )
 @click.option(
-    "--gallery", type=FILE, metavar="PAGE.html", help="Run all examples, or NAME, and write a page of their pictures."
+    "--gallery",
+    type=FILE,
+    metavar="PAGE.html",
+    help="Write a page with pictures of all examples, or of NAME.",
 )
 @force_option
 def examples(name: str | None, output: str | None, gallery: str | None, force: bool) -> None:
@@ -45,10 +48,10 @@ def examples(name: str | None, output: str | None, gallery: str | None, force: b
 
 
 def _write_gallery(path: str, name: str | None, force: bool) -> None:
-    """Run all scenes, or one of them, and write the page of their pictures."""
+    """Write the page with pictures of all scenes, or of one of them."""
     from idealgas.gallery import SCENES, write_gallery
 
     scenes = SCENES if name is None else (name.removesuffix(SCENE),)
-    with progress_bar("running scenes") as progress:
+    with progress_bar("drawing scenes") as progress:
         write_gallery(path, scenes, force=force, on_scene=lambda k, name: progress(k, len(scenes), name))
     written(path)

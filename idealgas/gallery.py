@@ -1,12 +1,12 @@
-"""Gallery of the example scenes: a picture of each at the end of its run, and one HTML page with all of them."""
+"""Gallery of the example scenes: a picture of each at time 0, and one HTML page with all of them."""
 
 import base64
+import io
 import os
 import tomllib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from string import Template
-from tempfile import TemporaryDirectory
 
 from idealgas.analysis.core.tables import escape
 from idealgas.errors import UserError, unknown
@@ -17,7 +17,7 @@ from idealgas.report.page import description_html, text_of
 SCENES = tuple(name for name in names() if name != TEMPLATE)
 """Names of the scenes in the gallery."""
 
-ABOUT = "The example scenes, with the discs at the end of the run, coloured by speed or, in mixtures, by species."
+ABOUT = "The example scenes, with the discs at the start, coloured by speed or, in mixtures, by species."
 
 PAGE = Template("""<!doctype html>
 <html lang="en">
@@ -64,28 +64,33 @@ def commands(name: str) -> tuple[str, ...]:
     )
 
 
-def draw(name: str, path: Path) -> None:
-    """Run an example scene and draw its discs at the end, as .png; without positions, the distribution of their speeds.
+def draw(name: str) -> bytes | None:
+    """Return a PNG picture of the discs of an example scene at time 0; None for a gas without positions."""
+    import numpy as np
+    from PIL import Image
 
-    Raises:
-        OutputError: if the picture cannot be written.
-    """
-    from idealgas.analysis.core.style import save
-    from idealgas.analysis.registry import analyse
-    from idealgas.log import open_log
-    from idealgas.movie.film import paint_frame
-    from idealgas.movie.painter import Colouring
-    from idealgas.run.simulate import simulate
+    from idealgas.initial.build import make_gas
+    from idealgas.log import LogState
+    from idealgas.movie.painter import Painter
+    from idealgas.movie.piston_track import pistons_at_start
 
-    with TemporaryDirectory(prefix="idealgas-gallery-") as folder:
-        log_path = Path(folder, "run.h5")
-        simulate(load_example(name), log_path)
-        with open_log(log_path) as log:
-            if log.has_positions and log.has_events:
-                colouring: Colouring = "species" if len(log.discs.species_names) > 1 else "speed"
-                paint_frame(log, path, log.end_time, colouring=colouring, panel="none", force=True)
-            else:
-                save(analyse(log, "histogram").plot(), path, force=True)
+    scene = load_example(name)
+    if scene.run.method == "monte_carlo":
+        return None
+    gas = make_gas(scene)
+    rms_speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
+    painter = Painter(
+        scene,
+        gas,
+        pistons_at_start(scene),
+        rms_speed,
+        colouring="species" if len(gas.species_names) > 1 else "speed",
+        panel="none",
+    )
+    frame = painter.paint(LogState(0.0, gas.position, gas.velocity))
+    picture = io.BytesIO()
+    Image.fromarray(frame[..., :3]).save(picture, format="png")
+    return picture.getvalue()
 
 
 def write_gallery(
@@ -95,7 +100,7 @@ def write_gallery(
     force: bool = False,
     on_scene: Callable[[int, str], None] = lambda done, name: None,
 ) -> Path:
-    """Run example scenes and write one page with their pictures and descriptions, which needs no other files.
+    """Write one page with pictures and descriptions of example scenes, which needs no other files.
 
     Args:
         output: path of the page, with the ending .html or .htm.
@@ -115,12 +120,9 @@ def write_gallery(
             raise unknown("example", name, list(SCENES))
     check_output(path, kind, force)
     parts = []
-    with TemporaryDirectory(prefix="idealgas-gallery-") as folder:
-        for k, name in enumerate(scenes):
-            on_scene(k, name)
-            picture = Path(folder, f"{name}.png")
-            draw(name, picture)
-            parts.append(_scene(name, picture.read_bytes()))
+    for k, name in enumerate(scenes):
+        on_scene(k, name)
+        parts.append(_scene(name, draw(name)))
     contents = "".join(f'<li><a href="#{name}">{escape(name)}</a></li>' for name in scenes)
     page = PAGE.substitute(style=text_of("report.css"), about=ABOUT, contents=contents, scenes="\n".join(parts))
     with written(path, kind, force) as part:
@@ -128,12 +130,12 @@ def write_gallery(
     return path
 
 
-def _scene(name: str, picture: bytes) -> str:
-    """HTML of one scene."""
+def _scene(name: str, picture: bytes | None) -> str:
+    """HTML of a scene."""
     title, description = described(name)
-    data = base64.b64encode(picture).decode()
-    return (
-        f'<section id="{name}"><h2>{escape(title)}</h2>'
-        f'<img src="data:image/png;base64,{data}" alt="{escape(title)}, at the end of the run">'
-        f'{description}<pre tabindex="0">{escape(chr(10).join(commands(name)))}</pre></section>'
-    )
+    image = ""
+    if picture is not None:
+        data = base64.b64encode(picture).decode()
+        image = f'<img src="data:image/png;base64,{data}" alt="{escape(title)}, at the start">'
+    text = escape("\n".join(commands(name)))
+    return f'<section id="{name}"><h2>{escape(title)}</h2>{image}{description}<pre tabindex="0">{text}</pre></section>'

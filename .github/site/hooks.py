@@ -1,19 +1,17 @@
-"""Pages of the site that are made from other files: READMEs, the gallery, and the reference of the analyses.
+"""Pages of the site that are made from other files: READMEs, the gallery, and the reference of the analyses."""
 
-As a script it makes the pictures of the gallery that are missing, by running the example scenes, in some minutes.
-"""
-
-import os
 import posixpath
 import re
+import tomllib
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-PICTURES = Path(os.environ.get("GALLERY", ROOT / "build" / "gallery"))
-"""Folder of the pictures of the gallery."""
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+REPOSITORY = PROJECT["urls"].get("Repository", "")
+"""Address of the repository, to which the pages link; empty until pyproject.toml has it."""
 
 PAGES = {
     "README.md": "index.md",
@@ -40,12 +38,11 @@ def on_files(files: Any, config: Any) -> Any:
     """Add the pages and their pictures to the site."""
     from mkdocs.structure.files import File
 
-    made = {page: _linked(source, config.repo_url) for source, page in PAGES.items()}
-    for page, text in (made | {"gallery.md": _gallery()}).items():
-        files.append(File.generated(config, page, content=text))
-    for folder, name in ((ROOT / ".readme", "pictures"), (PICTURES, "gallery")):
-        for path in sorted(folder.glob("*")):
-            files.append(File.generated(config, f"{name}/{path.name}", abs_src_path=str(path)))
+    pages: dict[str, str | bytes] = {page: _linked(source, REPOSITORY) for source, page in PAGES.items()}
+    for path, content in (pages | _gallery()).items():
+        files.append(File.generated(config, path, content=content))
+    for picture in sorted((ROOT / ".readme").glob("*")):
+        files.append(File.generated(config, f"pictures/{picture.name}", abs_src_path=str(picture)))
     return files
 
 
@@ -61,13 +58,18 @@ def on_post_page(output: str, **_: Any) -> str:
 
 
 def _linked(source: str, repository: str) -> str:
-    """Text of a page with its links: to pages of the site, to pictures, or to other files in the repository."""
+    """Text of a page with its links to pages of the site, to pictures, and to other files of the repository.
+
+    Without an address of the repository, its other files are named but not linked.
+    """
 
     def link(found: re.Match[str]) -> str:
         target = posixpath.normpath(posixpath.join(posixpath.dirname(source), found[2]))
         place = PAGES.get(target, target.replace(".readme/", "pictures/"))
         if place != target:
             path = posixpath.relpath(place, posixpath.dirname(PAGES[source]) or ".")
+        elif (ROOT / target).exists() and not repository:
+            return found[1][1:-1]
         elif (ROOT / target).exists():
             path = f"{repository}/{'tree' if (ROOT / target).is_dir() else 'blob'}/main/{target}"
         else:
@@ -77,17 +79,22 @@ def _linked(source: str, repository: str) -> str:
     return LINK.sub(link, (ROOT / source).read_text(encoding="utf-8"))
 
 
-def _gallery() -> str:
-    """Page with every example scene: its picture, its description and its commands."""
-    from idealgas.gallery import ABOUT, SCENES, commands, described
+def _gallery() -> dict[str, str | bytes]:
+    """Files of the gallery: its page, with description and commands of every example scene, and the pictures."""
+    from idealgas.gallery import ABOUT, SCENES, commands, described, draw
 
+    files: dict[str, str | bytes] = {}
     parts = ["# Gallery", ABOUT]
     for name in SCENES:
         title, description = described(name)
         description = description.replace("<pre ", '<pre style="overflow-x: auto" ')  # the theme has none for it
-        parts += [f"## {title}", f"![{title}](gallery/{name}.png)", description]
+        parts.append(f"## {title}")
+        if (picture := draw(name)) is not None:
+            files[f"gallery/{name}.png"] = picture
+            parts.append(f"![{title}, at the start](gallery/{name}.png)")
+        parts.append(description)
         parts.append("\n".join(("```bash", *commands(name), "```")))
-    return "\n\n".join(parts) + "\n"
+    return files | {"gallery.md": "\n\n".join(parts) + "\n"}
 
 
 def _analyses() -> Iterator[str]:
@@ -110,19 +117,3 @@ def _keys(result: type) -> Iterator[str]:
         marks = getattr(field.type, "__metadata__", ())
         if not {INLINE, OMITTED} & {mark for mark in marks if not isinstance(mark, Key)}:
             yield next((mark.name for mark in marks if isinstance(mark, Key)), field.name)
-
-
-def make_pictures() -> None:
-    """Run the example scenes of which there is no picture, and draw them."""
-    from idealgas.gallery import SCENES, draw
-
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    for name in SCENES:
-        picture = PICTURES / f"{name}.png"
-        if not picture.exists():
-            draw(name, picture)
-            print(picture)
-
-
-if __name__ == "__main__":
-    make_pictures()

@@ -7,6 +7,7 @@ import numpy as np
 from idealgas.analysis.core.chambers import piston_names
 from idealgas.columns import Kind
 from idealgas.log import Log
+from idealgas.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,23 @@ def piston_tracks(log: Log, start: float, end: float) -> list[PistonTrack]:
     return [track for track in tracks if track is not None]
 
 
+def pistons_at_start(scene: Scene) -> list[PistonTrack]:
+    """Tracks of the pistons of a scene, each at rest where it is at time 0."""
+    always = np.array([0.0, 1.0])
+    return [
+        PistonTrack(
+            piston.axis,
+            always,
+            np.full(2, piston.start(scene.box.size)),
+            np.zeros(2),
+            (0.0, scene.box.size[piston.axis]),
+            piston.outward,
+            name,
+        )
+        for piston, name in zip(scene.piston, piston_names(scene), strict=True)
+    ]
+
+
 def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
     """Track of piston k, from its samples and from the positions of discs that hit it; None if it is not known."""
     piston, own = log.scene.piston[k], [wall.name for wall in log.walls].index(log.scene.piston[k].wall)
@@ -59,5 +77,5 @@ def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
         return None
     pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
     limits = (0.0, log.box[piston.axis])
-    place, name = np.concatenate(knots)[unique], piston_names(log)[k]
+    place, name = np.concatenate(knots)[unique], piston_names(log.scene)[k]
     return PistonTrack(piston.axis, time, place, pull, limits, piston.outward, name)

@@ -7,10 +7,16 @@ import json
 import re
 import tomllib
 
+import numpy as np
 import pytest
 from helpers.support import ROOT, called, error_of, idealgas, output_of
 from PIL import Image
 
+from idealgas.examples import load_example
+from idealgas.gallery import draw
+from idealgas.log import open_log
+from idealgas.movie.film import paint_frame
+from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 CONFIGS = ROOT / "configs"
@@ -73,12 +79,20 @@ def test_the_gallery_of_a_scene_is_one_page_with_its_picture(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
 
 
-@pytest.mark.slow
+@pytest.mark.interpreted
+def test_a_picture_of_the_gallery_shows_the_start_of_the_run(tmp_path):
+    simulate(load_example("mixture", ["run.events=10"]), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        paint_frame(log, tmp_path / "frame.png", 0.0, colouring="species", panel="none")
+    with Image.open(io.BytesIO(draw("mixture"))) as drawn, Image.open(tmp_path / "frame.png") as frame:
+        assert np.array_equal(np.asarray(drawn), np.asarray(frame))
+
+
 def test_the_gallery_has_all_scenes(tmp_path):
     assert called("examples", "--gallery", "page.html", folder=tmp_path).returncode == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert re.findall(r'<section id="([\w-]+)"', page) == [name for name in SCENES if name != "template"]
-    assert page.count('src="data:image/png') == len(SCENES) - 1
+    assert page.count('src="data:image/png') == len(SCENES) - 2, "all but the template and the gas without positions"
 
 
 def test_a_new_scene_to_standard_output(tmp_path):

@@ -28,7 +28,7 @@ ALLOWED = {
     "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "examples": {"scene"},
-    "gallery": {"examples", "scene", "run", "log", "analysis", "movie", "report"},
+    "gallery": {"examples", "initial", "log", "analysis", "movie", "report"},
     "_version": set(),
     "errors": set(),
     "columns": set(),

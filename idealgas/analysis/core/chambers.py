@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.columns import SIDES, axis_of, sides_across
 from idealgas.log import Log
-from idealgas.scene import Piston
+from idealgas.scene import Piston, Scene
 from idealgas.scene.walls import walls_inside
 
 
@@ -57,15 +57,17 @@ def outward(log: Log, piston: Piston) -> float:
     return directions.pop() if len(directions) == 1 else 0.0
 
 
-def piston_names(log: Log) -> list[str]:
+def piston_names(scene: Scene) -> list[str]:
     """Names of the pistons in tables and pictures, unique: "piston" for a single one, else with side or own name."""
-    walls = [piston.wall for piston in log.scene.piston]
+    walls = [piston.wall for piston in scene.piston]
     return ["piston"] if len(walls) == 1 else [wall if wall == "piston" else f"{wall} piston" for wall in walls]
 
 
 def beside_pistons(log: Log) -> dict[str, np.ndarray]:
     """Masks (N,) of the discs of each gas beside inner pistons, by the name of the side of the box or the pistons."""
-    inner = [(piston, name) for piston, name in zip(log.scene.piston, piston_names(log), strict=True) if piston.inner]
+    inner = [
+        (piston, name) for piston, name in zip(log.scene.piston, piston_names(log.scene), strict=True) if piston.inner
+    ]
     if not inner:
         return {}
     places = [piston.start(log.box) for piston, _ in inner]

@@ -147,7 +147,7 @@ class EvolutionAnalysis(Analysis):
             samples[inside],
             parts,
             given,
-            {name: observed["piston_position"][inside, k] for k, name in enumerate(piston_names(log))},
+            {name: observed["piston_position"][inside, k] for k, name in enumerate(piston_names(log.scene))},
             balance[inside],
             lost,
             pressure,

@@ -23,7 +23,7 @@ def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Serie
     lost = observed.get("dissipated_energy", np.zeros((len(given), 1 + len(log.walls))))
     counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
     walls = [wall.name for wall in log.walls]
-    for k, (piston, name) in enumerate(zip(log.scene.piston, piston_names(log), strict=True)):
+    for k, (piston, name) in enumerate(zip(log.scene.piston, piston_names(log.scene), strict=True)):
         own = walls.index(piston.wall)
         walls[own] = name
         if piston.mass:  # its energy is a part of the energy, so that it gives none from outside

@@ -97,7 +97,7 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
     if gauge.moving:
         lines = state_lines(log, gauge.area(blocks)) if gauge.bounded else None
         ends, places = blocks[:: BLOCKS // POINTS], (p.place.reshape(POINTS, -1).mean(axis=1) for p in gauge.moving)
-        track = (ends[1:] + ends[:-1]) / 2, dict(zip(piston_names(log), places, strict=True))
+        track = (ends[1:] + ends[:-1]) / 2, dict(zip(piston_names(log.scene), places, strict=True))
     return PressureSeries(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),
