@@ -1,30 +1,32 @@
-"""Ctrl-C as a request to stop that is never lost, even if a library swallows KeyboardInterrupt."""
+"""Ctrl-C and SIGTERM as requests to stop that are never lost, even if a library swallows KeyboardInterrupt."""
 
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-EXIT_CODE = 130
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Signals that ask a command to stop: Ctrl-C, and what batch systems and `kill` send."""
 
 
 @contextmanager
-def ctrl_c(raises: bool) -> Iterator[Callable[[], bool]]:
-    """Yield a function that returns whether Ctrl-C has been pressed since then.
+def stop_signals(raises: bool) -> Iterator[Callable[[], int]]:
+    """Yield a function that returns the exit code if a signal has asked the command to stop since then, or else 0.
 
     Args:
-        raises: whether the first Ctrl-C also raises KeyboardInterrupt, which ends a wait; later ones do not interrupt
+        raises: whether the first signal also raises KeyboardInterrupt, which ends a wait; later ones do not interrupt
             the cleanup.
     """
-    pressed = False
+    exit_code = 0
 
-    def press(*_: object) -> None:
-        nonlocal pressed
-        first, pressed = not pressed, True
+    def stop(number: int, _: object) -> None:
+        nonlocal exit_code
+        first, exit_code = not exit_code, exit_code or 128 + number
         if raises and first:
             raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGINT, press)
+    before = {number: signal.signal(number, stop) for number in SIGNALS}
     try:
-        yield lambda: pressed
+        yield lambda: exit_code
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

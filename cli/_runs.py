@@ -9,6 +9,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from idealgas.errors import OutputError
+
 from ._progress import progress_bar
 from ._tables import facts, print_tables
 from ._terminal import data, echo
@@ -28,7 +30,7 @@ def run_with_progress(
     on_start: Callable[[], None] = lambda: None,
     stream: "EventStream | None" = None,
 ) -> None:
-    """Call `simulate` with a progress bar, stop it at Ctrl-C, and print the summary of its log.
+    """Call `simulate` with a progress bar, stop it at Ctrl-C or SIGTERM, and print the summary of its log.
 
     Args:
         simulate: function that runs a scene.
@@ -36,11 +38,11 @@ def run_with_progress(
         as_json: whether to print JSON.
         from_start: whether this run wrote all events of the log.
         on_start: called when the first events are in the log.
-        stream: prints the events instead of the summary; the run ends when it is closed.
+        stream: prints the events instead of the summary; the run ends when it fails.
     """
-    from ._interrupt import EXIT_CODE, ctrl_c
+    from ._interrupt import stop_signals
 
-    with ctrl_c(raises=False) as interrupted:
+    with stop_signals(raises=False) as interrupted:
         with progress_bar("loading machine code, or compiling it once for these effects") as show:
             command = shlex.join(["idealgas", *sys.argv[1:]])
             started = time.perf_counter()
@@ -55,7 +57,7 @@ def run_with_progress(
                 show(progress.share, description=doing, notice=progress.notice)
 
             def stopped() -> bool:
-                return interrupted() or (stream is not None and stream.closed)
+                return bool(interrupted()) or (stream is not None and stream.failure is not None)
 
             summary = simulate(command=command, on_progress=on_progress, interrupted=stopped)
         if stream is not None:
@@ -64,10 +66,16 @@ def run_with_progress(
             data(json.dumps(summary.as_dict(), indent=2))
         else:
             _print(summary, path, from_start)
-        if stopped():
-            if not summary.completed:
-                echo(f"interrupted; `idealgas resume {shlex.quote(path)}` continues it", err=True)
-            raise SystemExit(EXIT_CODE) if interrupted() else BrokenPipeError
+        failure = stream and stream.failure
+        hint = "" if summary.completed else f"; `idealgas resume {shlex.quote(path)}` continues it"
+        if isinstance(failure, OutputError):
+            raise OutputError(f"{failure}{hint}", failure.exit_code)
+        if stopped() and hint:
+            echo(f"interrupted{hint}", err=True)
+        if interrupted():
+            raise SystemExit(interrupted())
+        if failure:
+            raise failure
 
 
 def _print(summary: "Summary", output: str, from_start: bool) -> None:

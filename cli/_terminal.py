@@ -1,14 +1,13 @@
 """Output to the terminal: names, titles and commands from scenes and logs are printed as plain text."""
 
+import io
 import os
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from idealgas.errors import plain
+from idealgas.errors import OutputError, plain
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -68,11 +67,28 @@ def terminal(err: bool = False) -> "Console":
     return console
 
 
-@contextmanager
-def exit_on_closed_pipe() -> Iterator[None]:
-    """Exit quietly when the reader of the output, such as `head`, has closed it."""
-    try:
-        yield
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # takes what is flushed later
-        raise SystemExit(CLOSED_PIPE) from None
+class _StandardOutput(io.FileIO):
+    """Standard output; a write that fails raises OutputError, or BrokenPipeError if the reader has closed the pipe."""
+
+    def write(self, data: Any) -> int:
+        """Write bytes and return their number; after a failure, everything that follows is dropped."""
+        try:
+            return super().write(data)
+        except OSError as error:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # takes what is still in the buffers
+            if isinstance(error, BrokenPipeError):
+                raise
+            raise OutputError(f"standard output: cannot be written: {error.strerror}", exit_code=1) from None
+
+
+def set_up_streams() -> None:
+    """Print characters that a stream cannot show as escapes, and report a failing write to standard output."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    old = sys.stdout
+    buffer = getattr(old, "buffer", None)
+    raw = getattr(buffer, "raw", buffer)  # Python may run unbuffered
+    if type(raw) is io.FileIO:  # neither a console of Windows nor the memory of a test
+        file = io.BufferedWriter(_StandardOutput(raw.fileno(), "wb", closefd=False))
+        sys.stdout = io.TextIOWrapper(file, old.encoding, old.errors, line_buffering=old.isatty())

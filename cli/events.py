@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from idealgas.errors import OutputError
+
 from ._analysis import log_argument, open_log
 from ._terminal import data
 
@@ -45,22 +47,22 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
 
 
 class EventStream:
-    """Function that prints event rows until the reader of the output closes it.
+    """Function that prints event rows while the output takes them.
 
     Attributes:
-        closed: whether the reader has closed it.
+        failure: BrokenPipeError after the reader has closed the output, OutputError if it cannot be written.
     """
 
-    closed = False
+    failure: BrokenPipeError | OutputError | None = None
 
     def __call__(self, batch: "EventBatch") -> None:
         """Print the rows of a batch; waits while the pipe is full."""
-        if self.closed:
+        if self.failure is not None:
             return
         try:
             print_events(batch)
-        except BrokenPipeError:
-            self.closed = True
+        except (BrokenPipeError, OutputError) as error:
+            self.failure = error
 
 
 def print_events(batch: "EventBatch", disc: int | None = None, kind: int | None = None) -> None:

@@ -5,9 +5,9 @@ starts with an underscore, and this one, are not commands. Commands that analyse
 the analyses.
 """
 
-import io
 import logging
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,8 +21,7 @@ from idealgas.analysis import registry
 from idealgas.errors import UserError, unknown
 
 from ._analysis import AnalysisCommand
-from ._interrupt import EXIT_CODE
-from ._terminal import echo, exit_on_closed_pipe
+from ._terminal import CLOSED_PIPE, echo, set_up_streams
 
 GROUPS = {
     "Run": ("new", "examples", "schema", "check", "run", "resume", "scene", "recover", "warm-up"),
@@ -79,41 +78,31 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the program; characters that the terminal cannot show are printed as escapes."""
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, io.TextIOWrapper):
-                stream.reconfigure(errors="backslashreplace")
+        """Run the program."""
+        set_up_streams()
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait actively, longer than small products take
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
         return super().main(*args, **options)
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
         """Parse the command line, and print help if requested."""
-        with _usage_errors(), exit_on_closed_pipe():
+        with _plain_errors():
             return super().make_context(*args, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; print a UserError as one line, with options instead of arguments, and exit with its code."""
-        try:
+        """Run a command."""
+        with _plain_errors():
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
-            with _usage_errors(), exit_on_closed_pipe():
-                return super().invoke(ctx)
-        except UserError as error:
-            echo(str(error).replace("force=True", "--force"), err=True)
-            ctx.exit(error.exit_code)
-        except KeyboardInterrupt:
-            echo("interrupted", err=True)
-            ctx.exit(EXIT_CODE)
-        except MemoryError:
-            echo("out of memory: the scene is too large for this machine", err=True)
-            ctx.exit(1)
+            return super().invoke(ctx)
 
 
 @contextmanager
-def _usage_errors() -> Iterator[None]:
-    """Print an error in a command line as one line, as all other errors, and exit."""
+def _plain_errors() -> Iterator[None]:
+    """Print errors that a user can correct as one line, with options instead of arguments, and exit with their code."""
     try:
         yield
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except click.exceptions.NoArgsIsHelpError:
         raise
     except click.UsageError as error:
@@ -121,6 +110,17 @@ def _usage_errors() -> Iterator[None]:
         message = " ".join(error.format_message().split())
         echo(f"{name}: {message[:1].lower()}{message[1:].rstrip('.')} (`{name} --help` lists the options)", err=True)
         raise SystemExit(error.exit_code) from None
+    except UserError as error:
+        echo(str(error).replace("force=True", "--force"), err=True)
+        raise SystemExit(error.exit_code) from None
+    except BrokenPipeError:  # the reader of the output, such as `head`, has closed it
+        raise SystemExit(CLOSED_PIPE) from None
+    except KeyboardInterrupt:
+        echo("interrupted", err=True)
+        raise SystemExit(128 + signal.SIGINT) from None
+    except MemoryError:
+        echo("out of memory: the scene is too large for this machine", err=True)
+        raise SystemExit(1) from None
 
 
 def first_sentence(command: click.Command) -> str:

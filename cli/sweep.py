@@ -94,10 +94,10 @@ def sweep(
         check_output(plot, Path(plot).suffix.lower(), force, paths)
         if len(plans) > 1 and not compares:
             raise UserError("--plot: several sweeps have no common figure but that of their published values")
-    from ._interrupt import EXIT_CODE, ctrl_c
+    from ._interrupt import stop_signals
 
     outcomes: list[dict[str, Any]] = []
-    with ctrl_c(raises=True) as interrupted:
+    with stop_signals(raises=True) as interrupted:
         try:
             for plan, folder in zip(plans, folders, strict=True):
                 outcomes.append(_run(plan, folder, workers, scheduler, interrupted, as_json))
@@ -106,7 +106,7 @@ def sweep(
                 raise
         if interrupted():
             echo("interrupted; run the same command again to continue", err=True)
-            raise SystemExit(EXIT_CODE)
+            raise SystemExit(interrupted())
     _print_json(outcomes, as_json)
     if plot:
         from idealgas.analysis.core.style import save
@@ -141,7 +141,7 @@ def _run(
     output: str,
     workers: int | None,
     scheduler: str | None,
-    interrupted: Callable[[], bool],
+    interrupted: Callable[[], int],
     as_json: bool,
 ) -> dict[str, Any]:
     """Run a sweep, print its outcome unless as JSON, and return it as plain values."""

@@ -93,7 +93,7 @@ def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool
         raise OutputError(f"{path}: already exists (use force=True to overwrite)")
     if found.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
-        raise OutputError(f"{path}: is not a {what} of idealgas, so force=True does not overwrite it")
+        raise OutputError(f"{path}: is not a {what} of idealgas and is not overwritten")
 
 
 def is_of_kind(path: Path, kind: str) -> bool:

@@ -14,6 +14,7 @@ from idealgas_cli.main import EXAMPLES, Commands, first_sentence, main
 from idealgas import __version__
 from idealgas.analysis import registry
 from idealgas.errors import UserError
+from idealgas.log import open_log
 
 SCENE = """
 box.size = [20, 20]
@@ -240,6 +241,45 @@ def test_a_reader_that_goes_ends_the_program_quietly(arguments, log):
     done = subprocess.run([IDEALGAS, *arguments], stdout=writer, stderr=subprocess.PIPE, cwd=log.parent, text=True)
     os.close(writer)
     assert (done.returncode, done.stderr) == (141, "")
+
+
+FULL = "standard output: cannot be written: No space left on device"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--help",),
+        ("schema", "scene"),
+        ("info", "run.h5"),
+        ("events", "run.h5"),
+        ("export", "run.h5", "--events", "--format", "csv", "-o", "-"),
+        ("pressure", "run.h5"),
+        ("pressure", "run.h5", "--csv"),
+    ],
+    ids=" ".join,
+)
+def test_output_to_a_full_disk_is_one_line(arguments, unbuffered, log):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [IDEALGAS, *arguments], stdout=full, stderr=subprocess.PIPE, cwd=log.parent, text=True,
+            env=os.environ | {"PYTHONUNBUFFERED": unbuffered},
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, f"{FULL}\n")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+def test_a_stream_to_a_full_disk_ends_the_run_which_can_be_resumed(log):
+    run = ("run", "scene.toml", "-o", "full.h5", "--stream", "--set", "run.collisions_per_disc=20000")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([IDEALGAS, *run], stdout=full, stderr=subprocess.PIPE, cwd=log.parent, text=True)
+    assert (done.returncode, done.stderr) == (1, f"{FULL}; `idealgas resume full.h5` continues it\n")
+    with open_log(log.parent / "full.h5") as opened:
+        assert not opened.complete
+        assert not opened.unclosed
+        assert 0 < len(opened) < 60 * 20_000
 
 
 class DiskFull(UserError):

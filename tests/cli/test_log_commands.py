@@ -171,15 +171,6 @@ def test_export_to_a_reader_who_goes(copy):
     assert (code, ended.stderr) == ("141", "")
 
 
-def test_export_to_a_full_device(copy):
-    with open("/dev/full", "w") as full:
-        ended = subprocess.run(
-            [IDEALGAS, "export", copy, "--format", "csv", "--events", "-o", "-"], stdout=full, stderr=subprocess.PIPE
-        )
-    assert ended.returncode == 1
-    assert ended.stderr == b"<stdout>: cannot be written: No space left on device\n"
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -53,7 +53,7 @@ def test_overrides_come_last(tmp_path):
         assert (log.scene.run.until, log.scene.run.events) == (2.0, 3)
 
 
-NO_LOG = "is not a log of idealgas, so --force does not overwrite it"
+NO_LOG = "is not a log of idealgas and is not overwritten"
 
 
 def test_an_existing_output_is_refused_and_left_alone(tmp_path):
@@ -121,16 +121,17 @@ def test_no_room_left_is_one_line_and_keeps_the_rows_so_far(tmp_path, compressio
         assert sum(len(block.time) for block in log.chunks()) == len(log) > 50_000
 
 
-def test_ctrl_c_ends_the_run_with_a_readable_log(tmp_path):
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM], ids=lambda how: how.name)
+def test_a_signal_ends_the_run_with_a_readable_log(tmp_path, how):
     (tmp_path / "scene.toml").write_text(ENDLESS)
     output = tmp_path / "run.h5"
     command = [IDEALGAS, "run", "scene.toml", "-o", "run.h5"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None and not (output.exists() and os.path.getsize(output) > 1_000_000):
             time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(how)
         stdout, stderr = process.communicate(timeout=60)
-    assert (process.returncode, stderr) == (130, "interrupted; `idealgas resume run.h5` continues it\n")
+    assert (process.returncode, stderr) == (128 + how, "interrupted; `idealgas resume run.h5` continues it\n")
     assert "run.h5 (interrupted)" in stdout
     with open_log(output) as log:
         assert not log.complete
