@@ -118,7 +118,10 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     words = "Print all numbers as CSV, a row for each quantity, with all digits."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.is_checked():
-        words = "Exit with code 1 if measurement and theory differ by more than chance allows, 0 without a theory."
+        words = (
+            "Exit with code 1 if measurement and theory differ by more than chance allows, 2 if there are too few "
+            "samples to tell, 0 without a theory."
+        )
         yield click.option("--check", is_flag=True, help=words)
 
 
@@ -179,11 +182,11 @@ def _analyse(
             echo(text)
         if checked:
             print_tables(checked.tables())
-            echo(f"{checked}", err=checked.agrees is None)
+            echo(f"{checked}", err=not checked.compared)
     for path in figures:
         written(path, err=as_json or as_csv)
-    if checked and checked.agrees is False:
-        raise SystemExit(1)
+    if checked and checked.compared and not checked.agrees:
+        raise SystemExit(1 if checked.agrees is False else 2)
 
 
 def _results(

@@ -149,7 +149,7 @@ class EntropyAnalysis(Analysis):
         if not rows:
             return f"{change} and is not steady."
         said = agreement(rows, "the Maxwell–Boltzmann distribution")
-        return f"{change}; steady at {format_estimate(rows[0][1])}, it {said}."
+        return f"{change}; steady at {format_estimate(rows[0][1])}; {said}."
 
     @staticmethod
     def figure(result: Entropy) -> "Figure":

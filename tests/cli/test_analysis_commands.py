@@ -124,13 +124,14 @@ def test_temperatures_of_one_species_are_printed_once(path):
 
 def test_check_names_what_it_compares(path):
     shown = output_of("pressure", path, "--check")
-    assert shown.splitlines()[-1].startswith("Measurement and theory agree. In each row a correct gas exceeds")
+    assert shown.splitlines()[-1].startswith("Measurement and theory agree. A correct gas fails this check with a ")
     table = shown[shown.index("Check: difference between measurement and theory") :]
     assert " ".join(re.sub("[│┃]", " ", table).split()).count(": virial series") == 2  # cells may have several lines
     found = json.loads(called("pressure", path, "--check", "--json").stdout)
     assert (found["agrees"], found["no_theory"]) == (True, None)
     assert [row["name"] for row in found["compared"]] == ["walls, virial", "pairs, virial"]
     assert all(abs(row["difference"]) < row["allowed"] < row["detectable"] for row in found["compared"])
+    assert [row["agrees"] for row in found["compared"]] == [True, True]
 
 
 @pytest.mark.parametrize(
@@ -170,10 +171,18 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
 
 
 def test_check_that_fails_exits_with_one(path, monkeypatch):
-    monkeypatch.setattr("idealgas.analysis.core.check.FALSE_ALARM", 1.0)
+    monkeypatch.setattr("idealgas.analysis.core.check.FALSE_ALARM", 2.0)
     result = called("pressure", path, "--check")
     assert result.returncode == 1
     assert "do not agree" in result.stdout
+
+
+def test_check_of_too_few_samples_exits_with_two(path, monkeypatch):
+    monkeypatch.setattr("idealgas.analysis.core.check.FEWEST", 1e6)
+    result = called("pressure", path, "--check")
+    assert result.returncode == 2
+    assert result.stdout.splitlines()[-1].startswith("Too few samples to tell whether measurement and theory agree.")
+    assert json.loads(called("pressure", path, "--check", "--json").stdout)["agrees"] is None
 
 
 def test_a_histogram_in_csv_has_its_bins(path):

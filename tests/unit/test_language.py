@@ -40,7 +40,6 @@ PATTERNS = {
     r"heat conductivity": "thermal conductivity",
     r"place of the piston": "piston position",
     r"dev\./s\.e\.": "deviation (σ)",
-    r"verdicts?": "result of a check",
     r"in_words": "format_estimate",
     r"show_names": "disable_mathtext",
     r"kept_momentum": "conserved_momentum",

@@ -1,32 +1,64 @@
-"""Checks of measurement against theory, with one chance of a false alarm whatever the number of samples."""
+"""Whether measurement and theory agree: one rule for headlines, checks, JSON and report pages.
+
+Measurement and theory differ if a difference is larger than Student's t allows, with the number of rows taken into
+account. They agree if none is, provided that the samples could have shown otherwise; else the samples are too few.
+"""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
-from idealgas.analysis.core.fields import Key, as_dict, reported
+from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Number, Table
-from idealgas.errors import UserError
+from idealgas.analysis.core.tables import Cell, Number, Table
 
-FALSE_ALARM = math.erfc(4.0 / math.sqrt(2.0))
-"""Chance that a row of a correct gas fails a check, 6.3e-5: that of four standard errors of a normal distribution."""
+FALSE_ALARM = 1e-3
+"""Chance that a correct gas differs from theory in any row of a comparison, whatever the number of its rows."""
 
 POWER = 0.95
-"""Chance that a check finds the smallest deviation that it reports as detectable."""
+"""Chance that a comparison finds the smallest error that it reports as detectable."""
+
+FEWEST = 5.0
+"""Least number of independent samples of an estimate that can agree with theory."""
+
+FEWEST_OF_LAW = 30.0
+"""Least number of independent samples that can agree with a law; the distance that one in twenty exceeds is 0.24."""
+
+ROUGH = 20.0
+"""Number of samples below which a deviation in standard errors is shown with it, as Student's t is wider then."""
+
+NAMED = 3
+"""Largest number of rows with too few samples that a sentence names."""
+
+VERDICTS = {True: "agrees", False: "differs", None: "too few samples"}
+
+
+class PValue(NamedTuple):
+    """Probability that samples of a law deviate from it by at least as much, and the number of independent samples."""
+
+    value: float
+    samples: float
+
+    def agrees(self, rows: int) -> bool | None:
+        """Whether the samples agree with the law, in a comparison of so many rows; None if they are too few to tell."""
+        if self.value < FALSE_ALARM / rows:
+            return False
+        return True if self.samples >= FEWEST_OF_LAW else None
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One row of a check: a measured quantity with its theory, all in the unit of the quantity.
+    """One row of a comparison: a measured quantity with its theory, all in the unit of the quantity.
 
-    name: of the quantity. source: which theory. estimate: measurement and theory.
+    name: of the quantity. source: which theory. estimate: measurement and theory. rows: number of rows that are
+    compared together.
     """
 
     name: str
     source: str
     estimate: Estimate
+    rows: Annotated[int, OMITTED] = 1
 
     @property
     @reported
@@ -38,28 +70,43 @@ class Comparison:
     @property
     @reported
     def allowed(self) -> float:
-        """Largest difference without an alarm, which a correct gas exceeds with a probability of FALSE_ALARM.
+        """Largest difference without an alarm, which a correct gas exceeds with a probability of FALSE_ALARM / rows.
 
         The root of the sum of two squares, by Student's t for the standard error and normal for the error of theory:
         exact for either alone, and exceeded less often in between.
         """
         from scipy import special
 
-        return math.hypot(self._by_student, special.ndtri(1 - FALSE_ALARM / 2) * self.estimate.theory_error)
+        return math.hypot(self._by_student, special.ndtri(1 - self._false_alarm / 2) * self.estimate.theory_error)
 
     @property
     @reported
     def detectable(self) -> float:
-        """Smallest error of the measurement that the check finds, with a probability of POWER.
+        """Smallest error of the measurement that the comparison finds, with a probability of POWER.
 
         By the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
         """
-        from scipy import special
+        return self.allowed + self._margin(self.estimate.theory_error)
 
-        found = self.estimate
-        of_allowed = self._by_student / math.sqrt(2 * self._freedom)
-        spread = math.hypot(found.standard_error, found.theory_error, of_allowed)
-        return self.allowed + float(special.ndtri(POWER)) * spread
+    @property
+    @reported
+    def agrees(self) -> bool | None:
+        """Whether measurement and theory agree; None if the samples are too few to tell.
+
+        They are if there is no error bar or fewer than FEWEST of them, or if they would not show an error as large as
+        the theory's value, if that is not 0.
+        """
+        deviation, theory = self.estimate.deviation, self.estimate.theory
+        if deviation is None or not math.isfinite(deviation):
+            return None
+        if abs(self.difference) > self.allowed:
+            return False
+        resolved = not theory or self._by_student + self._margin(0.0) <= abs(theory)
+        return True if resolved and self.estimate.independent_samples >= FEWEST else None
+
+    @property
+    def _false_alarm(self) -> float:
+        return FALSE_ALARM / self.rows
 
     @property
     def _freedom(self) -> float:
@@ -69,7 +116,14 @@ class Comparison:
     def _by_student(self) -> float:
         from scipy import special
 
-        return float(special.stdtrit(self._freedom, 1 - FALSE_ALARM / 2)) * self.estimate.standard_error
+        return float(special.stdtrit(self._freedom, 1 - self._false_alarm / 2)) * self.estimate.standard_error
+
+    def _margin(self, theory_error: float) -> float:
+        """Part of a difference beyond the allowed one that chance takes away with a probability of 1 - POWER."""
+        from scipy import special
+
+        of_allowed = self._by_student / math.sqrt(2 * self._freedom)
+        return float(special.ndtri(POWER)) * math.hypot(self.estimate.standard_error, theory_error, of_allowed)
 
 
 @dataclass(frozen=True)
@@ -85,8 +139,9 @@ class CheckResult:
     @property
     @reported
     def agrees(self) -> bool | None:
-        """Whether measurement and theory agree in every row; None if theory has no value."""
-        return all(abs(row.difference) <= row.allowed for row in self.compared) if self.compared else None
+        """Whether measurement and theory agree in all rows with enough samples; None without such rows."""
+        verdicts = {row.agrees for row in self.compared}
+        return False if False in verdicts else True if True in verdicts else None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, ready for JSON."""
@@ -94,28 +149,26 @@ class CheckResult:
 
     def tables(self) -> list[Table]:
         """Table of what was compared with what; none without a theory."""
-        heads = ("", "compared with", "difference", "allowed ±", "detectable")
-        rows = [
-            (
-                row.name,
-                f"{row.estimate.theory:.6g}: {row.source}",
-                Number(row.difference, "+.2g"),
-                Number(row.allowed, ".2g"),
-                Number(row.detectable, ".2g"),
-            )
-            for row in self.compared
-        ]
+        heads = ("", "compared with", "difference", "allowed ±", "detectable", "verdict")
+        rows: list[Sequence[Cell]] = []
+        for row in self.compared:
+            compared = f"{row.estimate.theory:.6g}: {row.source}", Number(row.difference, "+.2g")
+            limits = (Number(x if math.isfinite(x) else None, ".2g") for x in (row.allowed, row.detectable))
+            rows.append((row.name, *compared, *limits, VERDICTS[row.agrees]))
         return [Table("Check: difference between measurement and theory", heads, rows)] if rows else []
 
     def __str__(self) -> str:
         """Sentences for people."""
-        if self.agrees is None:
+        if not self.compared:
             return f"No theory here: {self.why_not}."
-        failed = [row.name for row in self.compared if not abs(row.difference) <= row.allowed]
-        result = f"do not agree in {'; '.join(failed)}" if failed else "agree"
+        failed = [row.name for row in self.compared if row.agrees is False]
+        if self.agrees is None:
+            verdict = "Too few samples to tell whether measurement and theory agree"
+        else:
+            verdict = "Measurement and theory " + (f"do not agree in {'; '.join(failed)}" if failed else "agree")
         return (
-            f"Measurement and theory {result}. In each row a correct gas exceeds what is allowed with a probability of "
-            f"{FALSE_ALARM:.1g}, and an error of the detectable size is found with {POWER:.0%}."
+            f"{verdict}. A correct gas fails this check with a probability of {FALSE_ALARM:g}; an error of the "
+            f"detectable size is found with {POWER:.0%}."
         )
 
 
@@ -125,37 +178,70 @@ def check_theory(found: Iterable[tuple[str, str | None, Estimate]], why_not: str
     Args:
         found: estimates, each with its name and that of its theory.
         why_not: why theory has no value, for the case that no estimate has one.
-
-    Raises:
-        UserError: if an estimate with a theory has no error bar.
     """
-    compared = tuple(Comparison(name, source or "theory", one) for name, source, one in found if one.theory is not None)
-    if any(one.estimate.deviation is None or not math.isfinite(one.estimate.deviation) for one in compared):
-        raise UserError("nothing to check: too few events for an error bar")
+    known = [(name, source or "theory", one) for name, source, one in found if one.theory is not None]
+    compared = tuple(Comparison(name, source, one, len(known)) for name, source, one in known)
     return CheckResult(compared, None if compared else why_not)
 
 
-def agreement(found: Iterable[tuple[str, Estimate]], theory: str = "theory", why_not: str | None = None) -> str:
+def agreement(
+    found: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", why_not: str | None = None
+) -> str:
     """Whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
 
     Args:
-        found: estimates by name; of several the one that deviates most is named.
+        found: estimates, or tests of laws, by name; of several the one that deviates most is named.
         theory: name of the theory.
         why_not: why theory has no value, as part of a sentence.
     """
-    known = [Comparison(name, theory, one) for name, one in found if one.theory is not None]
+    known = [(name, one) for name, one in found if isinstance(one, PValue) or one.theory is not None]
     if not known:
         return f"no theory here: {why_not}" if why_not else "no theory here"
-    rows = [row for row in known if row.estimate.deviation is not None]
-    if not rows:
-        return f"{theory} has {known[0].estimate.theory:.6g}, but there is no error bar"
-    failed = [row for row in rows if not abs(row.difference) <= row.allowed]
-    worst = max(failed or rows, key=lambda row: abs(row.estimate.deviation or 0.0))
-    sigma = f"{worst.estimate.deviation:+.1f}σ".replace("-", "−")
+    rows = [_row(name, theory, one, len(known)) for name, one in known]
+    rows = [row for row in rows if row.shown] or rows
+    differing, agreeing, few = ([row for row in rows if row.agrees is verdict] for verdict in (False, True, None))
     if len(rows) == 1:
-        value = f"{worst.estimate.theory:.5g}, {sigma}"
-        return f"differs from {theory} ({value})" if failed else f"agrees with {theory} ({value})"
-    most = f"largest deviation {sigma}, {worst.name}"
-    if failed:
-        return f"{len(failed)} of {len(rows)} differ from {theory} ({most})"
-    return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"
+        ((_, agrees, _, shown, value),) = rows
+        beside = ", ".join(filter(None, (value, shown)))
+        if not shown:
+            return f"no error bar to compare it with {theory} ({value})"
+        if agrees is None:
+            return f"too few samples to tell whether it agrees with {theory} ({beside})"
+        return f"{'agrees with' if agrees else 'differs from'} {theory} ({beside})"
+    if not differing and not agreeing:
+        return f"too few samples to tell whether they agree with {theory}"
+    worst = max(differing or agreeing, key=lambda row: row.size)
+    most = f"largest deviation {worst.shown}, {worst.name}"
+    if differing:
+        return (
+            f"{len(differing)} of {len(rows)} {'differs' if len(differing) == 1 else 'differ'} from {theory} ({most})"
+        )
+    if not few:
+        return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"
+    others = ", ".join(row.name for row in few) if len(few) <= NAMED else f"{len(few)} of them"
+    number = f"{len(agreeing)} of {len(rows)} {'agrees' if len(agreeing) == 1 else 'agree'}"
+    return f"{number} with {theory} ({most}), too few samples to tell for {others}"
+
+
+class _Row(NamedTuple):
+    """Verdict on a row: its name, whether it agrees, its deviation as a number and in words, and theory's value."""
+
+    name: str
+    agrees: bool | None
+    size: float
+    shown: str
+    value: str
+
+
+def _row(name: str, theory: str, found: Estimate | PValue, rows: int) -> _Row:
+    from scipy import special
+
+    if isinstance(found, PValue):
+        size = -float(special.ndtri(found.value / 2))
+        return _Row(name, found.agrees(rows), size, f"p = {found.value:.2g}", "")
+    agrees, deviation = Comparison(name, theory, found, rows).agrees, found.deviation
+    value, samples = f"{found.theory:.5g}", found.independent_samples
+    if deviation is None:
+        return _Row(name, agrees, 0.0, "", value)
+    few = f" of {samples:.0f} samples" if samples < ROUGH else ""
+    return _Row(name, agrees, abs(deviation), f"{deviation:+.1f}σ{few}".replace("-", "−"), value)

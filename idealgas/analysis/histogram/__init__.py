@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.check import FALSE_ALARM
+from idealgas.analysis.core.check import VERDICTS
 from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
 from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates, format_estimate
-from idealgas.analysis.histogram.distribution import BINS, Distribution, distribution_of
+from idealgas.analysis.histogram.distribution import ALL_DISCS, BINS, Distribution, distribution_of
 from idealgas.analysis.histogram.intervals import (
     Found,
     collision_counts,
@@ -58,7 +58,6 @@ OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, 
 
 LINES = 24  # of the histogram in characters; bins are put together
 SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
-FEWEST_SAMPLES = 30  # of a test; the distance that one in twenty correct laws exceeds is then 0.24
 
 
 @dataclass(frozen=True)
@@ -137,13 +136,9 @@ class HistogramAnalysis(Analysis):
             window, found, no_law = free_flights(log, quantity, start, end, progress)
         else:
             window, found, no_law = OTHERS[quantity](log, start, end, progress)
-        few = [
-            f"The tests of {each.name} have {each.samples} independent samples; with fewer than {FEWEST_SAMPLES} they "
-            "can hardly fail."
-            for each in found
-            if each.tests and each.samples < FEWEST_SAMPLES
-        ]
-        return Histogram(quantity, QUANTITIES[quantity], window, tuple(found), no_law or None, caveats=tuple(few))
+        rows = sum(len(each.tests) for each in found)
+        judged = tuple(each.judged(rows) for each in found)
+        return Histogram(quantity, QUANTITIES[quantity], window, judged, no_law or None)
 
     @staticmethod
     def tables(result: Histogram) -> list[Table]:
@@ -154,7 +149,7 @@ class HistogramAnalysis(Analysis):
             for test in found.tests:
                 distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
                 p, samples = Number(test.p_value, ".3g"), Number(found.samples, "d")
-                tests.append((found.name, test.law_name, distance, error, p, samples, spacing))
+                tests.append((found.name, test.law_name, distance, error, p, samples, spacing, VERDICTS[test.agrees]))
         means = [(found.name, found.mean) for found in result.distributions]
         notes = (
             describe(result.window),
@@ -169,7 +164,7 @@ class HistogramAnalysis(Analysis):
         ]
         tables += [estimates("Cumulants (no unit)", cumulants)] if cumulants else []
         if tests:
-            columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)")
+            columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)", "verdict")
             tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
         return tables
 
@@ -224,16 +219,20 @@ def _in_words(quantity: str) -> str:
 
 
 def _follows(result: Histogram, found: Distribution) -> str:
-    """Sentence on the laws of a distribution and its mean."""
-    quantity = _in_words(result.quantity)
-    average = f"{format_estimate(found.mean)} on the average"
-    if not found.tests:
-        return f"The {quantity} of {found.name} is {average}."
-    tests = [
-        f"{'agrees with' if test.p_value > FALSE_ALARM else 'differs from'} {test.law_name} (p = {test.p_value:.2g})"
-        for test in found.tests
+    """Sentence on the mean of a distribution and its laws."""
+    whose = "All discs" if found.name == ALL_DISCS else f"Species '{found.name}'"
+    mean = f"{whose}: mean {_in_words(result.quantity)} {format_estimate(found.mean)}"
+    words = {
+        True: ("its distribution agrees with ", " and with "),
+        False: ("its distribution differs from ", " and from "),
+        None: (f"too few samples ({found.samples}) to tell whether its distribution agrees with ", " or "),
+    }
+    verdicts = [
+        begin + between.join(f"{test.law_name} (p = {test.p_value:.2g})" for test in found.tests if test.agrees is said)
+        for said, (begin, between) in words.items()
+        if any(test.agrees is said for test in found.tests)
     ]
-    return f"The {quantity} of {found.name}, {average}, {' and '.join(tests)}."
+    return f"{'; '.join([mean, *verdicts])}."
 
 
 def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:

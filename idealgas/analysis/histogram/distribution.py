@@ -1,11 +1,12 @@
 """Distribution of one quantity in bins with their errors, and its tests against laws."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 
+from idealgas.analysis.core.check import PValue
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL, Key, reported
 from idealgas.analysis.core.statistics import Estimate, ks_distance, ks_p_value, ratio
 from idealgas.analysis.theory import distributions
@@ -13,6 +14,9 @@ from idealgas.errors import UserError
 
 BINS = 120
 """Number of bins of a quantity that is not a whole number."""
+
+ALL_DISCS = "all discs"
+"""Name of a distribution that is not that of a species."""
 
 FEWEST_BLOCKS = 10
 """Effective number of blocks of time with a value in a bin from which on the error of the bin is known."""
@@ -24,7 +28,8 @@ class Test:
 
     law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
     unit). law_error: largest error of the law's own distribution function, no unit. p_value: probability of at least
-    this distance by chance and that error.
+    this distance by chance and that error. agrees: whether the samples follow the law; None if they are too few to
+    tell.
     """
 
     law_name: Annotated[str, Key("law")]
@@ -32,6 +37,7 @@ class Test:
     distance: float
     law_error: float
     p_value: float
+    agrees: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,11 @@ class Distribution:
     def middles(self) -> np.ndarray:
         """Middles (bins,) of the bins, in the unit of the quantity."""
         return (self.edges[1:] + self.edges[:-1]) / 2
+
+    def judged(self, rows: int) -> "Distribution":
+        """Return the distribution with the verdicts of its tests, in a comparison of so many rows."""
+        verdicts = (replace(test, agrees=PValue(test.p_value, self.samples).agrees(rows)) for test in self.tests)
+        return replace(self, tests=tuple(verdicts))
 
     @property
     @reported

@@ -12,7 +12,7 @@ from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.intervals import FreeFlights, Intervals, WaitingTimes
 from idealgas.analysis.core.statistics import estimate, ratio
 from idealgas.analysis.core.stream import span
-from idealgas.analysis.histogram.distribution import BINS, Distribution, distribution_of
+from idealgas.analysis.histogram.distribution import ALL_DISCS, BINS, Distribution, distribution_of
 from idealgas.analysis.histogram.laws import (
     DENSEST_COUNTS,
     FEW,
@@ -82,7 +82,7 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Pr
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
-    return window, [_intervals("all discs", tally, 0, blocks, longest, possible, None, error)], why_not
+    return window, [_intervals(ALL_DISCS, tally, 0, blocks, longest, possible, None, error)], why_not
 
 
 def impact_parameters(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
@@ -99,7 +99,7 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
     mean = None if why_not else 0.5
     return (
         window,
-        [_intervals("all discs", tally, 0, slice(window.first, len(tally.counts)), 1.0, possible, mean, 0.0)],
+        [_intervals(ALL_DISCS, tally, 0, slice(window.first, len(tally.counts)), 1.0, possible, mean, 0.0)],
         why_not,
     )
 

@@ -75,11 +75,7 @@ class EquationOfState(Result):
     b3: Annotated[Estimate | None, Key("B3")]
 
     def check(self) -> CheckResult:
-        """Check that Z agrees with theory in every state that has one.
-
-        Raises:
-            UserError: if a state has no error bar.
-        """
+        """Check that Z agrees with theory in every state that has one."""
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
         why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"

@@ -111,11 +111,7 @@ class Pressure(Result):
         return self.routes[names.index(name)]
 
     def check(self) -> CheckResult:
-        """Check that Z by the virial of the walls and of the pairs agrees with theory.
-
-        Raises:
-            UserError: if a route with a theory has no error bar.
-        """
+        """Check that Z by the virial of the walls and of the pairs agrees with theory."""
         virials = (route for route in self.routes if route.name.startswith((WALLS, PAIRS)))
         return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 

@@ -5,6 +5,7 @@ T^(3/2) linear in the position, with the temperature jumps at them, and n T Z co
 periodic sides is Poiseuille's (`flow`).
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.check import PValue, agreement
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
@@ -198,7 +199,8 @@ class ProfileAnalysis(Analysis):
     def summary(result: Profile) -> str:
         """Density and temperature of the first and the last known strip, and whether all strips agree with theory."""
         middles = [f"{result.axis} = {x:.4g}" for x in result.middles]
-        found, rows = [], []
+        found: list[str] = []
+        rows: list[tuple[str, Estimate | PValue]] = []
         for entry in result.species:
             columns = {"density": entry.density, "temperature": entry.temperature}
             columns |= {"velocity": entry.velocity} if entry.velocity else {}
@@ -213,8 +215,8 @@ class ProfileAnalysis(Analysis):
                     found.append(f"The {name} of {entry.species} is {ends}.")
         same = "Nothing differs clearly between the first and the last strip."
         law = f"theory, {result.law}"
-        together = ", ".join(f"p = {test.p_value:.2g} ({name})" for name, test in _tests(result))
-        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}{together and f'; together: {together}'}."
+        rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(result)]
+        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}."
 
     @staticmethod
     def figure(result: Profile) -> "Figure":

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -31,6 +32,10 @@ def test_a_uniform_gas_cools_as_theory_says(make):
     assert np.diff(found.collisions).std() < 0.5 * np.diff(found.collisions).mean()  # as many between any two times
     assert found.collisions[found.time.searchsorted(found.start)] >= 20
     assert np.abs(np.log(found.temperature / found.law)).max() < 0.2  # e⁻³·⁴ is left
+    last = found.last_temperature
+    assert (last.value, last.theory) == (found.temperature[-1], found.law[-1])
+    assert last.standard_error == pytest.approx(last.value / math.sqrt(300))
+    assert "Haff's time: all 3 agree with the theory of a uniform gas (largest deviation" in found.summary()
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False)) == found.as_dict()
 
 
@@ -58,6 +63,19 @@ def test_clusters_are_said(make):
     assert flow.startswith("Discs move together: ")
     assert found.last_scatter.value > 3 * found.first_scatter.value
     assert found.law is None
+
+
+def test_a_gas_that_cools_more_slowly_than_by_theory_differs_from_it(make):
+    """By its temperature at the end, where too few samples tell of its loss and of Haff's time."""
+    found = cooling(make())
+    few = {name: replace(getattr(found, name), independent_samples=2.0) for name in ("loss", "haff")}
+    last = found.last_temperature
+    hot = replace(
+        found, **few, last_temperature=replace(last, theory=last.value / 10, theory_error=last.theory_error / 10)
+    )
+    assert "1 of 3 differs from the theory of a uniform gas (largest deviation +" in hot.summary()
+    assert hot.summary().endswith("σ, T at the end).")
+    assert f"to {last.value:.4g} (by Haff's law {last.value / 10:.4g}) in" in hot.summary()
 
 
 @pytest.mark.usefixtures("uncompiled")

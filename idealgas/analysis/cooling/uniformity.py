@@ -1,0 +1,44 @@
+"""Whether a gas that cools stays uniform: numbers and momenta of discs in small cells."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.log import Log, LogState
+
+DISCS_PER_CELL = 8
+"""Approximate mean number of discs in the cells in which they are counted."""
+
+SIGNIFICANT = 4.0
+"""Standard errors of single states beyond which a gas counts as nonuniform."""
+
+
+def cells_of(log: Log) -> np.ndarray:
+    """Numbers of equal cells along x and y in which discs are counted."""
+    side = math.sqrt(DISCS_PER_CELL * math.prod(log.box) / len(log.discs))
+    shape = np.maximum(np.round(np.array(log.box) / side).astype(int), 1)
+    return shape if (shape > 1).any() else np.array([2, 2])
+
+
+def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
+    """Variance over mean of the numbers of discs in cells; square of the sums of velocities over that by chance."""
+    velocity, cells = state.velocity - centre_of_mass_velocity(log), int(shape.prod())
+    at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)
+    cell = at[:, 0] * shape[1] + at[:, 1]
+    counts = np.bincount(cell, minlength=cells)
+    sums = sum(np.bincount(cell, v, cells) ** 2 for v in velocity.T)
+    return float(counts.var(ddof=1) / counts.mean()), float(np.sum(sums) / (velocity**2).sum())
+
+
+def nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
+    """Caveats of a gas that is not uniform at the end, beyond chance in single states of M cells.
+
+    There scatter has an error of √(2/(M - 1)) of itself, and flow one of 1/√M.
+    """
+    end = "and the laws are those of a uniform gas."
+    if late > early * (1 + SIGNIFICANT * math.sqrt(4 / (cells - 1))):
+        yield f"Clusters form: numbers of discs in cells scatter {late / early:.3g} times as much as before, {end}"
+    if flow > 1 + SIGNIFICANT / math.sqrt(cells):
+        yield f"Discs move together: momenta of cells have {flow:.3g} times the square of independent discs, {end}"
