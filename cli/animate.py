@@ -83,7 +83,7 @@ def animate(
 ) -> None:
     """Make a film of a log: the discs at their exact positions, next to the distribution of their speeds.
 
-    MP4 needs ffmpeg, of the system or by pip install 'idealgas-md[film]'; GIF needs nothing.
+    An MP4 film requires ffmpeg, from the system or by .venv/bin/pip install -e ".[film]"; a GIF does not.
     """
     from idealgas.movie.film import animate as make
     from idealgas.movie.film import paint_frame

@@ -141,4 +141,4 @@ def _check_threads(number: str) -> None:
 )
 @click.version_option(__version__, "-V", "--version", prog_name="idealgas")
 def main() -> None:
-    """Exact simulation of a two-dimensional gas of hard discs, that records every event."""
+    """Exact simulation of a two-dimensional gas of hard discs, with a log of every event."""

@@ -1,4 +1,4 @@
-"""Exact event-driven simulation of a two-dimensional gas of hard discs, that records every event.
+"""Exact event-driven simulation of a two-dimensional gas of hard discs, with a log of every event.
 
     import idealgas
 

@@ -31,6 +31,11 @@ def plain(text: str) -> str:
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
+def install(extra: str) -> str:
+    """Return the command that installs a group of optional packages of pyproject.toml."""
+    return f'.venv/bin/pip install -e ".[{extra}]" in the top folder'
+
+
 def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
     """UserError for an unknown name; it suggests the most similar allowed name.
 

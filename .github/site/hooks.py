@@ -13,6 +13,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 REPOSITORY = PROJECT["urls"].get("Repository", "")
 """Address of the repository, to which the pages link; empty until pyproject.toml has it."""
 
+OWN = ".github/site/pages"
+"""Folder of the pages that only the site has."""
+
 PAGES = {
     "README.md": "index.md",
     "configs/README.md": "scenes.md",
@@ -38,7 +41,7 @@ def on_files(files: Any, config: Any) -> Any:
     """Add the pages and their pictures to the site."""
     from mkdocs.structure.files import File
 
-    pages: dict[str, str | bytes] = {page: _linked(source, REPOSITORY) for source, page in PAGES.items()}
+    pages: dict[str, str | bytes] = {page: _text(source) for source, page in PAGES.items()}
     for path, content in (pages | _gallery()).items():
         files.append(File.generated(config, path, content=content))
     for picture in sorted((ROOT / ".readme").glob("*")):
@@ -47,7 +50,9 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Insert the analyses into the reference."""
+    """Insert the analyses into the reference, and lead the links of the site's own pages to pages of the site."""
+    if (ROOT / OWN / page.file.src_uri).exists():
+        markdown = linked(markdown, f"{OWN}/{page.file.src_uri}", REPOSITORY)
     return markdown.replace("<!-- analyses -->", "\n".join(_analyses()))
 
 
@@ -57,17 +62,18 @@ def on_post_page(output: str, **_: Any) -> str:
     return output.replace(search, f'{search} aria-label="Search"')
 
 
-def _linked(source: str, repository: str) -> str:
+def linked(text: str, source: str, repository: str) -> str:
     """Text of a page with its links to pages of the site, to pictures, and to other files of the repository.
 
     Without an address of the repository, its other files are named but not linked.
     """
+    page = PAGES.get(source, posixpath.basename(source))
 
     def link(found: re.Match[str]) -> str:
         target = posixpath.normpath(posixpath.join(posixpath.dirname(source), found[2]))
-        place = PAGES.get(target, target.replace(".readme/", "pictures/"))
+        place = PAGES.get(target, target.replace(".readme/", "pictures/").removeprefix(f"{OWN}/"))
         if place != target:
-            path = posixpath.relpath(place, posixpath.dirname(PAGES[source]) or ".")
+            path = posixpath.relpath(place, posixpath.dirname(page) or ".")
         elif (ROOT / target).exists() and not repository:
             return found[1][1:-1]
         elif (ROOT / target).exists():
@@ -76,7 +82,12 @@ def _linked(source: str, repository: str) -> str:
             return found[0]
         return f"{found[1]}({path}{found[3] or ''})"
 
-    return LINK.sub(link, (ROOT / source).read_text(encoding="utf-8"))
+    return LINK.sub(link, text)
+
+
+def _text(source: str) -> str:
+    """Text of a page that is made from a file of the repository."""
+    return linked((ROOT / source).read_text(encoding="utf-8"), source, REPOSITORY)
 
 
 def _gallery() -> dict[str, str | bytes]:

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from idealgas.errors import install
 from idealgas.locks import regular
 from idealgas.scene.start import COLUMNS, StartError
 
@@ -40,9 +41,9 @@ def read_state(path: Path, time: Instant) -> State:
         return _inside(columns), overlap
     except OSError as error:
         raise StartError("file", "cannot be read", error.strerror or str(error), "a file") from None
-    except ImportError:
-        allowed = "pip install 'idealgas-md[export]'"
-        raise StartError("file", f"{path.suffix} files need a package", "no such package", allowed) from None
+    except ImportError as error:
+        missing = f"a {path.suffix} file requires {error.name}"
+        raise StartError("file", missing, "no such package", install("export")) from None
     except StartError:
         raise
     except (

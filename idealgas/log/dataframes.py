@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from idealgas.columns import EventBatch, Kind, columns_named, empty_batch
+from idealgas.errors import install
 from idealgas.log.errors import LogError
 from idealgas.log.flights import FLIGHT_COLUMNS, NO_EVENT, Flights
 from idealgas.log.replay import LogState
@@ -118,7 +119,7 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
     try:
         from pandas import Categorical, DataFrame
     except ModuleNotFoundError as error:
-        raise LogError(f"to_pandas needs {error.name}: pip install 'idealgas-md[notebook]'") from error
+        raise LogError(f"to_pandas requires {error.name}: {install('notebook')}") from error
     parts: dict[str, list[np.ndarray]] = {}
     for block in blocks:
         for name, column in block.items():

@@ -206,7 +206,7 @@ class Log(LogHistory):
           the state as above.
         - "observables": a row for each sample at times t0 ≤ t < t1, with a column for each component of `observables`.
 
-        Needs pandas: pip install 'idealgas-md[notebook]'.
+        Requires pandas: .venv/bin/pip install -e ".[notebook]".
 
         Args:
             what: name of the table.

@@ -15,7 +15,7 @@ from PIL import Image
 
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.stream import span
-from idealgas.errors import OutputError, UserError
+from idealgas.errors import OutputError, UserError, install
 from idealgas.files import check_output, written
 from idealgas.log import Log, LogState, takes_path
 from idealgas.movie.gif import GifWriter
@@ -51,7 +51,7 @@ def ffmpeg() -> str:
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError:
-        raise UserError("MP4 needs ffmpeg: pip install 'idealgas-md[film]' (GIF needs nothing)") from None
+        raise UserError(f"an MP4 film, unlike a GIF, requires ffmpeg: {install('film')}") from None
     return get_ffmpeg_exe()
 
 

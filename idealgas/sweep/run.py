@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from idealgas.errors import OutputError, UserError
+from idealgas.errors import OutputError, UserError, install
 from idealgas.sweep.cost import estimate_cost, total_seconds
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Sweep
@@ -93,7 +93,7 @@ def run_sweep(
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
     """
     if find_spec("distributed") is None:
-        raise UserError("a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'")
+        raise UserError(f"a sweep requires dask.distributed: {install('sweep')}")
     given, folder = folder, Path(folder).absolute()
     with hold_folder(folder):
         sweep = resume_numbering(sweep, folder)

@@ -57,7 +57,7 @@ def test_without_ffmpeg_no_mp4_and_nothing_else(folder, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     line = error_of("animate", folder / "run.h5", "-o", tmp_path / "film.mp4", "--to", 1, *SMALL)
-    assert line == "MP4 needs ffmpeg: pip install 'idealgas-md[film]' (GIF needs nothing)\n"
+    assert line == 'an MP4 film, unlike a GIF, requires ffmpeg: .venv/bin/pip install -e ".[film]" in the top folder\n'
     assert os.listdir(tmp_path) == []
 
 

@@ -1,11 +1,13 @@
-"""Pages of documentation: their code runs and prints what they show, and they are short."""
+"""Pages of documentation: their code runs and prints what they show."""
 
 import io
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from types import ModuleType
 
@@ -13,7 +15,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.readme_pages import (
-    DOCUMENTS,
+    LINK,
     PAGES,
     blocks,
     commands,
@@ -27,6 +29,7 @@ from helpers.readme_pages import (
 )
 from helpers.support import ROOT
 
+from idealgas.errors import install
 from idealgas.log import open_log
 from idealgas.sweep.plan import load_sweep
 
@@ -71,51 +74,75 @@ def assert_outputs_are_shown(page, printed):
             assert words(line) in lines, (command, line)
 
 
-# ── length ──
-
-
-def test_pages_are_short():
-    lengths = {document.relative_to(ROOT).as_posix(): len(document.read_text().split()) for document in DOCUMENTS}
-    assert lengths.pop(README) <= 900
-    assert lengths.pop(SCENES) <= 1895
-    assert max(lengths.values()) <= 1200
-    assert sum(len(document.read_text().split()) for document in DOCUMENTS) <= 13600
-
-
 # ── README.md ──
 
 
-def install_and_test():
-    """Command that installs the program, and command that runs its tests."""
-    found = [block.text.strip() for block in blocks(README, "bash") if "python3 -m venv" in block.text]
-    assert len(found) == 2
-    return found
-
-
-def test_commands_that_install():
-    for command, needs in zip(install_and_test(), ("-e .", '-e ".[test]"'), strict=True):
-        venv, install, *_ = commands(command)
-        assert venv == "python3 -m venv --without-pip .venv"
-        assert install == f"python3 -m pip --python .venv install -q {needs}"
-
-
-def test_continuous_integration_runs_the_test_command():
-    _, test_command = install_and_test()
-    assert commands(test_command)[2:] == [".venv/bin/pytest -n 3 --dist worksteal"]
-    assert f"({test_command})" in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
+def test_the_first_blocks_install_and_run_and_install_and_test():
+    first, second, *others = (block.text.strip() for block in blocks(README))
+    assert commands(first)[:2] == ["python3 -m venv .venv", ".venv/bin/pip install -q -e ."]
+    assert commands(second)[:2] == ["python3 -m venv .venv", '.venv/bin/pip install -q -e ".[test]"']
+    assert commands(second)[2:] == [".venv/bin/pytest -n 3 --dist worksteal"]
+    assert f"({second})" in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
     assert "run: .ci/run" in (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    assert "pip install" not in "".join(others)
+
+
+def test_readme_leads_to_the_first_pages():
+    links = LINK.findall(PAGES[README])
+    assert {f".github/site/pages/{name}.md" for name in ("first-steps", "how-to", "coming-from")} <= {*links}
+
+
+def recipes():
+    """Installations of optional packages in pages, notebooks, messages and help, by their groups."""
+    suffixes = {".md", ".py", ".ipynb"}
+    folders = (ROOT / name for name in (".github", "cli", "configs", "idealgas"))
+    files = [ROOT / "README.md", *(path for folder in folders for path in folder.rglob("*") if path.suffix in suffixes)]
+    for path in files:
+        for line in path.read_text(encoding="utf-8").replace('\\"', '"').splitlines():
+            if "pip install" in line and not line.startswith(("python3 -m venv", "#")):
+                yield path.relative_to(ROOT).as_posix(), line
+
+
+def test_optional_packages_are_installed_in_one_way():
+    groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    pages = []
+    for page, line in recipes():
+        (named,) = re.findall(r'\.venv/bin/pip install -e "\.\[([\w,{}]+)\]"', line)
+        assert {*named.split(",")} <= {*groups, "{extra}"}, (page, line)
+        pages.append(page)
+    for name in ("sweep", "export", "notebook", "film"):
+        assert install(name) == f'.venv/bin/pip install -e ".[{name}]" in the top folder'
+    assert {"README.md", "configs/README.md", "idealgas/errors.py", "configs/notebooks/first-steps.ipynb"} <= {*pages}
 
 
 @pytest.mark.slow
-def test_the_first_commands_as_a_user_runs_them(folder):
-    _, text, *_ = re.findall(r"^```bash\n(.*?)^```", section(README, "Install and run"), re.MULTILINE | re.DOTALL)
-    assert len(commands(text)) == 2
-    (folder / ".venv" / "bin").mkdir(parents=True)
-    (folder / ".venv" / "bin" / "idealgas").symlink_to(Path(sys.executable).parent / "idealgas")
-    done = subprocess.run(f"set -e\n{text}", shell=True, cwd=folder, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "Z = PA/NT" in done.stdout
-    assert "Measurement and theory agree." in done.stdout.splitlines()[-1]
+def test_the_first_command_as_a_newcomer_runs_it(tmp_path):
+    """In a copy of the repository; also an installation of optional packages, with the environment active and without.
+
+    The packages that it requires are lent by the present environment, so that no index of packages is needed.
+    """
+    for name in ("idealgas", "cli", "configs", ".readme"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(ROOT / name, tmp_path)
+    lent = os.pathsep.join(path for path in sys.path if Path(path).name in ("site-packages", "dist-packages"))
+    offline = {"PIP_NO_INDEX": "1", "PIP_NO_BUILD_ISOLATION": "0", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+    environment = os.environ | {"PYTHONPATH": lent} | offline
+
+    def run(command):
+        done = subprocess.run(["bash", "-ec", command], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, ""), done.stdout
+        return done.stdout
+
+    first, *_ = blocks(README)
+    printed = run(first.text)
+    assert "Z = PA/NT" in printed
+    assert printed.splitlines()[-1].startswith("Measurement and theory agree. ")
+    where = run(".venv/bin/python -c 'import idealgas; print(idealgas.__file__)'")
+    assert Path(where.strip()).is_relative_to(tmp_path)
+    command = install("sweep,notebook").removesuffix(" in the top folder")
+    assert "Successfully installed idealgas-md" in run(command)
+    assert "Successfully installed idealgas-md" in run(f"source .venv/bin/activate && {command}")
 
 
 @pytest.mark.slow

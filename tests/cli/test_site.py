@@ -49,12 +49,16 @@ def test_every_page_of_the_repository_is_on_the_site():
 @pytest.mark.parametrize("repository", ["https://host/idealgas", ""])
 def test_links_lead_to_pages_pictures_or_the_repository(repository):
     hooks = load_hooks()
-    for source, page in hooks.PAGES.items():
-        text = hooks._linked(source, repository)
+    own = {f"{hooks.OWN}/{page}": page for page in OWN_PAGES}
+    for source, page in (hooks.PAGES | own).items():
+        text = hooks.linked((ROOT / source).read_text(encoding="utf-8"), source, repository)
         assert (f"({repository}/blob/main/" in text) <= bool(repository)
         for _, path, _ in hooks.LINK.findall(text):
             target = (SITE / "pages" / page).parent.joinpath(path).resolve().relative_to(SITE / "pages").as_posix()
-            assert target in hooks.PAGES.values() or (ROOT / ".readme" / target.removeprefix("pictures/")).is_file()
+            assert (
+                target in {*hooks.PAGES.values(), *OWN_PAGES}
+                or (ROOT / ".readme" / target.removeprefix("pictures/")).is_file()
+            )
 
 
 def test_the_navigation_has_the_analyses_by_the_titles_of_their_pages():

@@ -168,7 +168,7 @@ def test_without_the_extra_one_line_names_it(plan, tmp_path, monkeypatch):
     monkeypatch.setattr("idealgas.sweep.run.find_spec", lambda name: None)
     done = called("sweep", plan, "-o", tmp_path / "out")
     assert done.returncode == 2
-    assert done.stderr == "a sweep needs dask.distributed: pip install 'idealgas-md[sweep]'\n"
+    assert done.stderr == 'a sweep requires dask.distributed: .venv/bin/pip install -e ".[sweep]" in the top folder\n'
     assert not (tmp_path / "out").exists()
 
 

@@ -31,11 +31,16 @@ PAGES = {
 }
 """Text of each page, by its path from the top folder."""
 
-DOCUMENTS = [ROOT / page for page in PAGES] + [ROOT / ".github" / name for name in ("CONTRIBUTING.md", "CHANGELOG.md")]
+DOCUMENTS = [
+    *(ROOT / page for page in PAGES),
+    *(ROOT / ".github" / name for name in ("CONTRIBUTING.md", "CHANGELOG.md")),
+    *sorted((ROOT / ".github" / "site" / "pages").glob("*.md")),
+]
 
 LEFT_OUT = {
     "python3 -m venv": "creates an environment and installs from the network; test_install.py builds the package",
-    "python3 -m pip": "the same",
+    ".venv/bin/pip": "the same",
+    "source .venv/bin/activate": "activates it",
     ".venv/bin/pytest": "runs these tests themselves",
     "NUMBA_DISABLE_JIT=1 .venv/bin/pytest": "the same",
     "idealgas accuracy configs/three-discs.toml": "takes half a minute; test_accuracy.py runs it",

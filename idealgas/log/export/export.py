@@ -8,7 +8,7 @@ from typing import Any, BinaryIO, Literal, NamedTuple
 
 import numpy as np
 
-from idealgas.errors import unknown
+from idealgas.errors import install, unknown
 from idealgas.files import storage_error, written
 from idealgas.log.errors import LogError
 from idealgas.log.export import frames, tables
@@ -91,7 +91,7 @@ def export(
         with _target(made, kind, output, force, log) as target:
             return made.write(log, rows if times is None else times, target)
     except ModuleNotFoundError as error:
-        raise LogError(f"{kind} needs {error.name}: pip install 'idealgas-md[export]'") from error
+        raise LogError(f"{kind} requires {error.name}: {install('export')}") from error
 
 
 @contextmanager

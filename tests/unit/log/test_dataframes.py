@@ -1,5 +1,6 @@
 """Parts of a log as DataFrames: every number is the one in the log."""
 
+import re
 import sys
 
 import numpy as np
@@ -173,5 +174,6 @@ def test_what_cannot_be_asked_for(log, what, choice, line):
 
 def test_without_pandas(log, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(LogError, match=r"^to_pandas needs pandas: pip install 'idealgas-md\[notebook\]'$"):
+    line = 'to_pandas requires pandas: .venv/bin/pip install -e ".[notebook]" in the top folder'
+    with pytest.raises(LogError, match=f"^{re.escape(line)}$"):
         log.to_pandas()
