@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 from idealgas.errors import unknown
-from idealgas.examples import SCENE, names, path_of
+from idealgas.examples import SCENE, first_sentence, names, path_of
 
 from ._terminal import written
 
@@ -41,8 +41,7 @@ def shown_by(name: str) -> str:
         cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
         return cells[0]["source"][0].strip("# \n")
     scene = tomllib.loads(path_of(f"{name}{SCENE}").read_text(encoding="utf-8"))["scene"]
-    text = " ".join(scene.get("description", scene["title"]).split())
-    return re.split(r"(?<=\.) ", text, maxsplit=1)[0]
+    return first_sentence(scene.get("description", scene["title"]))[0]
 
 
 def copy_example(name: str, output: str | None, force: bool) -> None:

@@ -1,5 +1,6 @@
 """The example scenes that are installed with the package."""
 
+import re
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -29,6 +30,13 @@ def paths() -> list[Path]:
 def names() -> list[str]:
     """Names of the scenes, in alphabetical order."""
     return [path.stem for path in paths()]
+
+
+def first_sentence(description: str) -> tuple[str, str]:
+    """Return the first sentence of the description of a scene on one line, and the text that follows it."""
+    paragraph, *others = description.strip("\n").split("\n\n", maxsplit=1)
+    sentence, *rest = re.split(r"(?<=\.)\s+", paragraph, maxsplit=1)
+    return " ".join(sentence.split()), "\n\n".join((*rest, *others))
 
 
 def load_example(name: str, overrides: Sequence[str] = ()) -> "Scene":

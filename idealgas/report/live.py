@@ -21,6 +21,7 @@ from idealgas.analysis.core.tables import escape
 from idealgas.analysis.evolution.theory import expected_law
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
+from idealgas.examples import first_sentence
 from idealgas.log import DamageError, Log
 from idealgas.report.page import SCRIPTS, description_html, player_html, text_of
 from idealgas.report.picture import html_pictures
@@ -69,11 +70,13 @@ class Live:
         log, scene = self._log, self._log.scene.scene
         heading = "The discs" if log.has_positions else "The speeds"
         shown = "After each part of the motion comes the newest one, or with the mark removed the next one."
+        lead, description = first_sentence(scene.description)
         return Template(text_of("watch.html")).substitute(
             title=escape(scene.title or Path(log.path).name),
+            lead=escape(lead),
             style=text_of("report.css"),
             script="\n".join(map(text_of, (*SCRIPTS, "live.js"))),
-            description=description_html(log.scene.scene.description),
+            description=description_html(description),
             state=log.run_state,
             newest="" if log.complete else " checked",
             player=player_html(log, heading, shown),

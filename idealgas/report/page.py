@@ -10,6 +10,7 @@ from string import Template
 from idealgas.analysis.core.tables import Number, Table, escape, html_table
 from idealgas.analysis.info import info
 from idealgas.errors import UserError
+from idealgas.examples import first_sentence
 from idealgas.files import check_output, written
 from idealgas.log import Log, takes_path
 from idealgas.report.picture import html_pictures
@@ -100,13 +101,15 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     said = [_summary(log, found), *(section.words for section in main if section.words)]
     shown = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
     folded = len(main) + 1
+    lead, description = first_sentence(log.scene.scene.description)
     return Template(text_of("report.html")).substitute(
         title=escape(title),
+        lead=escape(lead or said.pop(0)),
         style=text_of("report.css"),
         script="\n".join(map(text_of, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
-        description=description_html(log.scene.scene.description),
+        description=description_html(description),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
         sections="\n".join(shown[:folded]),
         more="\n".join(shown[folded:]),

@@ -12,7 +12,7 @@ import pytest
 from helpers.support import ROOT, called, error_of, idealgas, output_of
 from PIL import Image
 
-from idealgas.examples import load_example
+from idealgas.examples import first_sentence, load_example
 from idealgas.gallery import draw
 from idealgas.log import open_log
 from idealgas.movie.film import paint_frame
@@ -34,6 +34,12 @@ def test_examples_are_listed_with_what_they_show():
     assert listed["brownian"] == "Brownian motion: four large, heavy discs among a thousand light ones."
     narrow = idealgas("examples", COLUMNS="70").stdout.splitlines()
     assert max(map(len, narrow)) <= 70
+
+
+def test_the_first_sentence_of_a_description_and_the_rest():
+    assert first_sentence("Joule's\ngas. It grows.\n\n  a  table\n") == ("Joule's gas.", "It grows.\n\n  a  table")
+    assert first_sentence("\nA 0.5 gas.\n\nMore. Text.") == ("A 0.5 gas.", "More. Text.")
+    assert first_sentence("") == ("", "")
 
 
 def test_an_example_is_copied_and_can_be_checked(tmp_path):

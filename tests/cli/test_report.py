@@ -1,6 +1,7 @@
 """The page of `idealgas report`, in headless Chromium as people see it: apt-get install chromium chromium-driver."""
 
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def rules_of_axe():
 
 def test_everything_is_reached_with_the_tab_key(opened):
     browser = opened("plain")
-    browser.find_element(By.TAG_NAME, "body").click()
+    browser.find_element(By.CSS_SELECTOR, "nav summary").send_keys(Keys.ENTER)
     reached = set()
     for _ in range(40):
         ActionChains(browser).send_keys(Keys.TAB).perform()
@@ -118,9 +119,33 @@ def test_the_discs_stay_beside_the_curves_on_a_wide_screen(sized):
     assert 0 <= browser.execute_script("return document.getElementById('discs').getBoundingClientRect().top") < 200
 
 
+def test_a_phone_shows_the_title_a_sentence_and_the_player_first(sized):
+    browser = sized("piston", 360)
+    shown = ("h1", ".lead", "nav summary", "#discs", "#play", "#s1")
+    rectangles = [browser.find_element(By.CSS_SELECTOR, name).rect for name in shown]
+    for above, below in pairwise(rectangles):
+        assert above["y"] + above["height"] <= below["y"]
+    assert rectangles[shown.index("#play")]["y"] + rectangles[shown.index("#play")]["height"] < 740
+
+
+@pytest.mark.parametrize("width", [360, 1600])
+def test_the_contents_are_one_menu(sized, width):
+    browser = sized("piston", width)
+    links = browser.find_elements(By.CSS_SELECTOR, "nav a")
+    assert len(links) == len(browser.find_elements(By.CSS_SELECTOR, "main section")) >= 6
+    assert not any(link.is_displayed() for link in links)
+    browser.find_element(By.CSS_SELECTOR, "nav summary").click()
+    assert all(link.is_displayed() for link in links)
+    links[-1].click()
+    last = browser.find_element(By.CSS_SELECTOR, links[-1].get_attribute("href").partition("html")[2])
+    assert last.is_displayed(), "in the folded part of the page"
+    assert 0 <= browser.execute_script("return arguments[0].getBoundingClientRect().top", last) < 900
+
+
 def test_the_first_words(pages):
     text = pages("piston")[1].read_text(encoding="utf-8")
-    assert "<p>A gas that &lt;presses&gt; on a piston.</p><p>Its end.</p>" in text
+    assert '<p class="lead">A gas that &lt;presses&gt; on a piston.</p>' in text
+    assert "<h2>What it shows</h2><p>Its end.</p>" in text
     assert "60 discs with piston, packing fraction 0.113, followed for" in text  # of the 15 by 10 below the piston
 
 

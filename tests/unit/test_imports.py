@@ -23,7 +23,7 @@ ALLOWED = {
     "run": {"effects", "jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
     "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
     "movie": {"state", "scene", "log", "analysis"},
-    "report": {"state", "scene", "log", "analysis", "movie"},
+    "report": {"state", "scene", "log", "analysis", "movie", "examples"},
     "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
     "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
     "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
