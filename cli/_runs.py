@@ -5,7 +5,7 @@ import os
 import shlex
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -29,6 +29,7 @@ def run_with_progress(
     from_start: bool = True,
     on_start: Callable[[], None] = lambda: None,
     stream: "EventStream | None" = None,
+    shows: Sequence[str] = (),
 ) -> None:
     """Call `simulate` with a progress bar, stop it at Ctrl-C or SIGTERM, and print the summary of its log.
 
@@ -39,6 +40,7 @@ def run_with_progress(
         from_start: whether this run wrote all events of the log.
         on_start: called when the first events are in the log.
         stream: prints the events instead of the summary; the run ends when it fails.
+        shows: names of the analyses that the scene leads with, printed as the commands to go on with.
     """
     from ._interrupt import stop_signals
 
@@ -65,7 +67,7 @@ def run_with_progress(
         elif as_json:
             data(json.dumps(summary.as_dict(), indent=2))
         else:
-            _print(summary, path, from_start)
+            _print(summary, path, from_start, shows)
         failure = stream and stream.failure
         hint = "" if summary.completed else f"; `idealgas resume {shlex.quote(path)}` continues it"
         if isinstance(failure, OutputError):
@@ -78,7 +80,7 @@ def run_with_progress(
             raise failure
 
 
-def _print(summary: "Summary", output: str, from_start: bool) -> None:
+def _print(summary: "Summary", output: str, from_start: bool, shows: Sequence[str]) -> None:
     from rich.filesize import decimal
 
     rows = {
@@ -105,3 +107,5 @@ def _print(summary: "Summary", output: str, from_start: bool) -> None:
     with suppress(FileNotFoundError):  # moved while it was written
         rows["file size"] = decimal(os.path.getsize(output))
     print_tables([facts(output if summary.completed else f"{output} (interrupted)", rows)])
+    if shows:
+        echo("what it shows: " + ", ".join(f"`idealgas {name} {shlex.quote(output)}`" for name in shows))

@@ -34,6 +34,7 @@ def run(
     if stream and not scene.log.events:
         raise UserError(f"{path}: --stream requires events (got log.events = false)")
     check_output(output, LOG, force, [path])  # before the imports below, which take a second
+    from idealgas.analysis import registry
     from idealgas.run.simulate import simulate
 
     from ._runs import run_with_progress
@@ -48,4 +49,5 @@ def run(
             as_json,
             on_start=show,
             stream=printed,
+            shows=registry.shown(scene),
         )

@@ -2,6 +2,7 @@
 
 from idealgas._version import __version__ as __version__
 from idealgas.accuracy.study import study_accuracy as study_accuracy
+from idealgas.analysis.billiard import BilliardAnalysis
 from idealgas.analysis.cooling import CoolingAnalysis
 from idealgas.analysis.core.deviations import sensitivity as sensitivity
 from idealgas.analysis.core.statistics import Estimate as Estimate
@@ -49,6 +50,7 @@ from idealgas.scene import parse_scene as parse_scene
 from idealgas.sweep.plan import load_sweep as load_sweep
 from idealgas.sweep.run import run_sweep as run_sweep
 
+billiard = takes_path(BilliardAnalysis.measure)
 cooling = takes_path(CoolingAnalysis.measure)
 effusion = takes_path(EffusionAnalysis.measure)
 entropy = takes_path(EntropyAnalysis.measure)

@@ -5,7 +5,6 @@ the length ℓ in walls around the area A.
 """
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,16 +12,15 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.reach import NEAR, reach_of
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, parts_of
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
 from idealgas.analysis.theory.values import NoTheoryError, Theory
-from idealgas.columns import FIRST_SEGMENT, Kind
+from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
-from idealgas.physics.arc_geometry import bounds, nearest_points
-from idealgas.scene.walls import NumberedWall, number_walls
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,12 +36,6 @@ BILLIARD = (
     "circle or a rectangle does not."
 )
 """Caveat of discs that walls alone divert."""
-
-NEAR = 1e-9
-"""Distance from a wall, in units of the box, at which its sides are told apart."""
-
-PLACES = (np.arange(8) + 0.5) / 8
-"""Places along a wall, as shares of it, at which is found out whether discs touch it."""
 
 
 @dataclass(frozen=True)
@@ -188,59 +180,12 @@ def _theory(log: Log) -> Theory:
         raise NoTheoryError("discs fall, or walls move")
     if any(wall.absorbing and (wall.absences or wall.is_permeable) for wall in scene.walls):
         raise NoTheoryError("a hole opens or closes, or lets discs pass")
-    faces = np.array(list(_faces(log, radius)))
-    length, whole = float(faces[faces[:, 0] > 0, 1].sum()), float(faces[:, 1].sum())
-    area = gas.area - radius * float(faces[:, 2].sum())
-    if not length > 0 or not area > 0:
+    reach = reach_of(log, radius)
+    if not reach.holes > 0 or not reach.area > 0:
         raise NoTheoryError("discs do not reach a hole")
-    rate = length / (math.pi * area)
-    doubt = length / whole + radius / length + 2 * gas.packing_fraction
+    rate = reach.holes / (math.pi * reach.area)
+    doubt = reach.holes / reach.perimeter + radius / reach.holes + 2 * gas.packing_fraction
     return Theory(rate, rate * doubt, "ℓ/(π A) of a small hole")
-
-
-def _faces(log: Log, radius: float) -> Iterator[tuple[float, float, float]]:
-    """Each face of a wall that discs reach: 1 if it is a hole, lengths of the line of touching centres and half-way."""
-    scene, size = log.scene, np.array(log.box)
-    near = NEAR * float(size.max())
-    walls = {k: wall for k, wall in enumerate(number_walls(scene)) if wall.action != "periodic"}
-    fit = _fitting(log, list(walls.values()), radius, near)
-    for k, wall in walls.items():
-        hole = float(k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing)
-        if wall.radius:
-            yield hole, 2 * math.pi * (wall.radius + radius), 2 * math.pi * (wall.radius + radius / 2)
-            continue
-        start, along = np.array(wall.start), np.subtract(wall.end, wall.start)
-        length, angle = float(np.hypot(*along)), 0.0
-        if arc := wall.arc:
-            length, angle = arc.length, arc.angle
-            turn = np.exp(1j * angle * (PLACES - 0.5)) * complex(arc.mx, arc.my)
-            normal = np.column_stack((turn.real, turn.imag))
-            places = start + (arc.x, arc.y) + arc.radius * normal
-        else:
-            normal, places = np.array([-along[1], along[0]]) / length, start + PLACES[:, None] * along
-        for side in (-1.0, 1.0):
-            gas = ~scene.solids.contain(places + side * near * normal)
-            share = (gas & fit(places + side * max(radius, 2 * near) * normal)).mean()
-            yield hole, share * (length + side * angle * radius), share * (length + side * angle * radius / 2)
-
-
-def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Function of centres (M, 2): whether discs of a radius are there without overlap of walls by more than `near`."""
-    solid = [wall for wall in walls if not (wall.absences or wall.is_permeable)]
-    low, high = (np.array(ends) for ends in zip(*(bounds(w.start, w.end, w.arc) for w in solid), strict=True))
-    reach = radius + max(wall.radius for wall in solid)
-    margin = np.where(log.periodic, -math.inf, radius - near)
-
-    def fit(centres: np.ndarray) -> np.ndarray:
-        found = ((centres > margin) & (centres < log.box - margin)).all(axis=1)
-        close = (low < centres.max(axis=0) + reach) & (high > centres.min(axis=0) - reach)
-        for k in np.flatnonzero(close.all(axis=1)).tolist():
-            wall = solid[k]
-            away = centres - nearest_points(centres, wall.start, wall.end, wall.arc)
-            found &= np.hypot(*away.T) - wall.radius > radius - near
-        return np.asarray(found)
-
-    return fit
 
 
 def _expected(

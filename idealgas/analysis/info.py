@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
+from idealgas.analysis.registry import shown
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 
@@ -24,7 +25,12 @@ def info(log: Log) -> dict[str, Any]:
             "command": log.command,
             "state": log.run_state,
         },
-        "scene": {"title": log.scene.scene.title, "seed": log.scene.scene.seed, "method": log.scene.run.method},
+        "scene": {
+            "title": log.scene.scene.title,
+            "shows": list(shown(log.scene)),
+            "seed": log.scene.scene.seed,
+            "method": log.scene.run.method,
+        },
         "gas": {
             "box": list(log.box),
             "number": len(gas),

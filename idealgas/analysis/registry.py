@@ -8,30 +8,19 @@ import re
 from collections.abc import Sequence
 from importlib import import_module
 from os import PathLike
-from pathlib import Path
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any
 
+from idealgas.catalogue import FOLDER, commands, names
 from idealgas.errors import UserError, unknown
 
 if TYPE_CHECKING:
     from idealgas.analysis.core.analysis import Analysis, Progress
     from idealgas.analysis.core.result import Result
     from idealgas.log import Log
+    from idealgas.scene import Scene
 
-FOLDER = Path(__file__).parent
-OTHERS = ("core", "info", "registry", "status", "theory")
-"""Modules beside this file that are not analyses."""
-
-
-def names() -> tuple[str, ...]:
-    """Names of all analyses, which are those of their modules, in alphabetical order."""
-    return tuple(sorted(module.name for module in iter_modules([str(FOLDER)]) if module.name not in OTHERS))
-
-
-def commands() -> tuple[str, ...]:
-    """Names of the commands of all analyses, also used in the file of a sweep."""
-    return tuple(name.replace("_", "-") for name in names())
+MAIN = ("pressure", "temperature", "histogram")
+"""Analyses that a gas in equilibrium without effects leads with."""
 
 
 def _source(name: str) -> str:
@@ -68,6 +57,26 @@ def find(name: str) -> "type[Analysis]":
 
     import_module(f"idealgas.analysis.{module}")
     return FOUND[module]
+
+
+def shown(scene: "Scene") -> tuple[str, ...]:
+    """Return the names of the analyses that a scene leads with: those that it names, or that its effects call for."""
+    if scene.scene.shows:
+        return scene.scene.shows
+    properties = scene.properties
+    if properties.shear:
+        return ("shear",)
+    if properties.escapes:
+        return ("escape", "evolution")
+    opened, dissipative = properties.last_wall_removed_at > 0, properties.dissipative
+    called_for = {
+        "effusion": opened,
+        "cooling": dissipative,
+        "evolution": opened or not properties.fixed_walls or dissipative,
+        "profile": not properties.straight_flight or len(properties.temperatures) > 1,
+        "transport": all(properties.periodic) and properties.lossless,
+    }
+    return tuple(name for name, called in called_for.items() if called) or MAIN
 
 
 def analyse(

@@ -7,6 +7,7 @@ from importlib import resources
 from pathlib import Path
 from string import Template
 
+from idealgas.analysis import registry
 from idealgas.analysis.core.tables import Number, Table, escape, html_table
 from idealgas.analysis.info import info
 from idealgas.errors import UserError
@@ -15,7 +16,7 @@ from idealgas.files import check_output, written
 from idealgas.log import Log, takes_path
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, Player, player
-from idealgas.report.sections import Section, main_sections, make_sections
+from idealgas.report.sections import Section, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """The program of the page, in order."""
@@ -86,9 +87,9 @@ def write_report(
 def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     found = info(log)
     file = found["file"]
-    first = main_sections(log.scene)
     applicable = [section for section in sections if section.left_out is None]
-    main = sorted((s for s in applicable if s.title in first), key=lambda s: first.index(s.title)) or applicable
+    first = {section.analysis: section for section in reversed(applicable)}  # the first section of each analysis
+    main = [first[name] for name in registry.shown(log.scene) if name in first] or applicable
     more = [section for section in applicable if all(section is not one for one in main)]
     parts = [(section.title, _section(section, f"p{k}")) for k, section in enumerate((*main, *more))]
     parts.insert(len(main), ("The run", _run(log, found)))
@@ -98,8 +99,8 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
-    said = [_summary(log, found), *(section.words for section in main if section.words)]
-    shown = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
+    said = [*(section.words for section in main if section.words), _summary(log, found)]
+    html = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
     folded = len(main) + 1
     lead, description = first_sentence(log.scene.scene.description)
     return Template(text_of("report.html")).substitute(
@@ -111,8 +112,8 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
         player=_player(log, played, names[0]),
         description=description_html(description),
         words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
-        sections="\n".join(shown[:folded]),
-        more="\n".join(shown[folded:]),
+        sections="\n".join(html[:folded]),
+        more="\n".join(html[folded:]),
         data="" if played is None else _data(played),
         footer=escape(f"Made by idealgas {file['idealgas']} from {Path(log.path).name}: {file['command']}"),
     )
@@ -159,7 +160,7 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
         shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."
     else:
         shown += "the whole run."
-    shown += f" At 1 × a second is {played.head['speed']:.3g} units of time."
+    shown += f" It is played in 20 s; at a playback of 1 × a second is {played.head['speed']:.3g} units of time."
     return player_html(log, heading, shown)
 
 

@@ -1,5 +1,7 @@
 // ── the player ──
 
+const WHOLE = 20; // seconds in which a page with a run plays it, unless another rate is chosen
+
 class Player {
   constructor(gas) {
     this.gas = gas;
@@ -43,6 +45,14 @@ class Player {
     };
     field.addEventListener("input", () => choose(field.value));
     canvas.addEventListener("click", event => choose(field.value = String(view.discAt(event))));
+  }
+
+  // Offer the rate at which everything that the page has is played in WHOLE seconds, in its place among the others.
+  offerWhole() {
+    const { start, end, speed } = this.gas.head, value = (end - start) / speed / WHOLE;
+    const faster = Array.from(this.rates.options).find(option => +option.value > value) ?? null;
+    this.rates.add(new Option(`all in ${WHOLE} s`, value, true, true), faster);
+    this.rate = value;
   }
 
   get time() { return this.gas.time; }
@@ -141,6 +151,7 @@ wrapTables();
 const head = document.getElementById("data-head");
 if (head) {
   window.player = new Player(new Gas(JSON.parse(head.textContent)));
+  window.player.offerWhole();
   addEventListener("beforeprint", () => { printing = true; window.player.draw(); });
   addEventListener("afterprint", () => { printing = false; window.player.draw(); });
 }

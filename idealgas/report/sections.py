@@ -9,21 +9,18 @@ from idealgas.analysis import registry
 from idealgas.analysis.core.tables import Table
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import DamageError, Log
-from idealgas.scene import Scene
-
-MAIN = ("Pressure", "Temperature", "Speeds")
-"""Titles of the sections on a gas in equilibrium without effects that call for others."""
 
 
 @dataclass(frozen=True)
 class Section:
     """A section of the report page.
 
-    title: heading. picture: figure of the analysis. caption: text below the picture, also read aloud to blind readers.
-    tables: tables of the analysis. words: headline, what it found. left_out: reason why the analysis does not
-    apply; None if it does.
+    analysis: name of the analysis. title: heading. picture: figure of the analysis. caption: text below the picture,
+    also read aloud to blind readers. tables: tables of the analysis. words: headline, what it found. left_out: reason
+    why the analysis does not apply; None if it does.
     """
 
+    analysis: str
     title: str
     picture: Figure | None = None
     caption: str = ""
@@ -43,27 +40,10 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
             figure, words = analysis.figure(result), analysis.summary(result)
-            found.append(Section(section.title, figure, section.caption, tables, words))
+            found.append(Section(analysis.key, section.title, figure, section.caption, tables, words))
         except DamageError:
             raise
         except UserError as error:
-            found.append(Section(section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
+            found.append(Section(analysis.key, section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
         on_step(k + 1, len(parts))
     return found
-
-
-def main_sections(scene: Scene) -> tuple[str, ...]:
-    """Titles of the sections that the effects of a scene call for, which a report shows first."""
-    properties = scene.properties
-    if properties.shear:
-        return ("Shear flow",)
-    if properties.escapes:
-        return ("Escape", "Evolution")
-    called_for = {
-        "Effusion": properties.last_wall_removed_at > 0,
-        "Cooling": properties.dissipative,
-        "Evolution": properties.last_wall_removed_at > 0 or not properties.fixed_walls or properties.dissipative,
-        "Profile": not properties.straight_flight or len(properties.temperatures) > 1,
-        "Transport": all(properties.periodic) and properties.lossless,
-    }
-    return tuple(title for title, called in called_for.items() if called) or MAIN

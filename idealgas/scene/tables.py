@@ -2,14 +2,17 @@
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
+from pydantic_core import PydanticKnownError
 
+from idealgas.catalogue import commands
 from idealgas.columns import SIDES
 from idealgas.effects import EFFECTS
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.schedule import SteppedTable
 from idealgas.effects.shear import ShearedSide
 from idealgas.scene.sizes import Density, Normal, Size, Uniform, Values, sizes_of
+from idealgas.toml.dump import toml_value
 from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word, either
 
 WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
@@ -149,11 +152,26 @@ Threads = Annotated[
 ]
 
 
+def _known(name: str) -> str:
+    if name not in commands():
+        raise PydanticKnownError("literal_error", {"expected": ", ".join(map(toml_value, commands()))})
+    return name
+
+
+AnalysisName = Annotated[str, AfterValidator(_known), Field(json_schema_extra={"enum": list(commands())})]
+"""Name of an analysis, that of its command."""
+
+
 class Header(Table):
-    """`[scene]`: title, description, and seed of the random numbers."""
+    """`[scene]`: title, description, what it shows, and seed of the random numbers."""
 
     title: str = Field(default="", description="one line")
     description: str = Field(default="", description="what the scene shows, in paragraphs; the report begins with it")
+    shows: Annotated[tuple[AnalysisName, ...], Field(strict=False)] = Field(
+        default=(),
+        description="names of the analyses that answer the question of the scene, the first one first; the report "
+        "begins with them. If absent, they follow from the effects",
+    )
     seed: Whole = Field(
         default=0, ge=0, lt=2**63, description="whole number that determines all random numbers of the scene"
     )

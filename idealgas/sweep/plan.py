@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, Field, ValidationError
-from pydantic_core import PydanticKnownError
+from pydantic import Field, ValidationError
 
-from idealgas.analysis import registry
+from idealgas.catalogue import commands
 from idealgas.scene import Scene, SceneError
 from idealgas.scene.scene import make_scene
+from idealgas.scene.tables import AnalysisName
 from idealgas.toml.dump import toml_value
 from idealgas.toml.issues import Issue, Key, as_issues
 from idealgas.toml.overrides import OverrideError, apply
@@ -25,15 +25,6 @@ from idealgas.toml.text import Origin, parse_document, read_text
 PHI, BASE = "phi", "base"
 """Keys of axes in addition to those of a scene: packing fraction, by scaling the box, and path of the base scene."""
 
-
-def _known(name: str) -> str:
-    if name not in registry.commands():
-        raise PydanticKnownError("literal_error", {"expected": ", ".join(map(toml_value, registry.commands()))})
-    return name
-
-
-Analysis = Annotated[str, AfterValidator(_known)]
-"""Name of an analysis, that of its command."""
 
 Value = bool | int | float | str | tuple[Any, ...]
 Count = Annotated[int, Field(ge=1, le=100_000)]
@@ -45,8 +36,8 @@ class Settings(Table):
     scene: str | None = Field(default=None, description="path of the base scene, from this file's folder")
     seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the seeds of all points follow")
     replicates: Count = Field(default=1, description="runs of each point that differ in their seeds, 1 to 100000")
-    analyses: Annotated[tuple[Analysis, ...], Field(strict=False)] = Field(
-        default=(), description=f"names of {', '.join(registry.commands())}"
+    analyses: Annotated[tuple[AnalysisName, ...], Field(strict=False)] = Field(
+        default=(), description=f"names of {', '.join(commands())}"
     )
     keep_logs: bool = Field(default=True, description="whether the logs stay after their analyses")
 

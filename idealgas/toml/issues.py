@@ -1,5 +1,6 @@
 """Errors of a document, also those of pydantic, as `table.key: what is wrong (got …; allowed …)`."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any, NamedTuple, get_args
@@ -85,6 +86,9 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     if key != finding["loc"] and kind == "literal_error":
         return Issue((key,), "unknown value", _shown(got), _described(key, model))
     wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))
+    if kind == "literal_error":
+        known = re.findall(r"""['"]([^'"]+)['"]""", finding["ctx"]["expected"])
+        wrong += "".join(f', did you mean "{close}"?' for close in get_close_matches(str(got), known, n=1))
     return Issue((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
 
 

@@ -87,6 +87,17 @@ def test_playing_ends_at_the_end_and_starts_anew(opened, pages):
     WebDriverWait(browser, 30).until(lambda b: 0 < b.execute_script("return player.time") < end / 2)
 
 
+def test_a_run_of_any_length_is_played_in_20_seconds(opened, pages):
+    browser = opened("periodic")
+    with open_log(pages("periodic")[0]) as log:
+        assert browser.execute_script("return player.rate * player.gas.head.speed") == pytest.approx(log.end_time / 20)
+    chosen = Select(browser.find_element(By.ID, "rate")).first_selected_option
+    assert (chosen.text, float(chosen.get_attribute("value"))) == (
+        "all in 20 s",
+        pytest.approx(browser.execute_script("return player.rate")),
+    )
+
+
 def test_scrubbing(opened, pages):
     browser = opened("periodic")
     slider = browser.find_element(By.ID, "scrub")
@@ -105,7 +116,8 @@ def test_scrubbing(opened, pages):
 
 def test_keys(opened, pages):
     browser = opened("plain")
-    player = browser.find_element(By.ID, "player")
+    player, rate = browser.find_element(By.ID, "player"), Select(browser.find_element(By.ID, "rate"))
+    rate.select_by_value("1")
     second = browser.execute_script("return player.gas.head.speed")
 
     def press(*keys):
@@ -118,12 +130,13 @@ def test_keys(opened, pages):
     assert press(Keys.ARROW_RIGHT) == pytest.approx(second / 25)
     assert press(Keys.SHIFT, Keys.ARROW_RIGHT) == pytest.approx(second * 26 / 25)
     assert press(Keys.ARROW_LEFT) == pytest.approx(second)
-    rate = Select(browser.find_element(By.ID, "rate"))
+    rates = [float(option.get_attribute("value")) for option in rate.options]
+    assert rates == sorted(rates)
     press(Keys.ARROW_UP)
-    assert rate.first_selected_option.get_attribute("value") == "2"
+    assert float(rate.first_selected_option.get_attribute("value")) == rates[rates.index(1) + 1]
     for _ in range(9):
         press(Keys.ARROW_DOWN)
-    assert rate.first_selected_option.get_attribute("value") == "0.125"
+    assert float(rate.first_selected_option.get_attribute("value")) == rates[0]
     press(Keys.SPACE)
     assert browser.execute_script("return player.playing") is True
     press(Keys.SPACE)

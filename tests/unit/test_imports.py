@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from helpers.support import ROOT
 
-FREE = {"_version", "errors", "columns", "files", "locks", "system", ""}
-"""Version, errors, plain text, files, locks, systems, columns of events and numbers of walls are for all."""
+FREE = {"_version", "errors", "catalogue", "columns", "files", "locks", "system", ""}
+"""Version, errors, names of analyses, plain text, files, locks, systems, columns and numbers of walls are for all."""
 
 ALLOWED = {
     "jit": set(),
@@ -31,6 +31,7 @@ ALLOWED = {
     "gallery": {"examples", "initial", "log", "analysis", "movie", "report"},
     "_version": set(),
     "errors": set(),
+    "catalogue": set(),
     "columns": set(),
     "files": set(),
     "locks": set(),
@@ -55,7 +56,7 @@ OF_COMMANDS = {"idealgas.__main__"}
 WITHIN_ANALYSIS = {"core": {"theory"}, "theory": set(), "registry": {"core"}}
 """What parts of the analyses may import of each other: every analysis these two, and what is named in FROM_ANALYSES."""
 
-FROM_ANALYSES = {"heat_capacity": {"pressure"}, "status": {"pressure"}}
+FROM_ANALYSES = {"heat_capacity": {"pressure"}, "status": {"pressure"}, "info": {"registry"}}
 
 COMPUTES = {"fractions", "idealgas", "math", "operator", "typing", "collections", "enum", "numpy", "numba"}
 """All that the laws of physics need."""

@@ -11,9 +11,11 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 import pytest
+from helpers.support import ROOT
 
 import idealgas
 from idealgas import analysis as package
+from idealgas import catalogue
 from idealgas.analysis import registry
 from idealgas.analysis.core.analysis import Option
 from idealgas.analysis.core.quantities import ESTIMATE, as_csv, names
@@ -22,6 +24,7 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table, escape, estimates, html_table
 from idealgas.errors import UserError
 from idealgas.report.sections import make_sections
+from idealgas.scene import load_scene, parse_scene
 
 GAS = """
 box.size = [8, 8]
@@ -60,7 +63,7 @@ every_analysis = pytest.mark.parametrize("analysis", registry.analyses(), ids=la
 
 def test_every_module_beside_the_registry_is_an_analysis_or_named_as_another():
     modules = {module.name for module in iter_modules(package.__path__)}
-    assert modules == {*registry.names(), *registry.OTHERS}
+    assert modules == {*registry.names(), *catalogue.OTHERS}
     assert sorted(analysis.name for analysis in registry.analyses()) == list(registry.names())
     assert [analysis.position for analysis in registry.analyses()] == sorted({a.position for a in registry.analyses()})
 
@@ -98,11 +101,22 @@ def test_analyses_by_name(make):
     assert len(registry.analyse(log, "profile", bins=3).edges) == 4
 
 
+def test_a_scene_leads_with_what_it_names_or_its_effects_call_for():
+    escape = load_scene(ROOT / "configs" / "escape.toml", ["scene.shows=[]"])
+    assert registry.shown(escape) == ("escape", "evolution")
+    assert registry.shown(parse_scene(GAS)) == ("pressure", "temperature", "histogram")
+    assert registry.shown(parse_scene(GAS, overrides=('scene.shows=["order", "pressure"]',))) == ("order", "pressure")
+
+
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
-        ("presure", {}, r'unknown analysis, did you mean "pressure"\? \(got presure; allowed cooling, effusion, '),
-        ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed cooling, "),
+        (
+            "presure",
+            {},
+            r'unknown analysis, did you mean "pressure"\? \(got presure; allowed billiard, cooling, ',
+        ),
+        ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed billiard, cooling, "),
         ("profile", {"bin": 3}, r'unknown option of profile, did you mean "bins"\? \(got bin; allowed start, end, '),
         ("profile", {"bins": 0}, r"bins: wrong value \(got 0; allowed a whole number >= 1 and <= 1000\)"),
         ("profile", {"bins": 2.5}, "bins: wrong value"),

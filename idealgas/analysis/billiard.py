@@ -1,0 +1,161 @@
+"""Measure the mean path of discs between two hits of walls.
+
+Theory is exact for any shape of the box whose paths come everywhere: π times the area that the centres can reach over
+its perimeter (Chernov, J. Stat. Phys. 88, 1 (1997), after Santaló).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.analysis.core.analysis import Analysis, Progress, Section
+from idealgas.analysis.core.check import CheckResult, agreement, check_theory
+from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.flights import Moments
+from idealgas.analysis.core.reach import Reach, reach_of
+from idealgas.analysis.core.result import Result
+from idealgas.analysis.core.statistics import Estimate, ratio
+from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
+from idealgas.analysis.theory.values import NoTheoryError, Theory
+from idealgas.errors import UserError
+from idealgas.log import Log
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+UNMIXED = (
+    "Discs hardly meet: theory needs walls that mix all paths, such as those of Sinai's billiard or of a stadium; in a "
+    "circle or a rectangle each path has a mean of its own."
+)
+"""Caveat of discs that walls alone divert."""
+
+SPARSE = 1e-6
+"""Packing fraction up to which other discs do not change the density at the walls by any digit that is shown."""
+
+ROW = "mean path between wall hits (length)"
+
+
+@dataclass(frozen=True)
+class Billiard(Result):
+    """Paths of discs between hits of walls.
+
+    Attributes:
+        window: the time that was used.
+        hits: number of wall hits in it.
+        path: mean length of the path of a disc between two of its wall hits, length.
+        reach: area and perimeter that the centres of the discs can reach; None without theory.
+        reason: why there is no theory; None if there is one.
+        time: (B,), middles of blocks of time. series: (B,), path flown so far over the wall hits so far, length.
+    """
+
+    window: Window
+    hits: int
+    path: Estimate
+    reach: Reach | None
+    reason: str | None
+    time: np.ndarray
+    series: np.ndarray
+
+    def check(self) -> CheckResult:
+        """Compare the mean path with theory."""
+        return check_theory([("path", None, self.path)], self.reason)
+
+
+class BilliardAnalysis(Analysis):
+    """Mean path between hits of walls."""
+
+    position = 108
+    headline = "path"
+    results = (Billiard,)
+    sections = (Section("Paths between walls", "Mean path between two wall hits, averaged up to each time"),)
+
+    @staticmethod
+    def measure(
+        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+    ) -> Billiard:
+        """Measure the mean path of discs between two hits of walls, next to π A/P of the area A that centres can reach.
+
+        Collisions with other discs do not end a path. Theory is given for discs of one radius that fly straight between
+        walls at rest; its error is 2φ, for the density at the walls.
+
+        Raises:
+            UserError: if no disc hits a wall.
+        """
+        log.require_events()
+        moments = Moments(log.gravity)
+        window = measure(log, [moments], start, end, progress)
+        path, hits = moments.flights[window.first :, :, 0].sum(axis=1), moments.events[window.first :, 1]
+        if not hits.any():
+            raise UserError(f"{log.path}: no disc hits a wall between t = {window.start:g} and {window.end:g}")
+        theory, reach, reason = None, None, None
+        try:
+            theory, reach = _theory(log)
+        except NoTheoryError as error:
+            reason = str(error)
+        unmixed = reach is not None and moments.events[window.first :, 0].sum() < hits.sum()
+        return Billiard(
+            window,
+            int(hits.sum()),
+            ratio(path, hits, theory=theory),
+            reach,
+            reason,
+            (window.edges[window.first : -1] + window.edges[window.first + 1 :]) / 2,
+            path.cumsum() / np.maximum(hits.cumsum(), 1),
+            caveats=(UNMIXED,) if unmixed else (),
+        )
+
+    @staticmethod
+    def tables(result: Billiard) -> list[Table]:
+        """Tables of the mean path, and of the area and the perimeter that give its theory."""
+        notes = [describe(result.window), f"{result.hits:,} wall hits"]
+        if result.reason:
+            notes.append(f"Theory is not available: {result.reason}.")
+        tables = [estimates("Paths between walls", [(ROW, result.path)], notes)]
+        if result.reach:
+            rows = [
+                ("area (length²)", Number(result.reach.area)),
+                ("perimeter (length)", Number(result.reach.perimeter)),
+            ]
+            tables.append(Table("Reach of the centres of the discs", ("", "value"), rows))
+        return tables
+
+    @staticmethod
+    def summary(result: Billiard) -> str:
+        """Mean path between wall hits, and whether it agrees with π A/P."""
+        said = agreement([("path", result.path)], "π A/P", result.reason)
+        return f"The mean path between two wall hits is {format_estimate(result.path)}; {said}."
+
+    @staticmethod
+    def figure(result: Billiard) -> "Figure":
+        """Picture of the mean path up to each time, beside theory."""
+        from idealgas.analysis.core.style import COLOURS, panels
+
+        figure, (ax,) = panels(1)
+        ax.plot(result.time, result.series, color=COLOURS[0], label="mean up to this time")
+        if result.path.theory is not None:
+            ax.theory(None, result.path.theory, result.path.theory_error, "π A/P")
+        ax.set_ylabel("path between wall hits (length)")
+        ax.time_axis()
+        ax.legend()
+        return figure
+
+
+def _theory(log: Log) -> tuple[Theory, Reach]:
+    """Mean path π A/P between wall hits, length, and the area and perimeter. Raises NoTheoryError without one."""
+    properties, gas = log.scene.properties, log.discs
+    if np.ptp(gas.radius) > 0:
+        raise NoTheoryError("the discs have several radii")
+    if not (properties.straight_flight and properties.fixed_walls):
+        raise NoTheoryError("discs fall, or walls move")
+    if properties.dissipative or properties.spins or properties.varies or len(properties.temperatures) > 1:
+        raise NoTheoryError("the gas is not in equilibrium")
+    if log.escapes or any(wall.absences or wall.is_permeable for wall in log.scene.walls):
+        raise NoTheoryError("a wall opens, or lets discs pass")
+    reach = reach_of(log, float(gas.radius[0]))
+    if not (reach.area > 0 and reach.perimeter > 0):
+        raise NoTheoryError("there is no free area between the walls")
+    path = math.pi * reach.area / reach.perimeter
+    crowding = 2 * gas.packing_fraction if len(gas) > 1 and gas.packing_fraction > SPARSE else 0.0
+    return Theory(path, path * crowding, "π A/P"), reach

@@ -1,0 +1,182 @@
+"""Area that the centres of discs can reach, and the perimeter along which they touch walls."""
+
+import math
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.columns import FIRST_SEGMENT, Point
+from idealgas.log import Log
+from idealgas.physics.arc_geometry import bounds, nearest_points
+from idealgas.scene.walls import NumberedWall, number_walls
+
+NEAR = 1e-9
+"""Distance from a wall, in units of the box, that distinguishes its sides."""
+
+FEWEST_PLACES, MOST_PLACES, ALL_PLACES = 8, 256, 2**14
+"""Least and largest number of places along a wall at which it is tested whether discs touch it, and of all walls."""
+
+NONE = np.empty(0)
+
+HALVINGS = 40
+"""Number of halvings of the distance between two such places, where discs touch a wall at one of them only."""
+
+
+Fit = Callable[[np.ndarray], np.ndarray]
+"""Function of centres (M, 2) of discs: whether they overlap no wall there."""
+
+Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Function of shares (M,) of the length of a wall: places on it, and its normals there, which broadcast to (M, 2)."""
+
+
+class Reach(NamedTuple):
+    """What the centres of discs of one radius can reach.
+
+    area: of all their places, length². perimeter: of that area, where discs touch walls, length; a wall with gas on
+    both sides counts twice. holes: part of the perimeter along walls that absorb discs, length.
+    """
+
+    area: float
+    perimeter: float
+    holes: float
+
+
+def reach_of(log: Log, radius: float) -> Reach:
+    """Return what the centres of discs of a radius can reach among the walls of a log, gates and pistons at rest."""
+    faces = list(_faces(log, radius))
+    area = log.discs.area - radius * math.fsum(half for _, (_, half) in faces)
+    holes = math.fsum(length for is_hole, (length, _) in faces if is_hole)
+    return Reach(area, math.fsum(length for _, (length, _) in faces), holes)
+
+
+def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
+    """Yield for each face and end of a wall whether it is a hole, and the lengths of the line of touching centres.
+
+    The lengths are those for discs of the radius and of half of it. As they change in proportion to the radius, the
+    second one is their mean over all smaller radii, which gives the area.
+    """
+    scene, size = log.scene, np.array(log.box)
+    near = NEAR * float(size.max())
+    walls = {k: wall for k, wall in enumerate(number_walls(scene)) if wall.action != "periodic"}
+    number = min(max(ALL_PLACES // max(len(walls), 1), FEWEST_PLACES), MOST_PLACES)
+    even = (np.arange(number) + 0.5) / number
+    points = np.unique([end for wall in walls.values() for end in (wall.start, wall.end)], axis=0)
+    fits = [(r, _fitting(log, list(walls.values()), r, near)) for r in (radius, radius / 2)] if walls else []
+
+    def lengths(along: Curve, whole: float, bend: float, extra: np.ndarray = NONE) -> list[float]:
+        """Return the lengths of the line of touching centres of both radii: whole + bend · r, if all is reached."""
+        reached, places = [], np.unique(np.clip(np.concatenate((even, extra)), 0.0, 1.0))
+        for r, fit in fits:
+
+            def touches(share: np.ndarray, r: float = r, fit: Fit = fit) -> np.ndarray:
+                places, normal = along(share)
+                gas = ~scene.solids.contain(places + near * normal)
+                return gas & fit(places + max(r, 2 * near) * normal)
+
+            reached.append(_share(touches, places) * (whole + bend * r))
+        return reached
+
+    ends: dict[Point, list[float]] = defaultdict(list)
+    for k, wall in walls.items():
+        hole = k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing
+        start, chord = np.array(wall.start), np.subtract(wall.end, wall.start)
+        if wall.radius:
+            yield hole, lengths(_arc(start, wall.radius, 0.0, 2 * math.pi), 2 * math.pi * wall.radius, 2 * math.pi)
+            continue
+        beside = _shares_beside(wall, points, 2 * radius)
+        if arc := wall.arc:
+            centre, begin = start + np.array((arc.x, arc.y)), math.atan2(arc.my, arc.mx) - arc.angle / 2
+            for side in (-1.0, 1.0):
+                yield (
+                    hole,
+                    lengths(_arc(centre, arc.radius, begin, arc.angle, side), arc.length, side * arc.angle, beside),
+                )
+        else:
+            for side in (-1.0, 1.0):
+                yield hole, lengths(_straight(start, chord, side), float(np.hypot(*chord)), 0.0, beside)
+        if k >= FIRST_SEGMENT and wall.start != wall.end:
+            for end, direction in zip((wall.start, wall.end), _tangents(wall), strict=True):
+                ends[end].append(direction)
+    for end, directions in ends.items():
+        begin, free = _free_angle(directions)
+        if free > 0:
+            yield False, lengths(_arc(np.array(end), 0.0, begin, free), 0.0, free)
+
+
+def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> np.ndarray:
+    """Shares of the length of a wall at which points (M, 2) within a distance of it are nearest to it."""
+    nearest = nearest_points(points, wall.start, wall.end, wall.arc)
+    from_start = nearest[np.hypot(*(points - nearest).T) <= distance] - wall.start
+    if not wall.arc:
+        chord = np.subtract(wall.end, wall.start)
+        return from_start @ chord / (chord @ chord)
+    (x, y), arc = from_start.T, wall.arc
+    angle = np.arctan2(y - arc.y, x - arc.x) - math.atan2(arc.my, arc.mx)
+    return np.remainder(angle + math.pi, 2 * math.pi) / arc.angle + 0.5 - math.pi / arc.angle
+
+
+def _share(touches: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> float:
+    """Share of a line, along which shares run from 0 to 1, where a condition holds, from its values at some places."""
+    holds = touches(places)
+    last = np.flatnonzero(holds[1:] != holds[:-1])
+    low, high = places[last], places[last + 1]
+    for _ in range(HALVINGS if len(last) else 0):
+        middle = (low + high) / 2
+        before = touches(middle) == holds[last]
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    edges = np.concatenate(([0.0], low, [1.0]))
+    return float(np.diff(edges) @ np.append(holds[last], holds[-1]))
+
+
+def _straight(start: np.ndarray, chord: np.ndarray, side: float) -> Curve:
+    """Places on one side of a straight wall, and its normal there."""
+    normal = side * np.array([-chord[1], chord[0]]) / np.hypot(*chord)
+    return lambda share: (start + share[:, None] * chord, normal)
+
+
+def _arc(centre: np.ndarray, radius: float, begin: float, angle: float, side: float = 1.0) -> Curve:
+    """Places on an arc that begins at an angle and spans another, in radians; normals point outwards, or inwards."""
+
+    def along(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        outwards = np.column_stack((np.cos(begin + angle * share), np.sin(begin + angle * share)))
+        return centre + radius * outwards, side * outwards
+
+    return along
+
+
+def _tangents(wall: NumberedWall) -> tuple[float, float]:
+    """Angles of the directions in which a wall leaves its start and its end, in radians."""
+    (x, y), chord = np.subtract(wall.end, wall.start), 0.0
+    if wall.arc:
+        chord = wall.arc.turn * wall.arc.angle / 2
+    forwards = math.atan2(y, x)
+    return forwards - chord, forwards + math.pi + chord
+
+
+def _free_angle(directions: list[float]) -> tuple[float, float]:
+    """Begin and size, in radians, of the angle in which discs touch an end, where walls leave in these directions."""
+    sorted_directions = np.sort(np.mod(directions, 2 * math.pi))
+    gaps = np.diff(sorted_directions, append=sorted_directions[0] + 2 * math.pi)
+    widest = int(gaps.argmax())
+    return float(sorted_directions[widest]) + math.pi / 2, max(float(gaps[widest]) - math.pi, 0.0)
+
+
+def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) -> Fit:
+    """Function of centres (M, 2): whether discs of a radius are there without overlap of walls by more than `near`."""
+    solid = [wall for wall in walls if not (wall.absences or wall.is_permeable)]
+    low, high = (np.array(ends) for ends in zip(*(bounds(w.start, w.end, w.arc) for w in solid), strict=True))
+    reach = radius + max(wall.radius for wall in solid)
+    margin = np.where(log.periodic, -math.inf, radius - near)
+
+    def fit(centres: np.ndarray) -> np.ndarray:
+        found = ((centres > margin) & (centres < log.box - margin)).all(axis=1)
+        close = (low < centres.max(axis=0) + reach) & (high > centres.min(axis=0) - reach)
+        for k in np.flatnonzero(close.all(axis=1)).tolist():
+            wall = solid[k]
+            away = centres - nearest_points(centres, wall.start, wall.end, wall.arc)
+            found &= np.hypot(*away.T) - wall.radius > radius - near
+        return np.asarray(found)
+
+    return fit
