@@ -14,7 +14,7 @@ from ._terminal import data
 if TYPE_CHECKING:
     from idealgas.columns import EventBatch
 
-KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped")
+KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped", "fixed_disc")
 LINES = 200  # in one write, which a pipe takes as a whole
 SECONDS = 0.2  # between two looks at a log that is being written
 

@@ -53,6 +53,12 @@ class Kind(IntEnum):
     """Nothing: its velocity or its acceleration changed from outside."""
     ESCAPED = 6
     """An absorbing wall, through which it left the gas: its last event."""
+    FIXED_DISC = 7
+    """A fixed disc of the scene, which is a wall of its own."""
+
+
+WALL_HITS = (Kind.WALL, Kind.WALL_END, Kind.FIXED_DISC, Kind.PISTON)
+"""Kinds of events in which a disc hits a wall, inner ones, fixed discs and pistons included, and stays in the gas."""
 
 
 class Column(NamedTuple):

@@ -150,7 +150,7 @@ class FixedDisc(LastingWall):
     @property
     def name(self) -> str:
         """Name for the log."""
-        return f"disc {self.number}"
+        return f"fixed disc {self.number}"
 
     @property
     def action(self) -> str:

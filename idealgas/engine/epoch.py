@@ -12,9 +12,10 @@ from idealgas.physics.periodic import periodic_axes
 from idealgas.state import Gas
 
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
-FEWEST_EVENTS = 1024  # in an epoch of a gas of few discs
+EVENTS_OF_FEW = 1024  # most in an epoch of few discs; it has at least a quarter as many
 MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
-FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc
+FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc,
+FEWEST_EVENTS = 512  # or as some hundred events of few discs
 UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that
 
 
@@ -53,7 +54,8 @@ def epoch_length(
 ) -> float:
     """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
 
-    In a dilute gas it is fewer events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
+    In a dilute gas it is fewer events, but 256 to 512 of all discs at least, or the epochs would cost more than the
+    events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
     speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
     along y are periodic. thermostat_collisions: per time. fall: acceleration along periodic sides, length/time²,
     by which no disc gains more than the largest speed. Where the last digits decide, the sum of the speeds is exactly
@@ -74,8 +76,8 @@ def epoch_length(
         longest = fastest / fall if fall else math.inf
         if rate == 0.0:
             return math.log2(longest)
-        shortest = min(FEWEST_PER_DISC * n / rate, round_the_box / fastest)
-        longest = min(longest, max(EVENTS_PER_DISC * n, FEWEST_EVENTS) / rate)
+        shortest = min(max(FEWEST_PER_DISC * n, FEWEST_EVENTS) / rate, round_the_box / fastest)
+        longest = min(longest, max(EVENTS_PER_DISC * n, EVENTS_OF_FEW) / rate)
         return math.log2(min(max(displacement / fastest, shortest), longest))
 
     power = exponent(float(speeds.sum()))

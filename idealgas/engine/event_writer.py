@@ -5,7 +5,7 @@ import numpy as np
 from idealgas.columns import Kind
 from idealgas.jit import inline, prefetch_next_line
 
-DISC, WALL, WALL_END, PISTON, THERMOSTAT, _, ESCAPED = (int(kind) for kind in Kind)
+DISC, WALL, WALL_END, PISTON, THERMOSTAT, _, ESCAPED, FIXED_DISC = (int(kind) for kind in Kind)
 U = np.uintp
 NO_END = 1 << 62  # rows, where no log is kept
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, SIDES
-from idealgas.engine.event_writer import ESCAPED, WALL, WALL_END
+from idealgas.engine.event_writer import ESCAPED, FIXED_DISC, WALL, WALL_END
 from idealgas.jit import inline
 from idealgas.physics.arc import wall_frame
 from idealgas.physics.disc_disc import collide
@@ -136,12 +136,14 @@ def absorb(disc, own, wall, time, effects):
 
 
 @inline
-def meet_segment(disc, own, nx, ny, segment, at_end, time, absorbing, effects):
+def meet_segment(disc, own, nx, ny, segment, segments, at_end, time, absorbing, effects):
     """Reflect, emit or absorb a disc at a wall inside the box; return the momentum, see `bounce`, and the kind."""
     if absorbing is not None and absorbing[U(segment)]:
         px, py = absorb(disc, own, FIRST_SEGMENT + segment, time, effects)
         return px, py, ESCAPED
     px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+    if segments[U(segment)].radius > 0.0:
+        return px, py, FIXED_DISC
     return px, py, WALL_END if at_end else WALL
 
 
@@ -209,7 +211,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
         nx, ny, at_end, tx, ty, left = wall_frame(
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
         )
-        px, py, kind = meet_segment(disc, own, nx, ny, segment, at_end, time, effects.absorbing, effects)
+        px, py, kind = meet_segment(disc, own, nx, ny, segment, segments, at_end, time, effects.absorbing, effects)
         face = face_of(FIRST_SEGMENT + segment, left > 0.0)
         record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
         return kind

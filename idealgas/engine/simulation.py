@@ -30,7 +30,7 @@ from idealgas.physics.steering import reversed_velocity
 from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
-TRAJECTORY = 3
+TRAJECTORY = 4
 """Version of the trajectory, to be raised by hand whenever a change of the program changes the log of a scene."""
 
 

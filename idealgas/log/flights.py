@@ -15,7 +15,7 @@ from idealgas.columns import BLOCK, Column, Kind
 from idealgas.log.errors import LogError
 from idealgas.log.history import LogHistory
 from idealgas.log.join import Arrays, Join, whole_pairs
-from idealgas.physics.motion import position_after, velocity_after
+from idealgas.physics.motion import path_length, position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
 BATCH = 2 * BLOCK
@@ -28,15 +28,18 @@ NOBODY = -(2**31)
 
 FLIGHT_COLUMNS = (
     Column("disc", "u4"),
+    Column("species", "u2"),
     Column("block", "i8"),
     Column("start", "f8", (), "time"),
     Column("end", "f8", (), "time"),
     Column("kind", "u1"),
     Column("partner", "i4"),
+    Column("ends_in_collision", "?"),
     Column("velocity", "f8", (2,), "length/time", parts=("vx", "vy")),
     Column("end_velocity", "f8", (2,), "length/time", parts=("end_vx", "end_vy")),
     Column("new_velocity", "f8", (2,), "length/time", parts=("new_vx", "new_vy")),
     Column("displacement", "f8", (2,), "length", parts=("displacement_x", "displacement_y")),
+    Column("path", "f8", (), "length"),
     Column("position", "f8", (2,), "length", parts=("x", "y")),
     Column("end_position", "f8", (2,), "length", parts=("end_x", "end_y")),
     Column("image", "i4", (2,), parts=("image_x", "image_y")),
@@ -46,6 +49,8 @@ FLIGHT_COLUMNS = (
 """All columns that flights may have, in the order of `Flights`."""
 
 _NEEDS: dict[str, tuple[str, ...]] = {
+    "ends_in_collision": ("kind",),
+    "path": ("velocity",),
     "end_velocity": ("velocity",),
     "new_velocity": ("velocity",),
     "displacement": ("velocity",),
@@ -82,16 +87,19 @@ class Flights(NamedTuple):
 
     Attributes:
         disc: (n,) u4, id of the disc.
+        species: (n,) u2, number of its species.
         block: (n,) i8, number of the interval between two edges, from 0; an event at an edge belongs to the
             interval before it.
         start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
         end: (n,) f8, time of the event or edge at the end.
         kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
         partner: (n,) i4, id of the other disc in it, -1 - k for wall k, BATH, OUTSIDE, or NOBODY.
+        ends_in_collision: (n,) bool, whether the event at the end is a collision with another disc.
         velocity: (n, 2) f8, length/time, at the start.
         end_velocity: (n, 2) f8, length/time, at the end, before the event. It is `velocity` without gravity.
         new_velocity: (n, 2) f8, length/time, after the event; `end_velocity` if no event ends the flight.
         displacement: (n, 2) f8, length, from start to end, across periodic sides too.
+        path: (n,) f8, length, of the path from start to end; with gravity a parabola.
         position: (n, 2) f8, length, at the start, inside the box; None where the method has no positions.
         end_position: (n, 2) f8, length, at the end, inside the box; None where the method has no positions.
         image: (n, 2) i4, box lengths to add to `position` to unwrap it; None without periodic sides.
@@ -100,15 +108,18 @@ class Flights(NamedTuple):
     """
 
     disc: np.ndarray
+    species: np.ndarray
     block: np.ndarray
     start: np.ndarray
     end: np.ndarray
     kind: np.ndarray
     partner: np.ndarray
+    ends_in_collision: np.ndarray
     velocity: np.ndarray
     end_velocity: np.ndarray
     new_velocity: np.ndarray
     displacement: np.ndarray
+    path: np.ndarray
     position: np.ndarray | None = None
     end_position: np.ndarray | None = None
     image: np.ndarray | None = None
@@ -223,13 +234,19 @@ class FlightReader:
 
     def batch(self, flights: Arrays) -> Flights:
         """Flights with the requested columns."""
-        found = dict(flights)
+        columns = dict(flights)
+        if "species" in self._made:
+            columns["species"] = self._log.discs.species[flights["disc"]]
+        if "ends_in_collision" in self._made:
+            columns["ends_in_collision"] = flights["kind"] == Kind.DISC
         if not self._falls and "end_velocity" in self._made:
-            found["end_velocity"] = flights["velocity"]
+            columns["end_velocity"] = flights["velocity"]
+        delay, gravity = flights["end"] - flights["start"], self._gravity(flights["start"])
         if "displacement" in self._made:
-            delay = (flights["end"] - flights["start"])[:, None]
-            found["displacement"] = position_after(0.0, flights["velocity"], self._gravity(flights["start"]), delay)
-        return Flights(*(cast(Any, found[name] if name in self._columns else None) for name in Flights._fields))
+            columns["displacement"] = position_after(0.0, flights["velocity"], gravity, delay[:, None])
+        if "path" in self._made:
+            columns["path"] = path_length(*flights["velocity"].T, None if gravity is None else gravity.T, delay)
+        return Flights(*(cast(Any, columns[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
         """Uncut flights from states (n,) at their starts. rows: events that end them, if any."""

@@ -225,7 +225,8 @@ class Log(LogHistory):
             return data_frame(flat_events(self.events(disc, t0, t1), self.columns), {"kind": KIND_NAMES})
         if what == "flights":
             edges = None if times is None else list(times)
-            return data_frame(flat_flights(self.flights(edges, discs=disc)), {"kind": KIND_NAMES})
+            names = {"kind": KIND_NAMES, "species": self.discs.species_names}
+            return data_frame(flat_flights(self.flights(edges, discs=disc)), names)
         if what == "discs":
             states = [LogState(self.start_time, **self._start_arrays())] if times is None else self.frames(times)
             return data_frame(flat_discs(self.discs, states, disc), {"species": self.discs.species_names})

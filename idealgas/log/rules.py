@@ -94,6 +94,7 @@ class Rules:
         """
         self._others = [PARTNERS[kind] for kind in kinds if kind in PARTNERS]
         self._escapes = Kind.ESCAPED in kinds
+        self._no_kinds = sorted(set(COUNTED.values()) - set(kinds))
         self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {
@@ -101,7 +102,7 @@ class Rules:
             "time": (0, LONGEST),
             "disc": (0, discs - 1),
             "partner": (-walls, discs - 1),
-            "kind": (0, max(kind for kind in Kind if kind not in COUNTED.values() or kind in kinds)),
+            "kind": (0, max(Kind)),
             "species": (0, species - 1),
             **dict.fromkeys(("radius", "mass"), (LEAST, MOST)),
             "velocity": (-MOST, MOST),
@@ -200,6 +201,9 @@ class Rules:
             return
         if not (in_order and low <= data[0] and data[-1] <= high):  # which are then bounds on the others
             _check_range(data, low, high, start)
+        if name == "kind" and (wrong := np.isin(data, self._no_kinds)).any():
+            row = int(wrong.argmax())
+            raise ValueError(f"{Kind(data[row]).name} in row {start + row}, which this log cannot have")
         if name in ORDERED:
             self._check_order(path, data, start, in_order)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from idealgas.effects.bundle import next_change
-from idealgas.engine.epoch import EVENTS_PER_DISC, FEWEST_EVENTS
+from idealgas.engine.epoch import EVENTS_OF_FEW, EVENTS_PER_DISC
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.physics.absorbing import inside
 from idealgas.physics.collision_rates import disc_collisions_per_length
@@ -115,7 +115,7 @@ class StallDetector:
         """Notice, once per run, that few discs have most events of an epoch with far too many; else empty."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
-        if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, FEWEST_EVENTS):
+        if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, EVENTS_OF_FEW):
             return ""
         share = np.cumsum(np.sort(simulation.method.discs.record.count)[::-1], dtype=float)
         few = int(share.searchsorted(share[-1] / 2, "right")) + 1

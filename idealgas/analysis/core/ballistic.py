@@ -6,7 +6,7 @@ as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All but 
 
 import numpy as np
 
-from idealgas.physics.motion import velocity_after
+from idealgas.physics.motion import path_length, velocity_after
 
 SPEED, ALONG_X, ALONG_Y = range(3)
 
@@ -71,30 +71,10 @@ def integral_over_fall(
 ) -> np.ndarray:
     """Integral of a quantity over a fall of a duration."""
     if quantity == SPEED:
-        return length_of_fall(vx, vy, gravity, time)
+        return path_length(vx, vy, gravity, time)
     if quantity == ALONG_X:
         return time * (vx + 0.5 * gravity[0] * time)
     if quantity == ALONG_Y:
         return time * (vy + 0.5 * gravity[1] * time)
     a, b, c = gravity[0] ** 2 + gravity[1] ** 2, vx * gravity[0] + vy * gravity[1], vx * vx + vy * vy
     return 0.5 * mass * time * (c + time * (b + time * a / 3.0))
-
-
-def length_of_fall(vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray) -> np.ndarray:
-    """Length of the path of a fall of a duration, length."""
-    a, b = gravity[0] ** 2 + gravity[1] ** 2, vx * gravity[0] + vy * gravity[1]  # v² = a s² + 2 b s + v₀²
-    across = np.abs(vx * gravity[1] - vy * gravity[0]) / a
-    return np.asarray(np.sqrt(a) * (_half_arc(time + b / a, across) - _half_arc(b / a, across)))
-
-
-def length_of_flight(vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray) -> np.ndarray:
-    """Length of the path of a flight of a duration, with or without acceleration, length."""
-    if any(gravity):
-        return length_of_fall(vx, vy, gravity, time)
-    return np.asarray(np.sqrt(vx**2 + vy**2) * time)
-
-
-def _half_arc(u: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Integral ∫₀ᵘ √(s² + k²) ds."""
-    curved = np.where(k > 0.0, k, 1.0)
-    return 0.5 * (u * np.sqrt(u * u + k * k) + k * k * np.arcsinh(u / curved))

@@ -7,16 +7,16 @@ import numpy as np
 from idealgas.analysis.core.ballistic import (
     changes_during_flight,
     integral_over_fall,
-    length_of_fall,
     time_at_value,
     turning_time,
     value_during_flight,
     velocity_quantity,
 )
 from idealgas.analysis.core.stream import add_to
-from idealgas.columns import Kind
+from idealgas.columns import WALL_HITS, Kind
 from idealgas.log import Flights
 from idealgas.log.flights import NO_EVENT
+from idealgas.physics.motion import path_length
 from idealgas.state import Gas
 
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
@@ -27,7 +27,7 @@ AT_ONCE = 2**13
 _COLLISION, _WALL_HIT, _OTHER = range(3)
 _SORT = np.full(NO_EVENT + 1, _OTHER)  # of an event, by its kind
 _SORT[Kind.DISC] = _COLLISION
-_SORT[[Kind.WALL, Kind.WALL_END, Kind.PISTON]] = _WALL_HIT
+_SORT[list(WALL_HITS)] = _WALL_HIT
 
 
 class Moments:
@@ -77,7 +77,7 @@ def _moments_of_fall(
     """Integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
     gx, gy = gravity
     return (
-        length_of_fall(vx, vy, gravity, t),
+        path_length(vx, vy, gravity, t),
         mass * t * (vx * vx + t * gx * (vx + t * gx / 3.0)),
         mass * t * (vy * vy + t * gy * (vy + t * gy / 3.0)),
     )

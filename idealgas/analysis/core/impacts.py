@@ -6,7 +6,7 @@ What an event gives is the change of a disc's momentum there; what gravity gave 
 import numpy as np
 
 from idealgas.analysis.core.stream import add_to
-from idealgas.columns import SIDES, Kind
+from idealgas.columns import SIDES, WALL_HITS, Kind
 from idealgas.log import Flights
 from idealgas.state import Gas
 
@@ -112,5 +112,5 @@ def contacts(
 
 
 def is_wall_hit(kind: np.ndarray) -> np.ndarray:
-    """Whether events of these kinds are hits of walls or of the piston."""
-    return (kind == Kind.WALL) | (kind == Kind.WALL_END) | (kind == Kind.PISTON)
+    """Whether events of these kinds are hits of walls, fixed discs or the piston."""
+    return np.isin(kind, WALL_HITS)

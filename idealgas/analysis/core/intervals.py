@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from idealgas.analysis.core.ballistic import length_of_flight
 from idealgas.analysis.core.flights import bin_of
 from idealgas.analysis.core.stream import add_to, began_in
-from idealgas.columns import Kind
 from idealgas.jit import njit
 from idealgas.log import Flights
 from idealgas.state import Gas
@@ -52,20 +50,11 @@ class Intervals:
 class FreeFlights(Intervals):
     """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
-    columns = ("disc", "block", "start", "end", "kind", "velocity")
-
-    def __init__(
-        self,
-        path: bool,
-        high: np.ndarray,
-        bins: int,
-        stride: int,
-        most_samples: int,
-        gravity: tuple[float, float] = (0.0, 0.0),
-    ) -> None:
-        """Take whether paths are measured or times, and the acceleration `gravity` in length/time²."""
+    def __init__(self, path: bool, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
+        """Take whether paths are measured or times."""
         super().__init__(high, bins, stride, most_samples)
-        self.path, self.gravity = path, gravity
+        self.path = path
+        self.columns = ("disc", "block", "start", "end", "ends_in_collision", *(("path",) if path else ()))
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
@@ -75,11 +64,8 @@ class FreeFlights(Intervals):
 
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
-        length = flights.end - flights.start
-        if self.path:
-            vx, vy = flights.velocity.T
-            length = length_of_flight(vx, vy, self.gravity, length)
-        ends, start = flights.kind == Kind.DISC, np.empty(len(length))
+        length = flights.path if self.path else flights.end - flights.start
+        ends, start = flights.ends_in_collision, np.empty(len(length))
         _total_since_collision(
             flights.disc.astype(np.intp), flights.end.copy(), ends, length, start, self._total, self._since
         )

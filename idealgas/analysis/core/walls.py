@@ -65,7 +65,7 @@ class WallImpulses:
         add_to(self.hits, place)
         for axis in range(2):
             add_to(self.given, place * 2 + axis, given[:, axis])
-        body = np.flatnonzero(flights.kind[some] != Kind.WALL_END)
+        body = np.flatnonzero(~np.isin(flights.kind[some], (Kind.WALL_END, Kind.FIXED_DISC)))
         (px, py), (nx, ny) = given[body].T, self._normals(flights, some[body], wall[body]).T
         across = px * nx + py * ny
         face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it

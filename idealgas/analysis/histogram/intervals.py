@@ -52,7 +52,7 @@ def free_flights(log: Log, quantity: str, start: float | None, end: float | None
     average = speed / rate if path else 1 / rate
     relative = discs.shares @ (errors * rates).sum(axis=1) / rate
     high = 10 * average
-    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS, log.gravity)
+    tally = FreeFlights(path, high, BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     last = len(tally.counts) - int(np.ceil(TAIL / rate.min() / window.width))
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))

@@ -126,10 +126,10 @@ def _columns(log: Log, times: Sequence[float] | Rows) -> Iterator[Columns]:
 
 def _flight_columns(log: Log) -> Iterator[Columns]:
     """Whole flights; the kind of one that no event ends is empty."""
-    kinds = np.array([*KIND_NAMES, ""])
+    kinds, species = np.array([*KIND_NAMES, ""]), np.array(log.discs.species_names)
     for columns in flat_flights(log.flights()):
         del columns["block"]
-        yield columns | {"kind": kinds[columns["kind"]]}
+        yield columns | {"kind": kinds[columns["kind"]], "species": species[columns["species"]]}
 
 
 def _event_columns(log: Log) -> Iterator[Columns]:

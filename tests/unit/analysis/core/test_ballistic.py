@@ -51,7 +51,7 @@ def test_time_in_each_bin_of_falling_discs(quantity, gravity, make):
 def test_free_paths_of_falling_discs_are_arcs(make):
     log = make()
     edges = np.array([0.0, log.end_time])
-    tally = FreeFlights(True, np.array([10.0]), 5, 1, 10_000, log.gravity)
+    tally = FreeFlights(True, np.array([10.0]), 5, 1, 10_000)
     stream(log, edges, [tally])
     g, arcs = np.array(log.gravity), []
     start = log.state_at(0.0)
