@@ -215,7 +215,7 @@ class InvariantChecker(Paths):
             away = place + self.shifts - np.array(fixed.start)
             normal, miss = self.at_points(away, fixed.radius + radius, before, after, rebounds)
             distance = radius + miss
-            assert kind == Kind.WALL_END
+            assert kind == Kind.FIXED_DISC
         elif self.passage[wall - 4, disc] != SOLID:
             assert self.passage[wall - 4, disc] != OPEN
             normal, miss = self.at_one_way(

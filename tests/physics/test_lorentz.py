@@ -40,10 +40,10 @@ def test_a_reflection_at_45_degrees(tmp_path):
     simulate(parse_scene(f"box.size = [10, 10]\n{discs}\nrun.events = 1"), tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
         (rows,) = log.chunks()
-        assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.WALL_END], [-5])
+        assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.FIXED_DISC], [-5])
         assert rows.time[0] == pytest.approx(1, rel=1e-14)
         assert rows.velocity[0].tolist() == pytest.approx([0, 1], abs=1e-14)
-        assert log.walls[4].name == "disc 0"
+        assert log.walls[4].name == "fixed disc 0"
 
 
 def test_fixed_discs_are_none_of_the_gas(tmp_path):

@@ -55,6 +55,7 @@ def test_events(log):
         "thermostat",
         "steered",
         "escaped",
+        "fixed_disc",
     ]
     check_rows(frame, stored)
 

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import idealgas.log.flights as module
 from idealgas.columns import Kind
@@ -60,6 +61,13 @@ def expected(log, edges):
         boxes = np.floor(place / box) * log.periodic
         return place - boxes * box, velocity + gravity * t, None if image is None else image + boxes, spin
 
+    def path(velocity, time):
+        if not gravity.any():
+            return np.hypot(*velocity) * time
+        turn = np.clip(-(velocity @ gravity) / (gravity @ gravity), 0, time)
+        speed = lambda t: np.hypot(*(velocity + gravity * t))  # noqa: E731
+        return quad(speed, 0, turn, epsabs=0, epsrel=1e-13)[0] + quad(speed, turn, time, epsabs=0, epsrel=1e-13)[0]
+
     def fly(disc, end, event):
         begin = records[disc][0]
         inner = [edge for edge in edges[1:-1] if begin < edge < end]
@@ -72,15 +80,18 @@ def expected(log, edges):
             found.append(
                 {
                     "disc": disc,
+                    "species": log.discs.species[disc],
                     "block": max(i for i in range(len(edges) - 1) if edges[i] < (start + stop) / 2 or i == 0),
                     "start": start,
                     "end": stop,
                     "kind": kind,
                     "partner": partner,
+                    "ends_in_collision": kind != NO_EVENT and partner >= 0,
                     "velocity": at(disc, start)[1],
                     "end_velocity": at(disc, stop)[1],
                     "new_velocity": after,
                     "displacement": at(disc, start)[1] * (stop - start) + gravity * (stop - start) ** 2 / 2,
+                    "path": path(at(disc, start)[1], stop - start),
                     "position": at(disc, start)[0],
                     "end_position": at(disc, stop)[0],
                     "image": at(disc, start)[2],

@@ -6,7 +6,7 @@ import pytest
 from helpers.rounding import body, exact, gamma
 
 from idealgas.physics.gravity import Gravity, acceleration_along
-from idealgas.physics.motion import advance, position_after, time_after, velocity_after
+from idealgas.physics.motion import advance, path_length, position_after, time_after, velocity_after
 
 pytestmark = pytest.mark.interpreted
 
@@ -55,3 +55,22 @@ def test_a_disc_flies_along_both_axes(gravity):
 def test_acceleration_along_an_axis():
     assert [acceleration_along(Gravity(1.0, 2.0), along_y) for along_y in (False, True)] == [1.0, 2.0]
     assert acceleration_along(None, True) == 0.0
+
+
+def test_length_of_a_path():
+    """Of parabolas, also straight up and down, and of straight lines, whether gravity is zero or absent."""
+    velocity, gravity = some(3, 600)[:4].reshape(2, 2, 600)
+    delay = np.abs(some(4, 600)[3])
+    gravity[:, ::7], velocity[:, ::11] = 0.0, 0.0
+    velocity[:, ::5] = gravity[:, ::5] * some(5, 120)[0]
+    lengths = path_length(*velocity, gravity, delay)
+    assert path_length(*velocity, (0.0, 0.0), delay) == pytest.approx(path_length(*velocity, None, delay), rel=1e-15)
+    with mpmath.workdps(60):
+        for k, length in enumerate(lengths):
+            (vx, vy), (gx, gy), t = map(exact, velocity[:, k]), map(exact, gravity[:, k]), exact(delay[k])
+            g, right = mpmath.hypot(gx, gy), mpmath.hypot(vx, vy) * t
+            if g:
+                first, across = (vx * gx + vy * gy) / g, abs(vx * gy - vy * gx) / g
+                arc = lambda u, w: u * mpmath.hypot(u, w) + (w * w * mpmath.asinh(u / w) if w else 0)  # noqa: E731
+                right = (arc(first + g * t, across) - arc(first, across)) / (2 * g)
+            assert abs(length - right) <= 8 * 2.0**-53 * right
