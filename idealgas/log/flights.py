@@ -245,7 +245,8 @@ class FlightReader:
         if "displacement" in self._made:
             columns["displacement"] = position_after(0.0, flights["velocity"], gravity, delay[:, None])
         if "path" in self._made:
-            columns["path"] = path_length(*flights["velocity"].T, None if gravity is None else gravity.T, delay)
+            vx, vy = flights["velocity"].T
+            columns["path"] = path_length(vx, vy, None if gravity is None else gravity.T, delay)
         return Flights(*(cast(Any, columns[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
