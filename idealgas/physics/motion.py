@@ -1,8 +1,6 @@
 """Free flight: r(t) = r₀ + v t, and with gravity r(t) = r₀ + v t + ½ g t²; and the time of a fall to a plane."""
 
 import math
-from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -37,7 +35,9 @@ def velocity_after(velocity, acceleration, delay):
     return velocity + acceleration * delay
 
 
-def path_length(vx: np.ndarray, vy: np.ndarray, gravity: Sequence[Any] | None, delay: np.ndarray) -> np.ndarray:
+def path_length(
+    vx: np.ndarray, vy: np.ndarray, gravity: np.ndarray | tuple[float, float] | None, delay: np.ndarray
+) -> np.ndarray:
     """Length (n,) of the paths of free flights, ∫ |v| dt.
 
     vx, vy: (n,), length/time, velocity at the start. gravity: components along x and y, length/time², numbers or
