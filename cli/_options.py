@@ -40,15 +40,18 @@ def integer(text: str) -> int:
 
 def scene_argument(command: Callable) -> Callable:
     """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, for `load_scene`; - is stdin."""
-    overrides = click.option(
-        "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE",
-        shell_complete=_complete_key,
-        help="Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.",
-    )  # fmt: skip
     path = click.argument(
         "path", type=FILE, metavar="SCENE.toml", callback=lambda _, __, path: STDIN if path == "-" else path
     )
-    return path(overrides(command))
+    return path(overrides_option()(command))
+
+
+def overrides_option(more: str = "") -> Callable:
+    """Option `--set`, as `overrides`. more: further help."""
+    return click.option(
+        "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE", shell_complete=_complete_key,
+        help=f"Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.{more}",
+    )  # fmt: skip
 
 
 def _complete_key(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:

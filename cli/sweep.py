@@ -12,7 +12,7 @@ import click
 from idealgas.errors import UserError
 from idealgas.files import check_output
 
-from ._options import FILE, force_option, json_option, plot_option, quiet_option
+from ._options import FILE, force_option, json_option, overrides_option, plot_option, quiet_option
 from ._progress import progress_bar
 from ._tables import print_tables, shown
 from ._terminal import data, echo, written
@@ -43,6 +43,7 @@ Example: idealgas sweep temperatures.toml -o temperatures --plot pressure.png"""
 @click.option(
     "--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]"
 )
+@overrides_option(" A key of a table of SWEEP.toml (sweep.replicates=2) changes the sweep.")
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
 @click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
 @plot_option
@@ -60,6 +61,7 @@ def sweep(
     paths: tuple[str, ...],
     output: str | None,
     workers: int | None,
+    overrides: tuple[str, ...],
     scheduler: str | None,
     dry_run: bool,
     plot: str | None,
@@ -80,8 +82,11 @@ def sweep(
     if not paths:
         raise UserError("SWEEP.toml: missing (the file of the sweep)")
     from idealgas.sweep.plan import load_sweep
+    from idealgas.sweep.run import require_dask
 
-    plans = [load_sweep(path) for path in paths]
+    require_dask()
+    with progress_bar("checking the points") as show:
+        plans = [load_sweep(path, overrides, show) for path in paths]
     if dry_run:
         found = [_planned(path, plan, workers, as_json) for path, plan in zip(paths, plans, strict=True)]
         _print_json(found, as_json)
@@ -157,9 +162,16 @@ def _run(
             if interrupted():  # a library may have swallowed the exception
                 raise KeyboardInterrupt
 
-        outcome = run_sweep(plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress)
+        def on_estimate(done: int, total: int) -> None:
+            show(done, total, "estimating the time by short runs")
+
+        outcome = run_sweep(
+            plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress, on_estimate=on_estimate
+        )
     for index, reason in outcome.failures.items():
         echo(f"point {index} failed: {reason}", err=True)
+    for notice in outcome.notices:
+        echo(notice, err=True)
     if as_json:
         return {**asdict(outcome), "results": result_rows(output) if outcome.files else []}
     if outcome.files:
@@ -188,7 +200,8 @@ def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> di
     from idealgas.sweep.cost import estimate_cost, total_seconds
 
     workers = workers or os.cpu_count() or 1
-    costs = estimate_cost(plan)
+    with progress_bar("estimating the cost by short runs") as show:
+        costs = estimate_cost(plan, show)
     seconds = total_seconds(costs, workers)
     labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
     points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]

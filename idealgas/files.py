@@ -37,7 +37,7 @@ _BEGINNINGS = {
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
     ".toml": rb"# sweep of \d+ points by idealgas\n",
-    "results.csv": rb"point,replicate,seed,",
+    "results.csv": rb"",  # a sweep keeps a table that it has not written under another name
     "scene": rb"#:schema scene",
     "scene.schema.json": rb'\{\s*"\$defs"',
 }
@@ -146,6 +146,13 @@ def beside(path: Path) -> Path:
     """Unique hidden path in the folder of a file; of a symbolic link, in the folder of its target."""
     place = path.resolve()
     return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
+
+
+def temporaries(folder: Path) -> Iterator[Path]:
+    """Yield the files in a folder with paths from `beside`."""
+    for path in folder.iterdir():
+        if re.fullmatch(r"\..+\.[0-9a-f]{8}", path.name):
+            yield path
 
 
 def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:

@@ -3,7 +3,7 @@
 import math
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +17,7 @@ from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep
 
 TRIAL_EVENTS = 20_000  # events of the short runs that measure the speed
+MOST_TRIALS = 32  # short runs of a sweep; combinations between them take the speed of the one before
 START = 3.0  # seconds in which workers start
 ROWS_PER_SECOND = 1e6  # event rows that an analysis reads per second
 
@@ -43,15 +44,20 @@ class _Trial(NamedTuple):
     analysed: float
 
 
-def estimate_cost(sweep: Sweep) -> tuple[Cost, ...]:
-    """Cost estimate of each point, from a short run of each combination of values and, where possible, from theory."""
-    trials: dict[int, _Trial] = {}
-    costs = []
-    for point in sweep.points:
-        if point.combination not in trials:
-            trials[point.combination] = _try(point.scene, sweep.analyses, first=not trials)
-        costs.append(_cost(point.scene, trials[point.combination], len(sweep.analyses)))
-    return tuple(costs)
+def estimate_cost(sweep: Sweep, on_progress: Callable[[int, int], None] = lambda done, total: None) -> tuple[Cost, ...]:
+    """Cost estimate of each point, from short runs of some of them and, where possible, from theory.
+
+    on_progress: called with the number of combinations of values that have an estimate, and that of all.
+    """
+    scenes = {point.combination: point.scene for point in sweep.points}
+    every = math.ceil(len(scenes) / MOST_TRIALS)
+    costs: dict[int, Cost] = {}
+    for k, (combination, scene) in enumerate(scenes.items()):
+        on_progress(k, len(scenes))
+        if k % every == 0:
+            trial = _try(scene, sweep.analyses, first=k == 0)
+        costs[combination] = _cost(scene, trial, len(sweep.analyses))
+    return tuple(costs[point.combination] for point in sweep.points)
 
 
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:

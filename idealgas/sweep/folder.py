@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from idealgas.errors import OutputError, UserError
-from idealgas.files import LOG, check_output, replacing, storage_error
-from idealgas.locks import WriteLock, open_regular
+from idealgas.files import LOG, check_output, replacing, storage_error, temporaries
+from idealgas.locks import WriteLock, is_locked, open_regular
 from idealgas.log import open_log
 from idealgas.scene import Scene
-from idealgas.sweep.plan import Sweep, seed_of
-from idealgas.sweep.point import COMMAND, log_path, points_folder, result_path
+from idealgas.sweep.plan import Sweep, seed_of, with_seed
+from idealgas.sweep.point import COMMAND, log_path, points_folder, result_path, unfinished_logs
 from idealgas.sweep.results import done_points, stored_scene, table_paths
 from idealgas.toml.dump import dump_document
 
@@ -32,7 +32,7 @@ Entry = TypeVar("Entry")
 
 @contextmanager
 def hold_folder(folder: Path) -> Iterator[None]:
-    """Create the folder of a sweep if it is missing, and lock it until the block ends.
+    """Create the folder of a sweep if it is missing, lock it until the block ends, and remove what died processes left.
 
     Nothing in a folder is opened for writing before its lock file shows that it is the folder of a sweep.
 
@@ -54,6 +54,9 @@ def hold_folder(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise storage_error(folder, error) from error
     with held:
+        for part in (*temporaries(folder), *temporaries(points_folder(folder)), *unfinished_logs(folder)):
+            if not is_locked(part):  # a worker of a cluster may still be writing it
+                part.unlink(missing_ok=True)
         yield
 
 
@@ -99,7 +102,7 @@ def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
         if point.combination not in numbers:
             numbers[point.combination] = next(free)
         combination = numbers[point.combination]
-        scene = _with_seed(point.scene, seed_of(sweep.seed, combination, point.replicate))
+        scene = with_seed(point.scene, seed_of(sweep.seed, combination, point.replicate))
         if found and not _matches(folder, found, scene, sweep):
             raise _foreign_point(folder, found)
         index = found["point"] if found else next(free_indices)
@@ -130,10 +133,6 @@ def _labelled(entries: Iterable[tuple[dict[str, Any], int, Entry]]) -> Iterator[
 def _free(taken: Iterable[int]) -> Iterator[int]:
     used = set(taken)
     return (k for k in count() if k not in used)
-
-
-def _with_seed(scene: Scene, seed: int) -> Scene:
-    return scene.model_copy(update={"scene": scene.scene.model_copy(update={"seed": seed})})
 
 
 def _foreign_point(folder: Path, found: dict[str, Any]) -> UserError:

@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 from idealgas.analysis import registry
@@ -28,6 +29,18 @@ def log_path(folder: str | os.PathLike[str], index: int) -> Path:
     return points_folder(folder) / f"{index:04d}.h5"
 
 
+def unfinished_log(folder: str | os.PathLike[str], index: int) -> Path:
+    """Path of the log of a point until it is complete."""
+    return points_folder(folder) / f"{index:04d}.h5.part"
+
+
+def unfinished_logs(folder: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield the paths of all logs that are not complete."""
+    for path in points_folder(folder).glob("*.h5.part"):
+        if path.name.partition(".")[0].isdecimal():
+            yield path
+
+
 def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: bool) -> None:
     """Simulate and analyse a point; its files get their names when they are complete, the result file last."""
     from idealgas.log import open_log
@@ -39,7 +52,7 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
     scene = point.scene
     if not keep_log:  # the log is removed, so compression would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
-    part = log.with_name(f"{log.name}.part")
+    part = unfinished_log(folder, point.index)
     simulate(scene, part, force=True, command=COMMAND)
     with open_log(part) as opened:
         summary = {name: value for name, value in opened.summary.items() if not name.endswith("seconds")}

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from idealgas.analysis.core.tables import Number, Table, with_error
 from idealgas.errors import unknown
-from idealgas.sweep.plan import Published, Sweep
+from idealgas.sweep.plan import Sweep
 from idealgas.sweep.results import average, read_points, rows_of
+from idealgas.sweep.tables import Published
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

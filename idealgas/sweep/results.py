@@ -1,11 +1,13 @@
 """Results of a sweep as one table, with a row for each number from an analysis of a point."""
 
 import csv
+import io
 import json
 import math
 import os
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
+from itertools import count
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -139,18 +141,26 @@ def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
     return Path(folder) / "results.csv", Path(folder) / "results.parquet"
 
 
-def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
-    """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files; return their paths."""
+def write_tables(folder: str | os.PathLike[str]) -> tuple[list[Path], list[str]]:
+    """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files.
+
+    A `results.csv` with a line that is not of these results is kept under another name.
+
+    Returns:
+        paths of the tables, and a sentence on each table that was kept.
+    """
     found = result_rows(folder)
     names = list(dict.fromkeys(name for row in found for name in row))
     identify = [name for name in names if name not in RESULT]
     names = [*identify, *(name for name in RESULT if name in names)]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, restval="")
+    writer.writeheader()
+    writer.writerows(found)
     table, columnar = table_paths(folder)
-    tables = [table]
-    with replacing(table) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, names, restval="")
-        writer.writeheader()
-        writer.writerows(found)
+    tables, notices = [table], list(_set_aside(table, text.getvalue()))
+    with replacing(table) as part:
+        part.write_bytes(text.getvalue().encode())
     if find_spec("pyarrow"):
         import pyarrow
         from pyarrow import parquet
@@ -159,7 +169,23 @@ def write_tables(folder: str | os.PathLike[str]) -> list[Path]:
         columns = {name: [row.get(name) for row in found] for name in names}
         with replacing(columnar) as part:
             parquet.write_table(pyarrow.table(columns), part)
-    return tables
+    return tables, notices
+
+
+def _set_aside(table: Path, text: str) -> Iterator[str]:
+    """Rename a table that contains a line that is not in its new text, and yield a sentence that says so."""
+    try:
+        lines = table.read_bytes().splitlines(keepends=True)
+    except FileNotFoundError:
+        return
+    new = set(text.encode().splitlines(keepends=True))
+    for number, line in enumerate(lines, 1):
+        if line not in new:
+            names = (table.with_name(f"{table.stem}.edited-{k}{table.suffix}") for k in count(1))
+            kept = next(path for path in names if not os.path.lexists(path))
+            table.rename(kept)
+            yield f"{table}:{number}: not as a sweep writes it; the file is kept as {kept.name}, and a new one written"
+            return
 
 
 def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:

@@ -8,11 +8,12 @@ import asyncio
 import logging
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,9 +21,10 @@ from typing import TYPE_CHECKING, Any
 from idealgas.errors import OutputError, UserError, install
 from idealgas.sweep.cost import estimate_cost, total_seconds
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
-from idealgas.sweep.plan import Sweep
+from idealgas.sweep.plan import Point, Sweep
 from idealgas.sweep.point import result_path, run_point
 from idealgas.sweep.results import write_tables
+from idealgas.toml.dump import dump_document
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -61,7 +63,7 @@ class Outcome:
 
     ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
     seconds: time taken. estimated: estimated time, seconds; None where the machines are unknown or a point cannot be
-    estimated. files: paths of the tables of all results; none if no point is done.
+    estimated. files: paths of the tables of all results; none if no point is done. notices: sentences for the user.
     """
 
     ran: int
@@ -70,6 +72,13 @@ class Outcome:
     seconds: float = 0.0
     estimated: float | None = None
     files: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()
+
+
+def require_dask() -> None:
+    """Raise UserError if dask.distributed, which runs the points, is not installed."""
+    if find_spec("distributed") is None:
+        raise UserError(f"a sweep requires dask.distributed: {install('sweep')}")
 
 
 def run_sweep(
@@ -79,6 +88,7 @@ def run_sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     on_progress: Callable[[Progress], None] = lambda progress: None,
+    on_estimate: Callable[[int, int], None] = lambda done, total: None,
 ) -> Outcome:
     """Run the points of a sweep that are not done yet, and write the tables of all results.
 
@@ -88,12 +98,12 @@ def run_sweep(
         workers: number of processes on this machine; None for one per core.
         scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
         on_progress: called when a point has finished or failed.
+        on_estimate: called before, with the number of combinations of values whose cost is estimated, and that of all.
 
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
     """
-    if find_spec("distributed") is None:
-        raise UserError(f"a sweep requires dask.distributed: {install('sweep')}")
+    require_dask()
     given, folder = folder, Path(folder).absolute()
     with hold_folder(folder):
         sweep = resume_numbering(sweep, folder)
@@ -102,7 +112,7 @@ def run_sweep(
         remaining = replace(sweep, points=tuple(open_points))
         failures: dict[int, str] = {}
         workers = min(workers or os.cpu_count() or 1, max(len(open_points), 1))
-        estimated = None if scheduler or not open_points else _estimate(remaining, workers)
+        estimated = None if scheduler or not open_points else _estimate(remaining, workers, on_estimate)
         started = time.monotonic()
         on_progress(Progress(before, 0, len(sweep.points)))
         if open_points:
@@ -112,17 +122,31 @@ def run_sweep(
                         check_folder(folder)
                         failures[index] = failure
                     on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
+        failures |= _lost(folder, (point.index for point in open_points if point.index not in failures))
         seconds = time.monotonic() - started
         done = len(sweep.points) - len(failures)
-        tables = tuple(map(str, write_tables(given))) if done else ()
-    return Outcome(done - before, before, dict(sorted(failures.items())), seconds, estimated, tables)
+        tables, notices = write_tables(given) if done else ([], [])
+    files = tuple(map(str, tables))
+    return Outcome(done - before, before, dict(sorted(failures.items())), seconds, estimated, files, tuple(notices))
 
 
-def _estimate(sweep: Sweep, workers: int) -> float | None:
+def _estimate(sweep: Sweep, workers: int, on_estimate: Callable[[int, int], None]) -> float | None:
     """Estimated time of a sweep on a number of workers, seconds; None if one of its points cannot be run."""
     with suppress(UserError):
-        return total_seconds(estimate_cost(sweep), workers)
+        return total_seconds(estimate_cost(sweep, on_estimate), workers)
     return None
+
+
+def _lost(folder: Path, points: Iterable[int]) -> dict[int, str]:
+    """Reasons of failure of points that ended well, but without a result file in the folder of the sweep."""
+    lost, deadline = [*points], time.monotonic() + TIMEOUT  # a network file system may show new files late
+    while lost := [index for index in lost if not result_path(folder, index).exists()]:
+        check_folder(folder)
+        if time.monotonic() > deadline:
+            break
+        time.sleep(0.1)
+    reason = f"its worker left no result in {folder} (workers must see this folder at the same path)"
+    return dict.fromkeys(lost, reason)
 
 
 def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, str | None]]:
@@ -130,7 +154,7 @@ def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, st
     from distributed import as_completed
 
     run = partial(run_point, folder=folder, analyses=sweep.analyses, keep_log=sweep.keep_logs)
-    keys = [f"point-{point.index}" for point in sweep.points]
+    keys = [_key(point, sweep, folder) for point in sweep.points]
     futures = client.map(run, sweep.points, pure=False, retries=RETRIES, key=keys)
     index = {future.key: point.index for future, point in zip(futures, sweep.points, strict=True)}
     try:
@@ -145,12 +169,22 @@ def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, st
         raise UserError(f"lost the connection to the scheduler{CONTINUE}") from None
 
 
+def _key(point: Point, sweep: Sweep, folder: Path) -> str:
+    """Key of the task of a point, by all that determines what it does.
+
+    Two sweeps at once on a scheduler, even equal ones in two folders, so have no task in common; but a sweep that is
+    started again takes over those of its tasks that are still running, as no file may have two writers.
+    """
+    what = str(folder), point.index, point.scene.scene.seed, dump_document(point.scene), sweep.analyses, sweep.keep_logs
+    return f"point-{point.index}-{sha256(repr(what).encode()).hexdigest()[:32]}"
+
+
 def _reason(error: Any) -> str:
     """Reason why a point failed, in one line."""
     from distributed.scheduler import KilledWorker
 
     if isinstance(error, KilledWorker):
-        return f"its worker died {RETRIES + 1} times"
+        return f"its worker died {error.allowed_failures + 1} times"
     lines = str(error).strip().splitlines() or [""]
     return lines[0] if isinstance(error, UserError) else f"{type(error).__name__}: {lines[0]}"
 
@@ -160,19 +194,13 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     """Yield a client of the scheduler at an address, or of a local cluster with `workers` processes."""
     import dask
     from distributed import Client, LocalCluster
-    from distributed.comm import parse_address, parse_host_port
     from distributed.utils import silence_logging_cmgr
 
     if scheduler is not None:
-        try:
-            parse_host_port(parse_address(scheduler)[1])  # a client of an invalid address cannot be closed cleanly
-            client = Client(scheduler, timeout=TIMEOUT, set_as_default=False)
-        except ValueError as error:
-            raise UserError(f"{scheduler}: not the address of a scheduler ({error})") from None
-        except OSError:
-            raise UserError(f"{scheduler}: no answer from a scheduler within {TIMEOUT:g} s") from None
-        with silence_logging_cmgr(logging.CRITICAL), client:
-            yield client
+        with silence_logging_cmgr(logging.CRITICAL):
+            asyncio.run(_check_scheduler(scheduler))  # a client that finds no scheduler cannot be closed cleanly
+            with Client(scheduler, timeout=TIMEOUT, set_as_default=False) as client:
+                yield client
         return
     with ExitStack() as stack:
         stack.enter_context(dask.config.set(LOCAL))
@@ -190,3 +218,26 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         except (OSError, RuntimeError) as error:
             raise OutputError(f"no worker can be started on this machine: {error}", exit_code=1) from error
         yield client
+
+
+async def _check_scheduler(address: str) -> None:
+    """Raise UserError if there is no scheduler at an address, or none that this process may speak to."""
+    from distributed import rpc
+    from distributed.security import Security
+
+    try:
+        arguments = Security().get_connection_args("client")
+    except OSError as error:
+        raise UserError(f"{address}: the certificates of dask's configuration cannot be read ({error})") from None
+    try:
+        async with rpc(address, timeout=TIMEOUT, connection_args=arguments) as remote:
+            identity = await asyncio.wait_for(remote.identity(), TIMEOUT)
+    except (ValueError, TypeError) as error:
+        reason = str(error)
+        if "ssl_context" in reason:
+            reason = "TLS needs certificates, distributed.comm.tls in dask's configuration"
+        raise UserError(f"{address}: not the address of a scheduler ({reason})") from None
+    except OSError:
+        raise UserError(f"{address}: no answer from a scheduler within {TIMEOUT:g} s") from None
+    if identity.get("type") != "Scheduler":
+        raise UserError(f"{address}: the address of a dask {identity.get('type')}, not of a scheduler")

@@ -93,6 +93,10 @@ def test_failing_points_do_not_stop_the_others(plan, tmp_path):
             marks=pytest.mark.slow,
         ),
         (("-o", "out", "--scheduler", "nowhere"), "nowhere: not the address of a scheduler"),
+        (
+            ("-o", "out", "--scheduler", "tls://127.0.0.1:9"),
+            "tls://127.0.0.1:9: not the address of a scheduler (TLS needs certificates, distributed.comm.tls in dask's",
+        ),
         ((), "-o DIR: missing"),
     ],
 )
@@ -164,9 +168,10 @@ def test_a_ctrl_c_that_another_package_loses_is_not_lost(plan, tmp_path, monkeyp
     assert signal.getsignal(signal.SIGINT) == before
 
 
-def test_without_the_extra_one_line_names_it(plan, tmp_path, monkeypatch):
+@pytest.mark.parametrize("options", [(), ("--dry-run",)])
+def test_without_the_extra_one_line_names_it(plan, tmp_path, monkeypatch, options):
     monkeypatch.setattr("idealgas.sweep.run.find_spec", lambda name: None)
-    done = called("sweep", plan, "-o", tmp_path / "out")
+    done = called("sweep", plan, "-o", tmp_path / "out", *options)
     assert done.returncode == 2
     assert done.stderr == 'a sweep requires dask.distributed: .venv/bin/pip install -e ".[sweep]" in the top folder\n'
     assert not (tmp_path / "out").exists()

@@ -7,10 +7,12 @@ import sys
 import pytest
 
 from idealgas.errors import UserError
+from idealgas.locks import WriteLock
 from idealgas.run.simulate import simulate
 from idealgas.sweep.folder import hold_folder, resume_numbering
 from idealgas.sweep.plan import load_sweep
 from idealgas.sweep.point import log_path, points_folder, result_path
+from idealgas.sweep.results import write_tables
 from idealgas.toml.dump import dump_document
 
 PLAN = """
@@ -57,12 +59,13 @@ def folder(tmp_path):
     return folder
 
 
-def finish(sweep, folder, points):
-    """Results of points as their workers leave them, but without numbers."""
+def finish(sweep, folder, points, **summary):
+    """Results of points as their workers leave them, with a summary as their only numbers."""
     for point in points:
         found = {
             "point": point.index, "seed": point.scene.scene.seed, "combination": point.combination,
-            "replicate": point.replicate, "values": point.values, "scene": dump_document(point.scene), "summary": {},
+            "replicate": point.replicate, "values": point.values, "scene": dump_document(point.scene),
+            "summary": summary,
             "analyses": {name: {"caveats": []} for name in sweep.analyses},
         }  # fmt: skip
         result_path(folder, point.index).write_text(json.dumps(found))
@@ -148,12 +151,12 @@ def test_a_lock_file_of_others_makes_no_sweep_folder_and_is_left_as_it_is(tmp_pa
     assert [path.name for path in folder.iterdir()] == [".lock"]
 
 
-@pytest.mark.parametrize("name", ["results.csv", "sweep.toml", "points/0000.h5", "points/0001.h5"])
+@pytest.mark.parametrize("name", ["sweep.toml", "points/0000.h5", "points/0001.h5"])
 @pytest.mark.parametrize("text", ["a,b\n1,2\n", "# 5 points\n[sweep]\n"])
 def test_files_of_others_are_not_replaced(plan, folder, name, text):
     with hold_folder(folder / "new"):
         (folder / "new" / name).write_text(text)
-        with pytest.raises(UserError, match=rf"{name}: is not a .* of idealgas"):
+        with pytest.raises(UserError, match=rf"{name}: is not a .* of idealgas and is not overwritten"):
             resume_numbering(plan(), folder / "new")
         assert (folder / "new" / name).read_text() == text
 
@@ -165,3 +168,47 @@ def test_a_log_of_another_command_is_not_replaced(plan, folder):
     with pytest.raises(UserError, match=r"0000.h5: not a log of this sweep"):
         resume_numbering(sweep, folder)
     assert log_path(folder, 0).read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [(",", ";", 1), ("5.0", "6.0", 3), ("point", "\ufeffpoint", 1)],
+    ids=["separator", "value", "mark"],
+)
+def test_a_table_that_was_changed_by_hand_is_kept(plan, folder, old, new, line):
+    """A sweep goes on from the files of its points, and names the first line that is not of these."""
+    sweep = plan()
+    finish(sweep, folder, sweep.points, events=5)
+    table, kept = folder / "results.csv", folder / "results.edited-1.csv"
+    assert write_tables(folder)[1] == []
+    assert write_tables(folder)[1] == []
+    written = table.read_bytes()
+    lines = written.decode().splitlines(keepends=True)
+    edited = "".join(
+        [*lines[: line - 1], *(text.replace(old, new, 1 if old == "point" else -1) for text in lines[line - 1 :])]
+    )
+    table.write_bytes(edited.encode())
+    (notice,) = write_tables(folder)[1]
+    assert notice == (
+        f"{table}:{line}: not as a sweep writes it; the file is kept as results.edited-1.csv, and a new one written"
+    )
+    assert (table.read_bytes(), kept.read_bytes()) == (written, edited.encode())
+    table.write_text("precious")
+    write_tables(folder)
+    assert (folder / "results.edited-2.csv").read_text() == "precious"
+    assert kept.read_bytes() == edited.encode()
+
+
+def test_what_died_processes_left_is_removed(folder):
+    """Hidden parts of files and logs without an end, but not a log that a process is writing, and no file of others."""
+    with hold_folder(folder.parent / "new"):
+        pass
+    points = points_folder(folder.parent / "new")
+    left = [".0004.h5.part.0123abcd", ".0003.json.0123abcd", "0004.h5.part"]
+    others = [".notes", "mine.h5.part", "0005.h5.part.gz"]
+    for name in (*left, *others, "0002.h5.part"):
+        (points / name).touch()
+    (points.parent / ".results.csv.0123abcd").touch()
+    with WriteLock(points / "0002.h5.part"), hold_folder(points.parent):
+        assert sorted(path.name for path in points.iterdir()) == sorted([*others, "0002.h5.part"])
+        assert sorted(path.name for path in points.parent.iterdir()) == [".lock", "points"]

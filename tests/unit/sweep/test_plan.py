@@ -13,6 +13,10 @@ run.events = 100
 """
 
 
+MANY = "".join(f'[[axis]]\nkey = "species.{key}"\nrange = [1, 2, 1000]\n' for key in ("mass", "radius", "count"))
+"""Three axes of 1000 values each."""
+
+
 @pytest.fixture
 def sweep(tmp_path):
     def load(text, name="sweep.toml"):
@@ -90,6 +94,24 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
             ["1: axis.0: not one list of values (got values and"],
         ),
         ('[[axis]]\nkey = "scene.seed"\nvalues = [1]\n' + BASE, ["2: axis.0.key: seeds are not an axis"]),
+        ('[[axis]]\nkey = "scene.seed "\nvalues = [1]\n' + BASE, ['2: axis.0.key: blanks in a key (got "scene.seed "']),
+        ('[[axis]]\nkey = "species. mass"\nvalues = [1]\n' + BASE, ["2: axis.0.key: blanks in a key"]),
+        (
+            '[[axis]]\nkey = "scene"\nvalues = [{seed = 1}]\n' + BASE,
+            ["2: scene = {seed = 1}: the seed of a scene cannot be chosen in a sweep"],
+        ),
+        (
+            '[[axis]]\nkey = "species.mass"\nvalues = [1]\n[[axis]]\nkey = "species.gas.mass"\nvalues = [2]\n' + BASE,
+            ["5: species.gas.mass = 2: replaces the value of"],
+        ),
+        (
+            MANY + BASE,
+            ["1: axis.0: too many runs (got 1,000 x 1,000 x 1,000 x 1 = 1,000,000,000; allowed at most 100,000)"],
+        ),
+        (
+            'sweep.replicates = 100_000\n[[axis]]\nkey = "species.mass"\nrange = [1, 2, 1000]\n' + BASE,
+            ["2: axis.0: too many runs (got 1,000 x 100,000 = 100,000,000; allowed at most 100,000)"],
+        ),
         ("sweep.seed = 1\n", ["1: sweep.scene: not one base scene (got nothing"]),
         ('sweep.scene = "x.toml"\n' + BASE, ["1: sweep.scene: not one base scene (got sweep.scene and [base]"]),
         ('sweep.scene = "missing.toml"\n', ["missing.toml: cannot be read"]),
@@ -126,3 +148,42 @@ def test_faults_are_lines_with_their_place(sweep, tmp_path, text, lines):
     for found, expected in zip(caught.value.errors, lines, strict=True):
         place = str(tmp_path) + "/" if expected.startswith("missing") else f"{tmp_path / 'sweep.toml'}:"
         assert found.startswith(place + expected)
+
+
+def test_overrides_change_the_base_scene_or_the_sweep(sweep, tmp_path):
+    axis = '[[axis]]\nkey = "species.temperature"\nvalues = [1, 2]\n'
+    sweep(axis + BASE)
+    overrides = (
+        "run.events=7",
+        "species.gas.count=5",
+        "sweep.replicates=3",
+        "axis.0.values=[4]",
+        "base.box.size=[3, 4]",
+    )
+    found = load_sweep(tmp_path / "sweep.toml", overrides)
+    (scene, *_) = scenes = [point.scene for point in found.points]
+    assert (len(scenes), scene.run.events, scene.species[0].count, scene.box.size) == (3, 7, 5, (3.0, 4.0))
+    assert scene.species[0].temperature == 4
+    assert found.text.splitlines()[:2] == ["# sweep of 3 points by idealgas", '# --set "run.events=7"']
+    (tmp_path / "gas.toml").write_text(BASE.replace("[base]", ""))
+    sweep('sweep.scene = "gas.toml"\n' + axis)
+    assert [p.scene.run.events for p in load_sweep(tmp_path / "sweep.toml", ["run.events=7"]).points] == [7, 7]
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("run.events=0", "--set run.events=0: run.events: out of range"),
+        ("species.neon.mass=1", "--set species.neon.mass=1: nothing of this name"),
+        ("sweep.replicates=0", "--set sweep.replicates=0: sweep.replicates: out of range"),
+        ("scene.seed=4", "--set scene.seed=4: the seed of a scene cannot be chosen in a sweep (allowed sweep.seed"),
+        ("species.0.mass=4", "sweep.toml:2: species.gas.mass = 1: replaces the value of --set species.0.mass=4"),
+        ("run", "--set run: not an assignment"),
+    ],
+)
+def test_wrong_overrides_are_named(sweep, tmp_path, override, line):
+    sweep('[[axis]]\nkey = "species.gas.mass"\nvalues = [1]\n' + BASE)
+    with pytest.raises(SceneError) as caught:
+        load_sweep(tmp_path / "sweep.toml", [override])
+    assert len(caught.value.errors) == 1
+    assert caught.value.errors[0].removeprefix(f"{tmp_path}/").startswith(line)

@@ -58,7 +58,7 @@ def test_results_do_not_depend_on_what_a_dead_worker_left(point, tmp_path):
 
 def test_the_table_is_tidy(point, tmp_path):
     run_point(point, tmp_path, ANALYSES, True)
-    tables = write_tables(tmp_path)
+    tables, _ = write_tables(tmp_path)
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0])[:5] == ["point", "replicate", "seed", "phi", "species.x"]
