@@ -164,7 +164,7 @@ def test_what_the_scene_is_about_comes_first(tmp_path, overrides, first):
     simulate(parse_scene(PLAIN, overrides=overrides), tmp_path / "gas.h5")
     assert called("report", tmp_path / "gas.h5", "-o", tmp_path / "gas.html", "-q").returncode == 0
     shown, more = (tmp_path / "gas.html").read_text(encoding="utf-8").split('<details class="more">')
-    assert re.findall("<h2>(.*?)</h2>", shown) == ["What it shows", "The discs", *first, "The run"]
+    assert re.findall("<h2>(.*?)</h2>", shown) == ["The discs", "What it shows", *first, "The run"]
     assert "<h2>Temperature</h2>" in more or "Temperature" in first or "<li>Temperature: " in more
 
 
