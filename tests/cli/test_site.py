@@ -11,6 +11,11 @@ import pytest
 from helpers.readme_pages import FENCE, Block, make_folder, run_python, run_shell
 from helpers.support import ROOT
 
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.examples import load_example
+from idealgas.log import open_log
+from idealgas.run.simulate import simulate
+
 SITE = ROOT / ".github" / "site"
 OWN_PAGES = sorted(path.name for path in (SITE / "pages").glob("*.md"))
 
@@ -29,6 +34,24 @@ def test_code_of_a_page_runs(tmp_path, monkeypatch, page):
     for block in (Block(*parts) for parts in FENCE.findall((SITE / "pages" / page).read_text(encoding="utf-8"))):
         printed = run_python(block.text, page) if block.language == "python" else [*run_shell(block.text)]
         assert printed
+
+
+@pytest.mark.slow
+def test_mean_free_paths_from_flights_are_those_of_the_pressure(tmp_path, monkeypatch):
+    """The page gives the means over flights that one might take instead."""
+    pytest.importorskip("pandas", reason='no pandas: .venv/bin/pip install -e ".[notebook]"')
+    monkeypatch.chdir(tmp_path)
+    page = (SITE / "pages" / "how-to.md").read_text(encoding="utf-8")
+    (program,) = (text for _, text in FENCE.findall(page) if "ends_in_collision" in text)
+    simulate(load_example("mixture", ["run.collisions_per_disc=60"]), "gas.h5")
+    read = dict(line.split() for line in run_python(program, "how-to.md").splitlines()[1:3])
+    with open_log("gas.h5") as log:
+        expected = {path.species: path.path.value for path in pressure(log, start=0.0).free_paths}
+        flights = log.to_pandas("flights")
+    assert {name: float(value) for name, value in read.items()} == pytest.approx(expected, rel=1e-5)
+    light = flights[flights["species"] == "light"]
+    means = light["path"].mean(), expected["light"], light.loc[light["ends_in_collision"], "path"].mean()
+    assert [f"{value:.3f}" for value in means] == re.findall(r"0\.3\d\d", page)
 
 
 def test_twenty_questions_have_a_command_each():
