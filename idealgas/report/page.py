@@ -135,8 +135,9 @@ def _summary(log: Log, found: dict) -> str:
     """Sentence on the gas and its run; the packing fraction is that of the area that the gas has at the start."""
     gas, run, effects = found["gas"], found["run"], ", ".join(log.scene.effects)
     kind = f" with {effects}" if effects else ""
+    discs = "disc" if gas["number"] == 1 else "discs"
     return (
-        f"{gas['number']:,} discs{kind}, packing fraction {gas['packing_fraction']:.3g}, followed for "
+        f"{gas['number']:,} {discs}{kind}, packing fraction {gas['packing_fraction']:.3g}, followed for "
         f"{run['end_time'] - run['start_time']:.6g} units of time ({log.scene.run.method.replace('_', '-')}, "
         f"{run['event_rows'] or 0:,} event rows)."
     )

@@ -152,7 +152,7 @@ def test_few_discs_with_momentum_along_one_axis(channel, quantity):
     """Six equal discs have 11 degrees of freedom: 2E/11 across, and 5/6 of it along the periodic axis."""
     (gas,) = histogram(channel, quantity).distributions
     fixed_energy = gas.tests[-1]
-    assert fixed_energy.law_name == "fixed energy, D = 11"
+    assert fixed_energy.law_name == "fixed energy (11 degrees of freedom)"
     assert fixed_energy.p_value > LEAST_P
     if quantity != "energy":
         return

@@ -69,7 +69,7 @@ def test_velocities_in_equilibrium(log, quantity):
     maxwell, fixed = found.tests
     assert maxwell.p_value > LEAST_P
     assert fixed.p_value > LEAST_P
-    assert fixed.law_name == "fixed energy, D = 998"
+    assert fixed.law_name == "fixed energy (998 degrees of freedom)"
 
 
 @pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time", "collisions"])

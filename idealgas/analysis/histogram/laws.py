@@ -115,7 +115,7 @@ def velocity_laws(
         return {f"{MAXWELL}, measured T": ensemble.velocity_law(quantity, species)}
     laws = {MAXWELL: ensemble.velocity_law(quantity, species, np.inf)}
     if (dof := ensemble.dof) < np.inf:
-        laws[f"fixed energy, D = {dof}"] = ensemble.velocity_law(quantity, species)
+        laws[f"fixed energy ({dof} degrees of freedom)"] = ensemble.velocity_law(quantity, species)
     return laws
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from idealgas.analysis.theory import conserved, hard_discs, time_steps
 from idealgas.analysis.theory.barometric import DENSEST, column_rates
 from idealgas.analysis.theory.ensemble import Composition, classes, column_temperature, equilibrium
-from idealgas.analysis.theory.values import box_theory
+from idealgas.analysis.theory.values import SOLID, box_theory, crystal
 from idealgas.columns import IMAGES, SPINS, event_columns
-from idealgas.physics.collision_rates import mean_trial_time
+from idealgas.physics.collision_rates import contact_value, mean_trial_time
 from idealgas.physics.rotation import moment_of_inertia
 from idealgas.scene import RestingDisc, Scene
 from idealgas.scene.defaults import reference_speed
@@ -237,6 +237,8 @@ def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     number = discs.number
     per_disc = hard_discs.mixture_collision_rate(discs.radius, discs.mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
+    if len(number) == 1 and SOLID <= (phi := gas.packing_fraction) < hard_discs.CLOSE_PACKING:
+        per_disc *= (crystal(phi).value - 1) / (2 * phi * contact_value(phi))  # of equal discs Z = 1 + 2φχ, exactly
     hits = _wall_hit_rate(gas, discs, temperature, periodic)
     rough = _why_rough(gas, discs, temperature, periodic, per_disc)
     thermostat = len(gas) * scene.properties.thermostat_rate

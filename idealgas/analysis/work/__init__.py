@@ -164,8 +164,8 @@ class WorkAnalysis(Analysis):
         rows = [(one.name, one.free_energy) for one in result.processes]
         rows += [(f"crossing {one.name}", one.free_energy) for one in result.crossings]
         first = result.processes[0]
-        found = f"By the work {first.name} the free energy grows by {format_estimate(first.free_energy)}"
-        return f"{found}; the mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
+        found = f"Free energy difference of the strokes {first.name}: {format_estimate(first.free_energy)}"
+        return f"{found}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
 
     @staticmethod
     def figure(result: Work) -> "Figure":

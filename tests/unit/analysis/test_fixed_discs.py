@@ -41,5 +41,5 @@ def test_light_discs_among_fixed_ones(make, sides):
     assert math.isfinite(pressure(log).collision_rates[0].rate.value)
     *fixed, light = histogram(log, "speed").distributions
     assert [len(each.tests) for each in fixed] == [0, 0]
-    assert light.tests[-1].law_name == "fixed energy, D = 40"
+    assert light.tests[-1].law_name == "fixed energy (40 degrees of freedom)"
     assert light.tests[-1].p_value > 0.001
