@@ -75,7 +75,10 @@ def acceptance(log: Log) -> Acceptance | None:
         2 * collisions / len(log.discs),
         Estimate(share, error, float(number), theory=fixed),
         at_start=_start_acceptance(log, raises[0][1]),
-        expected={"Maxwell-Boltzmann": maxwell, f"fixed energy and momentum ({equilibrium.dof} degrees of freedom)": fixed},
+        expected={
+            "Maxwell-Boltzmann": maxwell,
+            f"fixed energy and momentum ({equilibrium.dof} degrees of freedom)": fixed,
+        },
         published=PUBLISHED if _is_published(log.scene) else None,
         raises=raises,
     )
