@@ -71,7 +71,7 @@ class EscapeAnalysis(Analysis):
     headline = "per_path"
     takes_escapes = True
     results = (Escape,)
-    sections = (Section("Escape", "Number of discs left against time, beside theory"),)
+    sections = (Section("Escape", "Number of discs in the gas against time, beside theory"),)
     start = "the log's start"
 
     @staticmethod
@@ -119,25 +119,30 @@ class EscapeAnalysis(Analysis):
         """Tables of the rates and of the number left."""
         rows = {"escapes per path (1/length)": result.per_path, "mean escape time (time)": result.mean_time}
         found = [(name, one) for name, one in rows.items() if one is not None]
-        notes = [f"{result.escaped} of {result.discs} discs left"]
-        series = {"t": result.time, "discs left": result.left, "theory": result.expected, "± (s.d.)": result.spread}
-        return [estimates("Escape", found, notes), time_series("Number left", series)]
+        notes = [f"{result.escaped} of {result.discs} discs escaped"]
+        series = {
+            "t": result.time,
+            "discs in the gas": result.left,
+            "theory": result.expected,
+            "± (s.d.)": result.spread,
+        }
+        return [estimates("Escape", found, notes), time_series("Number of discs in the gas", series)]
 
     @staticmethod
     def summary(result: Escape) -> str:
-        """How many discs left, and whether they did at the rate of theory."""
+        """Number of discs that escaped, and whether they did at the rate of theory."""
         found = result.per_path or result.mean_time
         what = "escapes per length of path" if result.per_path else "time per escape"
         said = agreement([(what, found)])
-        return f"{result.escaped} of {result.discs} discs leave, {format_estimate(found)} {what}; {said}."
+        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(found)} {what}; {said}."
 
     @staticmethod
     def figure(result: Escape) -> "Figure":
-        """Picture of the number of discs left, logarithmic once a tenth of them is left, beside theory."""
+        """Picture of the number of discs in the gas, logarithmic once a tenth of them is left, beside theory."""
         from idealgas.analysis.core.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
-        ax.step(result.time, result.left, where="post", color=COLOURS[0], label="discs left")
+        ax.step(result.time, result.left, where="post", color=COLOURS[0], label="discs in the gas")
         if result.expected is not None:
             ax.theory(result.time, result.expected, result.spread, "theory")
         if 0 < result.left[-1] < result.discs / 10:

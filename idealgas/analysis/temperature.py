@@ -10,6 +10,7 @@ import numpy as np
 from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import (
+    column_temperature,
     conserved_momentum,
     known_ensemble,
     nonequilibrium_reason,
@@ -21,8 +22,10 @@ from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
+from idealgas.analysis.theory.barometric import DENSEST, column_rates
 from idealgas.analysis.theory.conserved import is_ergodic
-from idealgas.analysis.theory.ensemble import Ensemble, composition
+from idealgas.analysis.theory.ensemble import Ensemble, composition, ensemble_at
+from idealgas.analysis.theory.values import Theory
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
@@ -98,8 +101,10 @@ def temperature(
     moments = Moments(log.gravity)
     window = measure(log, [moments], start, end, progress)
     discs = composition(log.discs)
-    equilibrium = known_ensemble(log)
+    equilibrium, relative = known_ensemble(log), 0.0
     isolated = equilibrium is not None and math.isfinite(equilibrium.dof)
+    if equilibrium is None and (column := _column(log)):
+        equilibrium, relative = column
     sums, shared = moments.flights[:, :, 1:3] / window.width, is_ergodic(log.scene, log.discs)
 
     def entry(name: str, chosen: slice) -> SpeciesTemperature:
@@ -111,8 +116,9 @@ def temperature(
         along_x = along_y = both = None
         axes = np.zeros(2) if equilibrium is None else members @ equilibrium.of_axes[chosen] / number
         if axes.any():  # not of fixed discs
-            along_x, along_y = axes.tolist() if shared else (None, None)
-            both = float(axes.mean())
+            of_axes = [Theory(t, relative * t, "equipartition") for t in (*axes.tolist(), float(axes.mean()))]
+            along_x, along_y = of_axes[:2] if shared else (None, None)
+            both = of_axes[2]
         energy = mean((x + y) / 2, both)
         if isolated and number == len(log.discs) and np.ptp(x + y) < CONSERVED * (x + y).mean():
             energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, but for rounding
@@ -121,14 +127,33 @@ def temperature(
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
     if len(entries) > 1:
         entries.append(entry("all discs", slice(None)))
-    law = None if equilibrium is None else _equipartition(log, equilibrium)
+    law = None if equilibrium is None else _equipartition(log, equilibrium, relative)
     return Temperature(window, entries[-1].both.theory, law, tuple(entries))
 
 
-def _equipartition(log: Log, equilibrium: Ensemble) -> str:
+def _column(log: Log) -> tuple[Ensemble, float] | None:
+    """Ensemble of an isolated column under gravity, and the relative error of its temperature; None if unknown.
+
+    Its energy is that of a dilute gas. Discs of a finite size stand higher: by hydrostatics their potential energy is
+    N T ⟨Z⟩, so that T is lower by half the packing fraction of the lowest layer, relative to it.
+    """
+    gas = composition(log.discs)
+    axis = int(log.gravity[1] != 0)
+    if not any(log.gravity) or log.gravity[1 - axis] or not log.scene.properties.empty or log.scene.properties.escapes:
+        return None
+    if log.scene.properties.later_accelerations or (t := column_temperature(log, axis)) is None:
+        return None
+    sizes = gas.mass, gas.radius, gas.number, abs(log.gravity[axis]), log.box[axis], log.box[1 - axis]
+    densest = column_rates(t, *sizes).densest
+    return (ensemble_at(log.scene, log.discs, t, math.inf), densest / 2) if densest <= DENSEST else None
+
+
+def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
     """Equipartition of a gas in words: T, where it comes from, and along which axes momentum is conserved."""
     source = f"2E/D with D = {equilibrium.dof}"
-    if math.isinf(equilibrium.dof):
+    if relative:
+        source = "of a dilute column at fixed energy"
+    elif math.isinf(equilibrium.dof):
         source = "of the walls" if log.scene.properties.bath is None else "of the heat bath"
     conserved = [letter for letter, kept in zip("xy", conserved_momentum(log), strict=True) if kept]
     along = f", T(1 - m/M) along {' and '.join(conserved)}" if conserved else ""

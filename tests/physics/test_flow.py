@@ -78,7 +78,7 @@ def test_thermal_walls_carry_the_weight_along_them(tmp_path):
         found = temperature(log, start=200)
         assert found.expected is None
         assert "makes the gas flow" in " ".join(of_log(log))
-        with pytest.raises(UserError, match="no known equilibrium"):
+        with pytest.raises(UserError, match="requires equilibrium"):
             heat_capacity(log)
 
 

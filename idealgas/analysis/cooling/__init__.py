@@ -235,7 +235,7 @@ class CoolingAnalysis(Analysis):
         columns = {
             "t": result.time,
             "collisions": result.collisions,
-            "kinetic energy per disc": result.temperature,
+            "temperature": result.temperature,
             "law": result.law,
             "I ω² per disc": result.spin,
             "a₂": result.cumulant,
@@ -251,7 +251,7 @@ class CoolingAnalysis(Analysis):
         rows = [("T at the end", last), ("loss per collision", result.loss), ("Haff's time", result.haff)]
         law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
         return (
-            f"The kinetic energy per disc falls from {result.temperature[0]:.4g} to {last.value:.4g}{law} in "
+            f"The temperature falls from {result.temperature[0]:.4g} to {last.value:.4g}{law} in "
             f"{result.collisions[-1]:.4g} collisions per disc, by {format_estimate(result.loss)} of it per collision. "
             f"T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
         )
@@ -266,7 +266,7 @@ class CoolingAnalysis(Analysis):
             means.append(("spin over motion (no unit)", result.spin / result.temperature, result.temperature_ratio))
         figure, (ax, *others, last) = panels(2 + len(means))
         shown = result.time > 0
-        ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="kinetic energy per disc")
+        ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="temperature")
         if result.spin is not None:
             ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² per disc")
         doubt = result.haff.theory_error / result.haff.theory if result.haff.theory else 0.0

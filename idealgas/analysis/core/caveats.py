@@ -85,13 +85,17 @@ def title_of(results: Sequence[Result]) -> str:
 
 
 def of_several(results: Sequence[Result]) -> tuple[str, ...]:
-    """Caveats of single logs, with their paths if there are several logs, at most MOST of them."""
+    """Caveats of single logs, each once, with the paths of its logs if there are several logs; at most MOST of them."""
     if len(results) == 1:
         return results[0].caveats
-    said = [(f"{r.origin.path}: " if r.origin else "") + sentence for r in results for sentence in r.caveats]
-    if len(said) > MOST:
-        said[MOST:] = [f"{len(said) - MOST} more caveats are reported with the single logs."]
-    return tuple(said)
+    whose: dict[str, list[str]] = {}
+    for result in results:
+        for sentence in result.caveats:
+            whose.setdefault(sentence, []).extend([result.origin.path] if result.origin else [])
+    sentences = [f"{named(paths)}: {sentence}" if paths else sentence for sentence, paths in whose.items()]
+    if len(sentences) > MOST:
+        sentences[MOST:] = [f"{len(sentences) - MOST} more caveats are reported with the single logs."]
+    return tuple(sentences)
 
 
 def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
@@ -130,6 +134,19 @@ def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
         kind = one.origin.kind if one.origin else ""
         states.setdefault((round(one.packing_fraction, 9), one.number, kind), []).append(one)
     return [(kind, runs) for (_, _, kind), runs in sorted(states.items())]
+
+
+def seeds_of(runs: Iterable[Result]) -> tuple[int, ...]:
+    """Seeds of runs in increasing order, each once; none for those that draw no random numbers."""
+    return tuple(sorted({run.origin.seed for run in runs if run.origin and run.origin.seed is not None}))
+
+
+def name_of_state(packing_fraction: float, number: int, kind: str, seeds: Sequence[int]) -> str:
+    """Name of a state of a gas: φ, N, the seeds of its runs and the kind of gas."""
+    last = f" to {seeds[-1]}" if len(seeds) > NAMED else ""
+    listed = f"{seeds[0]}{last}" if last else ", ".join(map(str, seeds))
+    of_seeds = [f"seed{'s' * (len(seeds) > 1)} {listed}"] if seeds else []
+    return ", ".join([f"φ = {packing_fraction:.9g}", f"N = {number}", *of_seeds, *filter(None, [kind])])
 
 
 def named(paths: Sequence[str]) -> str:

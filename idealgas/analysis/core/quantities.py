@@ -46,7 +46,8 @@ def _rows(found: Any, path: tuple[str, ...], group: tuple[str, ...], index: int 
     elif isinstance(found, list):
         for k, entry in enumerate(found):
             if isinstance(entry, dict):
-                label = ", ".join(value for value in entry.values() if isinstance(value, str)) or str(k)
+                words = [entry["name"]] if "name" in entry else entry.values()
+                label = ", ".join(value for value in words if isinstance(value, str)) or str(k)
                 yield from _rows(entry, (*path, identifier(label)), (*group, label), index)
             elif index is None:
                 yield from _rows(entry, path, group, k)

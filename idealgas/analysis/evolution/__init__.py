@@ -6,26 +6,24 @@ With a piston the picture has the pressure against the area, with the isotherm a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.chambers import beside_pistons, piston_names
-from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import detect_equilibration
 from idealgas.analysis.core.fields import OPTIONAL, reported
-from idealgas.analysis.core.observables import Observable
 from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, format_estimate, time_series
+from idealgas.analysis.core.tables import Table, estimates, time_series
 from idealgas.analysis.evolution.account import Series, account
+from idealgas.analysis.evolution.means import adiabatic_exponent, isothermal_work, mean_position, mean_temperature
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
+from idealgas.analysis.evolution.summary import evolution_summary
 from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
-from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 
@@ -63,6 +61,11 @@ class Evolution(Result):
         rest: mean position of the only piston, with a mass, once it is steady, length; None without one, or if it is
             not steady by the end.
         rest_start: time from which on the piston is steady; None where `rest` is.
+        mean_temperature: mean of the temperature once it is steady, energy; None where it is constant, or without a law
+            of equilibrium.
+        adiabatic_exponent: γ from temperature and area at both ends; None unless a piston compresses the gas without
+            heat.
+        isothermal_work: work of a piston on a gas at the temperature of a heat bath, energy; None elsewhere.
         chambers: mean m v²/2 per disc of each gas beside inner pistons, (F,), by name as in `beside_pistons`.
     """
 
@@ -82,6 +85,9 @@ class Evolution(Result):
     rest: Estimate | None = None
     rest_start: float | None = None
     chambers: Series = field(default_factory=dict)
+    mean_temperature: Estimate | None = None
+    adiabatic_exponent: Estimate | None = None
+    isothermal_work: Estimate | None = None
 
     @property
     def track(self) -> tuple[np.ndarray, Series] | None:
@@ -136,6 +142,7 @@ class EvolutionAnalysis(Analysis):
         observed = {name: values for name, (_, values) in observables.items()}
         *energies, balance = account(log, samples, observed)
         parts, given, lost = ({name: values[inside] for name, values in part.items()} for part in energies)
+        pistons = {name: observed["piston_position"][inside, k] for k, name in enumerate(piston_names(log.scene))}
         pressure = pressure_series(log, first, last)
         track = pressure.track if pressure else None
         start_position = float(np.interp(first, track[0], next(iter(track[1].values())))) if track else 0.0
@@ -147,12 +154,15 @@ class EvolutionAnalysis(Analysis):
             samples[inside],
             parts,
             given,
-            {name: observed["piston_position"][inside, k] for k, name in enumerate(piston_names(log.scene))},
+            pistons,
             balance[inside],
             lost,
             pressure,
-            *_rest(log, pressure, law),
+            *mean_position(log, pressure, law),
             frames[-1],
+            mean_temperature(frames[1], law),
+            adiabatic_exponent(frames[1], law),
+            isothermal_work(log, pistons, given),
             caveats=law.caveats if law else (),
         )
 
@@ -174,6 +184,13 @@ class EvolutionAnalysis(Analysis):
             f"beyond the wall in equilibrium: {one.value:.1%} ± {one.standard_error:.1%} of {name} (binomial)"
             for name, one in result.spread.items()
         ]
+        means = {
+            "mean temperature once steady (energy)": result.mean_temperature,
+            "mean position of the piston once steady (length)": result.rest,
+            "γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) (no unit; 2 for an ideal gas)": result.adiabatic_exponent,
+            "work of the piston at constant T (energy)": result.isothermal_work,
+        }
+        rows = [(name, found) for name, found in means.items() if found is not None]
         tables = [time_series("Time series", series, notes)]
         if found := result.pressure:
             columns = {"t": found.middles, "area": found.area}
@@ -188,34 +205,10 @@ class EvolutionAnalysis(Analysis):
             **{f"{name} position": place for name, place in result.pistons.items()},
             "balance, relative": result.balance,
         }
-        return [*tables, time_series("Energy", energy)]
+        totals = [estimates("Means and totals", rows)] if rows else []
+        return [*tables, time_series("Energy", energy), *totals]
 
-    @staticmethod
-    def summary(result: Evolution) -> str:
-        """Temperature at the start and the end beside its law, the piston, and discs beyond a wall at the end."""
-        first, last = result.temperature[[0, -1]]
-        law = (
-            "no theory here"
-            if result.law is None
-            else f"by theory it is {result.law.temperature[-1]:.4g} on the average"
-        )
-        same = f"{first:.4g}" == f"{last:.4g}"
-        change = f"stays at {first:.4g}" if same else f"goes from {first:.4g} to {last:.4g}"
-        found = [f"The temperature {change}; {law}."]
-        if result.rest:
-            said = agreement([("rest", result.rest)])
-            found.append(f"The piston rests at {format_estimate(result.rest)}; {said}.")
-        elif result.track:
-            for name, places in result.track[1].items():
-                found.append(f"The {name} goes from {places[0]:.4g} to {places[-1]:.4g}.")
-        for name, share in result.beyond.items():
-            expected = [
-                replace(one, value=share[-1], theory=one.value) for n, one in result.spread.items() if n == name
-            ]
-            said = agreement([(name, one) for one in expected], "equilibrium")
-            discs = name if len(result.beyond) > 1 else "the discs"
-            found.append(f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {said}.")
-        return " ".join(found)
+    summary = staticmethod(evolution_summary)
 
     @staticmethod
     def figure(result: Evolution) -> "Figure":
@@ -327,16 +320,3 @@ def _frames(log: Log, first: float, last: float, progress: Progress | None) -> F
             beyond[k] = np.bincount(gas.species, state.position[:, axis] > place, len(number)) / number
     shares = dict(zip(gas.species_names, beyond.T, strict=True)) if wall else {}
     return time, temperature, None if inertia is None else spin, shares, apart
-
-
-def _rest(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
-    """Mean position of the only piston, with a mass, once it is steady, compared with theory, and since when it is."""
-    masses = [piston.mass for piston in log.scene.piston]
-    if len(masses) != 1 or not masses[0] or series is None or series.track is None:
-        return None, None
-    times, (places,) = series.track[0], series.track[1].values()
-    start = detect_equilibration([Observable(places)])
-    if start is None:
-        return None, None
-    theory = None if law is None or law.piston is None else Theory(law.piston, law.piston_error, law.text)
-    return mean(places[start:], theory), float(times[start])

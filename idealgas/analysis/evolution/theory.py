@@ -61,6 +61,8 @@ class Law:
         pressure: external pressure on the piston, energy/length².
         caveats: conditions of the law that are not met.
         chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_pistons`.
+        steady: whether it is that of an equilibrium that the gas comes to.
+        area: (F,), area that a gas has that a piston compresses without heat, length²; None for other laws.
     """
 
     text: str
@@ -71,6 +73,8 @@ class Law:
     caveats: Annotated[tuple[str, ...], OMITTED] = ()
     piston_error: Annotated[float, OMITTED] = 0.0
     chambers: Annotated[dict[str, np.ndarray], OMITTED] = field(default_factory=dict)
+    steady: Annotated[bool, OMITTED] = False
+    area: Annotated[np.ndarray | None, OMITTED] = None
 
 
 @dataclass(frozen=True)
@@ -120,12 +124,12 @@ def expected_law(
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)
         t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis)
-        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t)
+        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t, steady=True)
     if log.discs.unlike or (equilibrium := known_ensemble(log)) is None:
         return None
     t = equilibrium.temperature
     kinetic = float(discs.number @ equilibrium.of_species / discs.number.sum())
-    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * one, t)
+    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * one, t, steady=True)
 
 
 def _haff(log: Log, time: np.ndarray) -> Law | None:
@@ -184,23 +188,23 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     across = log.box[1 - log.scene.piston[0].axis]
     first = float(room(log, _track(log)[1][:1])[0])
     lengths = np.linspace(min(areas.min() / across, first), max(areas.max() / across, first), STEPS + 1)
-    if _crowded(log, lengths[0]):
+    if is_crowded(log, lengths[0]):
         return None
     temperature = _kinetic(log) / len(gas)
     pressure = np.array([piston_force(log, length) for length in lengths]) * len(gas) * temperature / across
     adiabat = None
     if len(log.scene.lacking("uniform", "conserves_motion")) == 1:
-        adiabat = pressure * np.exp(_work(log, lengths, first) - _work(log, lengths, lengths))
+        adiabat = pressure * np.exp(work_integral(log, lengths, first) - work_integral(log, lengths, lengths))
     return StateLines(lengths * across, pressure, adiabat)
 
 
-def _crowded(log: Log, length: float) -> bool:
+def is_crowded(log: Log, length: float) -> bool:
     """Whether the gas below the piston is denser than a fluid in a room of this length."""
     gas, across = log.discs, log.box[1 - log.scene.piston[0].axis]
     return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)
 
 
-def _work(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
+def work_integral(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
     """Work ∫ F dL/NT of the gas on a piston from the length grid[0] to others, at rising grid points."""
     slope = np.array([piston_force(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
@@ -215,15 +219,16 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
     lengths = room(log, np.interp(time, at, places))
     first = float(room(log, places[:1])[0])
     grid = np.linspace(min(lengths.min(), first), max(lengths.max(), first), STEPS + 1)
-    if _crowded(log, grid[0]):
+    if is_crowded(log, grid[0]):
         return None
-    exponent = _work(log, grid, first) - _work(log, grid, lengths)
+    exponent = work_integral(log, grid, first) - work_integral(log, grid, lengths)
     fastest = float(np.abs(speeds).max())
     at_first = _kinetic(log) / len(log.discs)
     share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
     said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
-    return Law(text, at_first * np.exp(exponent), caveats=(said,) if share > SLOW else ())
+    area = lengths * log.box[1 - log.scene.piston[0].axis]
+    return Law(text, at_first * np.exp(exponent), caveats=(said,) if share > SLOW else (), area=area)
 
 
 def _at_rest(log: Log, one: np.ndarray) -> Law | None:
@@ -247,10 +252,10 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
         t = energy / (n + 0.5 + n * z + 1)
         length = diameter + (n * z + 1) * t / force
     piston = length if table.outward > 0 else log.box[table.axis] - length
-    if _crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
+    if is_crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
-    return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length)
+    return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length, steady=True)
 
 
 def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> Law | None:
@@ -270,7 +275,7 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     t = (_kinetic(log) + table.mass * speed**2 / 2) / (n + 0.5)
     rest = diameter + length * float(number[0] + 1) / (n + 2)
     text = f"in equilibrium T = {t:.6g} on both sides, piston at {rest:.6g}"
-    law = Law(text, t * np.ones(len(time)), piston=rest, piston_error=REST_ERROR / n * length)
+    law = Law(text, t * np.ones(len(time)), piston=rest, piston_error=REST_ERROR / n * length, steady=True)
     first = np.array([series[0] for series in apart.values()])
     pressure = number * first / [start - diameter, length - (start - diameter)]
     if abs(pressure[0] - pressure[1]) > EQUAL * pressure.mean() * math.sqrt(2 * (1 / number).sum()):

@@ -35,7 +35,7 @@ from idealgas.analysis.heat_capacity.fluctuations import (
 )
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.routes import WALLS
-from idealgas.errors import UserError
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 
 if TYPE_CHECKING:
@@ -70,8 +70,13 @@ class HeatCapacityAnalysis(Analysis):
                 driven piston, a gas without positions.
         """
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
-        if nonequilibrium_reason(log) or not log.has_positions:
-            raise UserError(f"{log.path}: no known equilibrium, and so no heat capacity")
+        if not log.has_positions:
+            raise NotApplicableError(f"{log.path}: the heat capacity requires discs with positions")
+        if why := nonequilibrium_reason(log):
+            follow = "`idealgas evolution` follows the gas"
+            if not properties.fixed_walls:
+                follow = "for γ of an adiabatic compression use `idealgas evolution`"
+            raise NotApplicableError(f"{log.path}: the heat capacity requires equilibrium, but {why}; {follow}")
         has_piston = any(piston.mass for piston in scene.piston)
         if has_piston and (scene.piston[0].inner or len(scene.piston) > 1):
             raise UserError(f"{log.path}: no heat capacity of several pistons, or of one between two gases")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.caveats import by_state
+from idealgas.analysis.core.caveats import by_state, name_of_state, seeds_of
 from idealgas.analysis.core.check import CheckResult, check_theory
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
@@ -43,7 +43,8 @@ class Sample(Result):
 class State:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
-    packing_fraction: φ. number: of discs. kind: kind of gas in words; empty if unknown. runs: number of runs.
+    name: φ, N, seeds and kind of gas in words. packing_fraction: φ. number: of discs. kind: kind of gas in words; empty
+    if unknown. runs: number of runs. seeds: of the runs.
     compressibility_factor: mean of Z over the runs; its theory is that of the same number of discs in the same box.
     infinite: up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, next to the resummed
     virial series; above, and where the ratio is not known, Z as it is, next to published simulations or, for a crystal,
@@ -52,12 +53,14 @@ class State:
     Henderson (1975); both None above φ = 0.62.
     """
 
+    name: str
     packing_fraction: float
     number: int
     kind: Annotated[str, Key("gas")]
     runs: int
-    compressibility_factor: Estimate
-    infinite: Estimate
+    seeds: tuple[int, ...]
+    compressibility_factor: Annotated[Estimate, Key("Z_of_this_N")]
+    infinite: Annotated[Estimate, Key("Z")]
     source: Annotated[str | None, Key("theory")]
     virial: Annotated[float | None, Key("virial_series_to_B10")]
     henderson: float | None
@@ -126,11 +129,14 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
     elif SOLID <= phi < hard_discs.CLOSE_PACKING and found.theory is None:
         solid = crystal(phi)
         infinite, source = replace(found, theory=solid.value, theory_error=solid.error), solid.source
+    seeds = seeds_of(runs)
     return State(
+        name_of_state(phi, runs[0].number, kind, seeds),
         phi,
         runs[0].number,
         kind,
         n,
+        seeds,
         found,
         infinite,
         source,

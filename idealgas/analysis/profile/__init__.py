@@ -21,6 +21,7 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
 from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
 from idealgas.analysis.profile.flow import LAW, expected_flow
+from idealgas.analysis.profile.heat import heat_flow, heat_of_walls
 from idealgas.analysis.profile.stress import pressure_of_strips
 from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, collect, gradient, strip_test
 from idealgas.analysis.profile.theory import Expected, expected_profile, flow_axis, natural_axis
@@ -87,7 +88,8 @@ class Profile(Result):
         law: name of the theory; None without one.
         species: profiles of each species.
         pressure: (K,) each, components "xx", "yy" and "xy" of the pressure tensor relative to the flow, energy/length².
-        heat: energy per time that each wall gives to the discs, by the name of the wall.
+        heat: energy per time that each wall gives to the discs, by the name of the wall; sheared sides are one.
+        heat_flow: heat per time from the lower to the higher thermal side; None without two of unlike temperatures.
     """
 
     window: Window
@@ -100,6 +102,7 @@ class Profile(Result):
     species: tuple[SpeciesProfile, ...]
     pressure: dict[str, tuple[Estimate, ...]]
     heat: dict[str, Estimate]
+    heat_flow: Annotated[Estimate | None, OPTIONAL] = None
 
     @property
     def middles(self) -> np.ndarray:
@@ -165,8 +168,8 @@ class ProfileAnalysis(Analysis):
         caveats += (SHEARED,) if log.scene.properties.shear else ()
         law = expected.law if expected else LAW if flow else None
         axes = "xy"[axis], None if along_flow is None else "xy"[along_flow]
-        heat = _heat(log, window)
-        return Profile(window, *axes, edges, strip, len(sums), law, species, pressure, heat, caveats=caveats)
+        heat = heat_of_walls(log, window), heat_flow(log, axis, window)
+        return Profile(window, *axes, edges, strip, len(sums), law, species, pressure, *heat, caveats=caveats)
 
     @staticmethod
     def tables(result: Profile) -> list[Table]:
@@ -192,6 +195,9 @@ class ProfileAnalysis(Analysis):
             tables.append(Table("All strips together", ("", "χ²", "waves", "p"), tests))
         if result.heat:
             tables.append(estimates("Energy from each wall per time", result.heat.items()))
+        if result.heat_flow:
+            flow = [(f"along {axis}, mean of both sides", result.heat_flow)]
+            tables.append(estimates("Heat flow between the thermal sides (energy/time)", flow))
         notes = (f"{describe(result.window)}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
         return [replace(tables[0], notes=notes), *tables[1:]]
 
@@ -216,6 +222,9 @@ class ProfileAnalysis(Analysis):
         same = "Nothing differs clearly between the first and the last strip."
         law = f"theory, {result.law}"
         rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(result)]
+        if flow := result.heat_flow:
+            said = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
+            found.append(f"Heat flows along {result.axis} at the rate {format_estimate(flow)}; {said}.")
         return f"{' '.join(found) or same} In strips: {agreement(rows, law)}."
 
     @staticmethod
@@ -332,16 +341,3 @@ def _of_species(
         density_test,
         temperature_test,
     )
-
-
-def _heat(log: Log, window: Window) -> dict[str, Estimate]:
-    """Energy per time that each wall gave to the discs, by its name, from the stored samples in the window."""
-    if "wall_energy" not in log.observables:
-        return {}
-    time, given = log.observables["wall_energy"]
-    inside = (time >= window.start) & (time <= window.end)
-    steps, gains = np.diff(time[inside]), np.diff(given[inside], axis=0)
-    some = steps > 0
-    if not some.any():
-        return {}
-    return {wall.name: ratio(gains[some, k], steps[some]) for k, wall in enumerate(log.walls) if given[:, k].any()}

@@ -143,12 +143,12 @@ def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))
     if len(properties.temperatures) == 2 and low is not None and high is not None:
-        return None if low == high else _conduction(log, axis, places, (low, high))
+        return None if low == high else _conduction(log, axis, places)
     if log.gravity[axis]:
         if (t := column_temperature(log, axis)) is None:
             return None
         if properties.isolated:
-            return _fixed_energy(log, axis, places, discs)
+            return _fixed_energy(log, axis, places, discs, t)
         weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)
         return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one, 0.0
     equilibrium = known_ensemble(log)
@@ -157,26 +157,35 @@ def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve
     return UNIFORM, one, equilibrium.temperature * one, 0.0
 
 
-def _fixed_energy(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve:
-    """Barometric law of a fixed energy, which leaves less to the discs the higher one of them is."""
+def _fixed_energy(log: Log, axis: int, places: np.ndarray, discs: Composition, mean: float) -> Curve:
+    """Barometric law of a fixed energy, which leaves less to the discs the higher one of them is.
+
+    mean: temperature of the whole column, energy.
+    """
     low = places if log.gravity[axis] < 0 else log.box[axis] - places
     profiles = column_profiles(log, axis)
     above = list(zip(low - discs.radius[:, None, None], profiles, strict=True))
     weight = np.stack([np.interp(h, found.above, found.density, right=0.0) for h, found in above])
     temperature = np.stack([np.interp(h, found.above, found.temperature) for h, found in above])
     warmest = profiles[0].temperature[0]
-    law = f"barometric at fixed energy, T = {warmest:.6g} at the lowest place"
+    law = f"barometric at fixed energy, T = {mean:.6g} on average over the discs"
     return law, np.maximum(weight, LEAST), np.maximum(temperature, LEAST * warmest), 0.0
 
 
-def _conduction(log: Log, axis: int, places: np.ndarray, sides: tuple[float, float]) -> Curve | None:
-    """Fourier's law between two thermal sides across an axis, for equal discs without spin and no other heat."""
+def conduction(log: Log, axis: int) -> "Conduction | None":
+    """Temperatures beside two thermal sides across an axis, for equal discs without spin and no other heat."""
     properties, gas = log.scene.properties, log.discs
+    low, high = (properties.emits[side] for side in sides_across(axis))
     others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))
     alike = properties.straight_flight and properties.lossless and not properties.spins
-    if others or not alike or len(gas.species_names) > 1 or gas.unlike:
+    if low is None or high is None or others or not alike or len(gas.species_names) > 1 or gas.unlike:
         return None
-    found = conduct(*sides, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
+    return conduct(low, high, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
+
+
+def _conduction(log: Log, axis: int, places: np.ndarray) -> Curve | None:
+    """Fourier's law between two thermal sides across an axis."""
+    gas, found = log.discs, conduction(log, axis)
     if found is None:
         return None
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from idealgas.analysis.core.caveats import by_state
+from idealgas.analysis.core.caveats import by_state, name_of_state, seeds_of
 from idealgas.analysis.core.fields import Key
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
@@ -31,14 +31,16 @@ class Sample(Result):
 class State:
     """Transport coefficients at one packing fraction and one number of discs, means over runs of one kind of gas.
 
-    packing_fraction: φ. number: of discs. kind: kind of gas in words; empty if unknown. runs: number of runs.
-    coefficients: over Enskog's, by symbol (no unit).
+    name: φ, N, seeds and kind of gas in words. packing_fraction: φ. number: of discs. kind: kind of gas in words; empty
+    if unknown. runs: number of runs. seeds: of the runs. coefficients: over Enskog's, by symbol (no unit).
     """
 
+    name: str
     packing_fraction: float
     number: int
     kind: Annotated[str, Key("gas")]
     runs: int
+    seeds: tuple[int, ...]
     coefficients: Annotated[dict[str, Estimate], Key("over_enskog")]
 
 
@@ -83,4 +85,5 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
     """Mean over runs of one state, of all coefficients that every run has."""
     symbols = [symbol for symbol in runs[0].coefficients if all(symbol in run.coefficients for run in runs)]
     means = {symbol: mean_of_replicates([run.coefficients[symbol] for run in runs]) for symbol in symbols}
-    return State(runs[0].packing_fraction, runs[0].number, kind, len(runs), means)
+    phi, number, seeds = runs[0].packing_fraction, runs[0].number, seeds_of(runs)
+    return State(name_of_state(phi, number, kind, seeds), phi, number, kind, len(runs), seeds, means)

@@ -100,8 +100,12 @@ def transport_summary(result: Transport | States) -> str:
             for state in result.states
             for symbol, one in state.coefficients.items()
         ]
-        name, one = rows[-1]
-        return f"{name} is {format_estimate(one)} of Enskog's; {agreement(rows, 'Enskog')}."
+        last = result.states[-1]
+        found = ", ".join(f"{symbol} = {format_estimate(one)}" for symbol, one in last.coefficients.items())
+        densest = (
+            f"At φ = {last.packing_fraction:.5g}, in units of Enskog's values, {found or 'no coefficient has a theory'}"
+        )
+        return f"{densest}; {agreement(rows, 'Enskog')}."
     rows = [(f"D of {entry.species}", entry.coefficient) for entry in result.diffusion if entry.coefficient]
     if result.collective:
         rows += [(SYMBOLS[name], one.value) for name, one in result.collective.coefficients.items()]

@@ -98,6 +98,57 @@ def test_a_gate_counts_who_is_beyond(make):
     assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in EvolutionAnalysis.summary(found)
 
 
+PISTON = "piston=[{ velocity = -0.05 }]"
+
+
+def test_an_adiabatic_exponent_from_temperature_and_area(make):
+    """The piston goes from 12 to 11 in a time of 20: instants, not means over bins."""
+    log = make(PISTON)
+    found = evolution(log)
+    kinetic = [(log.state_at(t).velocity ** 2).sum() for t in (0.0, 20.0)]
+    gamma = found.adiabatic_exponent
+    assert gamma.value == pytest.approx(1 + math.log(kinetic[1] / kinetic[0]) / math.log(12 / 11))
+    assert gamma.theory == pytest.approx(2.06, abs=0.02)  # discs have 2 where Z = 1, and φ is 0.013
+    assert 0.01 < gamma.standard_error < 0.5
+    assert abs(gamma.deviation) < 4
+    assert " The piston goes from 12 to 11. γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = " in found.summary()
+    assert evolution(log, 0.0, 5.0).adiabatic_exponent is None  # the area hardly changes
+
+
+@pytest.mark.slow
+def test_errors_of_adiabatic_exponents_are_right(make):
+    """Root mean square of deviation over error in 40 runs within three times 1/√80 of 1."""
+    off = [evolution(make(PISTON, f"scene.seed={k}")).adiabatic_exponent.deviation for k in range(1, 41)]
+    assert abs(math.sqrt(np.mean(np.square(off))) - 1) < 3 / math.sqrt(80)
+
+
+def test_the_mean_of_a_steady_temperature_is_compared_with_theory(make):
+    """Not an instant, whose kinetic energy fluctuates by T/√N."""
+    found = evolution(make("box.left={ thermal = 3 }", "run.until=400"))
+    mean = found.mean_temperature
+    assert (mean.theory, found.law.temperature[-1]) == (3.0, 3.0)
+    assert abs(mean.deviation) < 4
+    assert mean.value == pytest.approx(found.temperature[-200:].mean(), rel=0.1)
+    assert "; its mean once steady, " in found.summary()
+    assert "equilibrium (3, " in found.summary()
+    closed = evolution(make())
+    assert closed.mean_temperature is None  # its energy is conserved
+    assert closed.summary() == "The kinetic energy per disc stays at 1.5; equilibrium theory predicts 1.5."
+
+
+def test_work_of_a_piston_at_constant_temperature(make):
+    """A slow piston does N T ln(A₁/A₂) on an ideal gas; 40 discs of this size need a little more."""
+    slow = "piston=[{ velocity = -0.0125 }]"
+    found = evolution(make("box.left={ thermal = 1.5 }", slow, "run.until=80", "log.snapshot_every=1"))
+    work = found.isothermal_work
+    assert work.value == pytest.approx(found.given["piston"][-1])
+    assert work.theory == pytest.approx(40 * 1.5 * math.log(12 / 11), rel=0.06)
+    assert work.theory > 40 * 1.5 * math.log(12 / 11)
+    assert abs(work.deviation) < 4
+    assert "The piston does the work " in found.summary()
+    assert evolution(make(PISTON)).isothermal_work is None
+
+
 def test_haff(make):
     """τ of a dilute gas: 4/((1 - e²) 2σn√(πT/m)); what size, number and velocities' a₂ change is some percent."""
     found = evolution(make("restitution.normal=0.8", "species.radius=0.02", *PERIODIC))

@@ -1,0 +1,61 @@
+"""Headline of the evolution of a gas."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from idealgas.analysis.core.check import agreement
+from idealgas.analysis.core.tables import format_estimate
+
+if TYPE_CHECKING:
+    from idealgas.analysis.evolution import Evolution
+
+
+def evolution_summary(result: "Evolution") -> str:
+    """Return the temperatures at the start and the end with theory, the piston, and the discs beyond a wall."""
+    return " ".join([*_temperatures(result), *_pistons(result), *_beyond(result)])
+
+
+def _change(values: np.ndarray) -> str:
+    """Change of a series (F,) from its first to its last instant, as a predicate."""
+    first, last = (f"{value:.4g}" for value in values[[0, -1]])
+    return f"stays at {first}" if first == last else f"goes from {first} to {last}"
+
+
+def _temperatures(result: "Evolution") -> Iterator[str]:
+    law, change = result.law, f"The kinetic energy per disc {_change(result.temperature)}"
+    if law is None:
+        yield f"{change}; no theory here."
+    elif mean := result.mean_temperature:
+        yield f"{change}; its mean once steady, {format_estimate(mean)}: {agreement([('', mean)], 'equilibrium')}."
+    elif law.steady:
+        yield f"{change}; equilibrium theory predicts {law.temperature[-1]:.4g}."
+    else:
+        yield f"{change}; theory predicts {law.temperature[-1]:.4g} at the end."
+    for name, values in result.chambers.items() if len(result.chambers) == 2 else ():
+        yield f"{name.capitalize()}{'' if name.startswith('between') else ' of the piston'} it {_change(values)}."
+
+
+def _pistons(result: "Evolution") -> Iterator[str]:
+    if rest := result.rest:
+        yield f"Mean piston position {format_estimate(rest)}; {agreement([('X', rest)], 'equilibrium')}."
+    for name, places in result.pistons.items():
+        if len(places) and not result.rest:
+            yield f"The {name} {_change(places)}."
+    if exponent := result.adiabatic_exponent:
+        said = agreement([("γ", exponent)], "the adiabat of these discs")
+        yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {said}, 2 for an ideal gas."
+    if work := result.isothermal_work:
+        said = agreement([("work", work)], "a slow piston at constant T")
+        yield f"The piston does the work {format_estimate(work)} on the discs; {said}."
+
+
+def _beyond(result: "Evolution") -> Iterator[str]:
+    for name, share in result.beyond.items():
+        known = result.spread.get(name)
+        expected = [] if known is None else [(name, replace(known, value=share[-1], theory=known.value))]
+        discs = f"species '{name}'" if len(result.beyond) > 1 else "the discs"
+        said = agreement(expected, "equilibrium")
+        yield f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {said}."
