@@ -161,10 +161,16 @@ def _analyse(
             echo(f"{inapplicable}", err=True)
         return
     checked = result.check() if check else None
+    missing = {path: sentence for path in paths if (sentence := _missing(path))}
+    for path, sentence in missing.items():
+        echo(f"{path}: {sentence}", err=True)
     for path, draw in figures.items():
-        from idealgas.analysis.core.style import save
+        from idealgas.analysis.core.style import add_title, save
 
-        save(draw(result), path, force)
+        figure = draw(result)
+        if missing:
+            add_title(figure, ". ".join([*missing.values(), figure.get_suptitle()]))
+        save(figure, path, force)
     if as_json:
         unasked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (checked.as_dict() if checked else unasked))
@@ -206,3 +212,13 @@ def _results(
         return
     with open_log(path) as log:
         yield analysis.analyse(log, start, end, progress, **options)
+
+
+def _missing(path: str) -> str:
+    """Sentence on the runs that the folder of a sweep lacks; empty for a complete sweep and for a log."""
+    if not os.path.isdir(path):
+        return ""
+    from idealgas.sweep.results import missing_runs
+
+    missing, total = missing_runs(path)
+    return f"{missing:,} of {total:,} runs are missing" if missing else ""

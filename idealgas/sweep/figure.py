@@ -7,13 +7,35 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.interpolate import PchipInterpolator
 
 from idealgas.analysis import registry
-from idealgas.analysis.core.style import curve_style, panels
+from idealgas.analysis.core.style import LINES, add_title, curve_style, panels
 from idealgas.errors import UserError, unknown
-from idealgas.sweep.results import RESULT, average, result_rows
+from idealgas.sweep.results import RESULT, average, missing_runs, result_rows
+from idealgas.sweep.tables import PHI
 
 Row = dict[str, Any]
+
+UNITS = {
+    "acceleration": "length/time²",
+    "amplitude": "length",
+    "angular_velocity": "1/time",
+    "distance": "length",
+    "gravity": "length/time²",
+    "mass": "mass",
+    "period": "time",
+    "position": "length",
+    "radius": "length",
+    "rate": "1/time",
+    "size": "length",
+    "speed": "length/time",
+    "temperature": "energy",
+    "until": "time",
+    "velocity": "length/time",
+    "width": "length",
+}
+"""Units of keys of a scene, by the last part of their names."""
 
 
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
@@ -41,18 +63,44 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     for k, (label, points) in enumerate(curves.items()):
         places = sorted(points)
         values, errors = zip(*(average(points[place]) for place in places), strict=True)
-        colour, line, marker = curve_style(k)
+        colour, _, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         known = [
             (x, row["theory"], row["theory_error"]) for x in places if (row := points[x][0]).get("theory") is not None
         ]
         if known:
-            at, theory, error = np.array(known).T
-            ax.plot(at, theory, line, color=colour, label=f"{label}: theory" if label else "theory")
-            ax.fill_between(at, theory - error, theory + error, color=colour, alpha=0.2, linewidth=0)
-    ax.set(xlabel=axis, ylabel=quantity)
+            style, name = LINES[1:][k % (len(LINES) - 1)], f"{label}: theory" if label else "theory"
+            ax.theory(*_smooth(*np.array(known).T), label=name, linestyle=style)
+    ax.set(xlabel=_axis_name(axis), ylabel=_words(quantity))
     ax.legend()
-    return figure
+    return say_missing(figure, folder)
+
+
+def say_missing(figure: Figure, folder: str | os.PathLike[str]) -> Figure:
+    """Write above the picture of a sweep how many of its runs have no results yet, if any, and return the picture."""
+    missing, total = missing_runs(folder)
+    return add_title(figure, f"{missing:,} of {total:,} runs are missing") if missing else figure
+
+
+def _smooth(places: np.ndarray, values: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places, values and errors of a theory on a smooth curve through its points, without new maxima between them."""
+    if len(places) < 3:
+        return places, values, errors
+    fine = np.union1d(np.linspace(places[0], places[-1], 200), places)
+    return fine, PchipInterpolator(places, values)(fine), PchipInterpolator(places, errors)(fine)
+
+
+def _axis_name(key: str) -> str:
+    """Name of an axis in words, with its unit, where it has one."""
+    if key == PHI:
+        return "packing fraction φ"
+    owner, _, name = key.rpartition(".")
+    unit = f" ({UNITS[name]})" if name in UNITS else ""
+    return f"{_words(name)}{f' of {_words(owner)}' if owner else ''}{unit}"
+
+
+def _words(name: str) -> str:
+    return ": ".join(name.split(".")).replace("_", " ")
 
 
 def _axes(rows: list[Row]) -> list[str]:

@@ -18,11 +18,11 @@ from idealgas.log import open_log
 from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep, seed_of, with_seed
 from idealgas.sweep.point import COMMAND, log_path, points_folder, result_path, unfinished_logs
-from idealgas.sweep.results import done_points, stored_scene, table_paths
+from idealgas.sweep.results import done_points, plan_path, stored_scene, table_paths
 from idealgas.toml.dump import dump_document
 
-LOCK, PLAN = ".lock", "sweep.toml"
-"""Names of the lock file, by whose contents a folder is that of a sweep, and of the copy of the sweep's own file."""
+LOCK = ".lock"
+"""Name of the lock file, by whose contents a folder is that of a sweep."""
 
 MARK = b"idealgas sweep\n"
 """Contents of the lock file."""
@@ -71,7 +71,7 @@ def _is_marked(folder: Path) -> bool:
 
 def check_outputs(folder: Path, points: Iterable[int]) -> None:
     """Raise UserError if another file has the name of one that the sweep writes. points: numbers of open points."""
-    for path, kind in zip((folder / PLAN, *table_paths(folder)), (".toml", "results.csv", ".parquet"), strict=True):
+    for path, kind in zip((plan_path(folder), *table_paths(folder)), (".toml", "results.csv", ".parquet"), strict=True):
         if os.path.lexists(path):
             check_output(path, kind, force=True)
     for path in (log_path(folder, index) for index in points):
@@ -110,7 +110,7 @@ def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
     for found in done.values():
         raise _foreign_point(folder, found)
     check_outputs(folder, (p.index for p in points if not result_path(folder, p.index).exists()))
-    with replacing(folder / PLAN) as part:
+    with replacing(plan_path(folder)) as part:
         part.write_text(sweep.text, encoding="utf-8", newline="\n")
     return replace(sweep, points=tuple(points))
 

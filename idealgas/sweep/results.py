@@ -5,6 +5,7 @@ import io
 import json
 import math
 import os
+import re
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from itertools import count
@@ -65,6 +66,17 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     if found := done_points(folder):
         return found
     raise UserError(f"{folder}: contains no results of a sweep")
+
+
+def missing_runs(folder: str | os.PathLike[str]) -> tuple[int, int]:
+    """Return how many runs of the sweep in a folder have no results yet, and how many it has; 0, 0 if unknown."""
+    done = sum(path.stem.isdecimal() for path in points_folder(folder).glob("*.json"))
+    try:
+        with open(plan_path(folder), encoding="utf-8", opener=regular) as file:
+            head = re.match(r"# sweep of (\d+) points by idealgas\n", file.readline())
+    except (OSError, ValueError):
+        return 0, 0
+    return (max(int(head[1]) - done, 0), int(head[1])) if head else (0, 0)
 
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
@@ -134,6 +146,11 @@ def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
         UserError: if there are no results, or if one cannot be read.
     """
     return [row for point in read_points(folder) for row in rows_of(point)]
+
+
+def plan_path(folder: str | os.PathLike[str]) -> Path:
+    """Path of the copy of the file of a sweep, whose first line has its number of runs."""
+    return Path(folder) / "sweep.toml"
 
 
 def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:

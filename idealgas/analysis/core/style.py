@@ -110,14 +110,17 @@ class Panel(Axes):
             text.set_text(fill(text.get_text(), LABEL_CHARACTERS))
         return legend
 
-    def theory(self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK) -> None:
-        """Draw a theory at places, None for all, as a dashed line in a band of its error (one standard deviation)."""
+    def theory(
+        self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK,
+        linestyle: str = "--",
+    ) -> None:  # fmt: skip
+        """Draw a theory at places, None for all, as a line in a band of its error (one standard deviation)."""
         if x is None:
             self.axhline(value, color=color, linestyle="--", linewidth=0.9, label=label, zorder=3)
             if error > 0:
                 self.axhspan(value - error, value + error, color=color, alpha=BAND, linewidth=0)
             return
-        self.plot(x, value, "--", color=color, linewidth=0.9, label=label, zorder=3)
+        self.plot(x, value, linestyle, color=color, linewidth=0.9, label=label, zorder=3)
         if np.any(np.asarray(error) > 0):
             self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
 
