@@ -19,8 +19,9 @@ from ._terminal import echo
 @log_argument
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page.  [default: a free one]")
 @click.option("--no-browser", is_flag=True, help="Only print the address of the page.")
+@click.option("--until-eof", is_flag=True, hidden=True, help="End when the standard input ends, as with `run --watch`.")
 @quiet_option
-def watch(path: str, port: int, no_browser: bool) -> None:
+def watch(path: str, port: int, no_browser: bool, until_eof: bool) -> None:
     """Show a log in the browser until Ctrl-C, also while it is written.
 
     The page has the discs, their speeds beside the Maxwell-Boltzmann distribution, and temperature and pressure in
@@ -34,8 +35,16 @@ def watch(path: str, port: int, no_browser: bool) -> None:
         if not no_browser and has_screen():
             webbrowser.open(address)
 
+    if until_eof:
+        Thread(target=_end_at_eof, daemon=True).start()
     with open_log(path) as log, suppress(KeyboardInterrupt):
         serve(log, port, ready)
+
+
+def _end_at_eof() -> None:
+    """End this process when its standard input ends, as it does when the process at its other end is killed."""
+    sys.stdin.buffer.read()
+    os._exit(0)
 
 
 def has_screen() -> bool:
@@ -53,8 +62,9 @@ def watching(path: str) -> Iterator[Callable[[], None]]:
 
     def show() -> None:
         if not pages:
-            command = [sys.executable, "-m", "idealgas", "watch", "--", path]
-            pages.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+            command = [sys.executable, "-m", "idealgas", "watch", "--until-eof", "--", path]
+            pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.PIPE}
+            pages.append(subprocess.Popen(command, text=True, **pipes))
             Thread(target=_repeat, args=(pages[0].stderr,), daemon=True).start()
 
     try:

@@ -25,13 +25,12 @@ class Status:
     """Latest state of the gas in a log.
 
     time: end of the log, time. rows: number of event rows; None if the log has no events. events: number of events so
-    far, from the number of rows and the ratio of events to rows at the last checkpoint. temperature: mean kinetic
-    energy of all discs without their conserved common motion, energy. pressure, compressibility_factor: pressure
-    (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None if they cannot be measured.
-    ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from Maxwell-Boltzmann's distribution;
-    None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds. density: (BINS,), their measured
-    probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's density. caveats: those of
-    averages over this gas.
+    far. temperature: mean kinetic energy of all discs without their conserved common motion, energy. pressure,
+    compressibility_factor: pressure (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None
+    if they cannot be measured. ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from
+    Maxwell-Boltzmann's distribution; None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds.
+    density: (BINS,), their measured probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's
+    density. caveats: those of averages over this gas.
     """
 
     time: float
@@ -59,7 +58,7 @@ def status(log: Log) -> Status:
     return Status(
         time=log.end_time,
         rows=len(log) if log.has_events else None,
-        events=_events(log),
+        events=log.counts["events"],
         temperature=temperature,
         pressure=p,
         compressibility_factor=z,
@@ -101,16 +100,6 @@ def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
     return next(
         ((route.pressure, route.compressibility_factor) for route in routes if route.name == PAIRS), (None, None)
     )
-
-
-def _events(log: Log) -> int:
-    if "events" in log.summary:
-        return log.summary["events"]
-    if not len(log.checkpoints):
-        return 0
-    last = log.checkpoints[-1]
-    share = last.values["events"] / last.row if last.row else 1.0
-    return int(last.values["events"] + share * (len(log) - last.row if log.has_events else 0))
 
 
 def _reduced_speed_cdf(speed: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any, Literal, Self, overload
 
 import numpy as np
 
-from idealgas.columns import EventBatch
+from idealgas.columns import EventBatch, Kind
 from idealgas.locks import is_locked
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.header import LogHeader
@@ -17,6 +17,13 @@ from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.summary import parse_summary
+
+COUNTS = ("events", "disc_collisions", "trials")
+"""Numbers that every run counts, and that may end it."""
+
+
+_CACHED = ("runs", "checkpoints", "observables", "snapshot_times", "summary", "changes", "end_time", "counts")
+"""Properties that change while the run writes."""
 
 
 @cache
@@ -66,7 +73,7 @@ class LogHistory(LogHeader):
             if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair whose second is not committed
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
-        for name in ("runs", "checkpoints", "observables", "snapshot_times", "summary", "end_time", "changes"):
+        for name in _CACHED:
             self.__dict__.pop(name, None)
         if self._file.rows("changes"):
             for name in ("scene", "_steps_of_gravity"):
@@ -120,6 +127,24 @@ class LogHistory(LogHeader):
         if end < max(last):
             raise DamageError(self.path, f"summary/value: end_time {end:g} (allowed from {max(last):g} on)")
         return end
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """Numbers of `events`, `disc_collisions` and `trials` up to the end of the log.
+
+        Without event rows they are those of the last checkpoint.
+        """
+        if self.complete:
+            return {name: self.summary[name] for name in COUNTS}
+        last = self.checkpoints[-1] if len(self.checkpoints) else None
+        events, collisions, trials = (int(last.values[name]) if last else 0 for name in COUNTS)
+        if (first := last.row if last else 0) < len(self):
+            pairs = sum(int((rows.kind == Kind.DISC).sum()) for rows in self.chunks(("kind",), first)) // 2
+            events, collisions = events + len(self) - first - pairs, collisions + pairs
+            if not self.has_positions:
+                (end,) = self.chunks(("trial",), len(self) - 1)
+                trials = int(end.trial[-1])
+        return dict(zip(COUNTS, (events, collisions, trials), strict=True))
 
     @property
     def has_positions(self) -> bool:

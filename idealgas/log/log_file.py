@@ -3,6 +3,7 @@
 import math
 import os
 import time
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -59,8 +60,9 @@ class LogFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._source: Any = None
         self._file: Any = None
+        self._opened: list[Any] = []
+        weakref.finalize(self, _close_all, self._opened)  # before Python ends: HDF5 ends later, and then reads no more
         self._events = lru_cache(_CACHED)(self._chunk)
         self._others = lru_cache(2 * _CACHED)(self._chunk)
         keep_freed_memory()
@@ -78,11 +80,8 @@ class LogFile:
 
     def close(self) -> None:
         """Close the file."""
-        for file in (self._file, self._source):
-            if file is not None:
-                with suppress(OSError, RuntimeError):  # HDF5 reads damaged bytes even as it closes
-                    file.close()
-        self._file = self._source = None
+        _close_all(self._opened)
+        self._file = None
 
     def rows(self, table: str) -> int:
         """Number of committed rows, 0 for a missing table."""
@@ -153,9 +152,10 @@ class LogFile:
     def _open(self) -> None:
         self.close()
         try:
-            self._source = source = ReadableFile(self.path)
+            source = ReadableFile(self.path)
         except OSError as error:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from error
+        self._opened.append(source)
         if source.unclosed is None:
             source.seek(0)
             raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(source.read(HEAD))}")
@@ -164,6 +164,7 @@ class LogFile:
         if not self.unclosed:
             self._check_size(size, source.end)
         self._file = h5py.File(source, "r")
+        self._opened.append(self._file)
         if "format" not in self._file.attrs or _text_or_integer(self._file, "format") != schema.FORMAT:
             raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file of another program")
         version = _text_or_integer(self._file, "format_version")
@@ -239,6 +240,13 @@ class LogFile:
             return commit_of(self.path) != self.commit
         except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError):
             return False
+
+
+def _close_all(files: list[Any]) -> None:
+    """Close files, the last one first, and empty the list."""
+    while files:
+        with suppress(OSError, RuntimeError):  # HDF5 reads damaged bytes even as it closes
+            files.pop().close()
 
 
 def _text_or_integer(item: h5py.HLObject, name: str) -> str | int:

@@ -7,8 +7,7 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -20,8 +19,8 @@ from idealgas.errors import OutputError
 from idealgas.files import LOG, beside, check_output, give_name, storage_error
 from idealgas.log import schema
 from idealgas.log.hdf5.commit import Commit
-from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables
-from idealgas.log.hdf5.writable_file import OPTIONS, WritableFile, discard_writes
+from idealgas.log.hdf5.table_writer import TableWriter, commit_tables, open_tables, write_commit
+from idealgas.log.hdf5.writable_file import OPTIONS, WritableFile
 from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
@@ -98,16 +97,22 @@ class LogWriter:
         part = beside(path)
         sizes = {"scene": len(scene_text.encode()) + schema.SCENE_SLACK, "command": schema.COMMAND_SIZE}
         try:
-            with _new_file(part) as file:
+            with _file_in_memory() as file:
                 schema.write_header(file, gas, layout, seed, trajectory)
                 schema.create_tables(file, len(gas), layout, sizes)
-                file.flush()
                 commit = Commit.read(file)
                 tables = open_tables(file, commit, commit.rows)
                 tables["runs"].append(0, 1, _texts(tables["runs"], scene_text, command))
                 tables["runs"].store_tail()
-                commit_tables(file, tables, commit.sequence + 1, fsync)
+                write_commit(file, tables, commit.sequence + 1, size=0)
                 commit = Commit.read(file)
+                file.flush()
+                image = file.id.get_file_image()
+            with part.open("wb") as stored:
+                stored.write(image)
+                if fsync:
+                    stored.flush()
+                    os.fsync(stored.fileno())
             give_name(part, path, force, fsync)
         except (OSError, RuntimeError) as error:
             raise storage_error(path, error) from error
@@ -325,18 +330,9 @@ class LogWriter:
         self._due = math.inf if tails else time.monotonic() + FLUSH_SECONDS
 
 
-@contextmanager
-def _new_file(path: Path) -> Iterator[h5py.File]:
-    """Yield a new HDF5 file, which is closed in the end."""
-    file = h5py.File(path, "w", **OPTIONS, **schema.PAGES)
-    try:
-        yield file
-    except BaseException:
-        discard_writes(file)
-        with suppress(OSError, RuntimeError):
-            file.close()
-        raise
-    file.close()
+def _file_in_memory() -> h5py.File:
+    """A new HDF5 file in memory: HDF5 may crash when it creates a file on a disk that is full or fails."""
+    return h5py.File("log", "w", driver="core", backing_store=False, **OPTIONS, **schema.PAGES)
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:

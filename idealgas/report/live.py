@@ -1,9 +1,12 @@
 """Page that shows a log in the browser, also while it is written, and its server, which only this machine can reach."""
 
 import json
+import math
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from socketserver import ThreadingTCPServer
@@ -40,6 +43,9 @@ POINTS = 128
 
 POINT_ROWS = 2**14
 """Number of event rows around a point over which the pressure is averaged."""
+
+IDLE = 10.0
+"""Time for which a connection may be silent, s."""
 
 MEASURING = 0.2
 """Time for new points in an answer, s."""
@@ -199,11 +205,17 @@ class _Server(ThreadingTCPServer):
 
     allow_reuse_address = True
     daemon_threads = True
+    request_queue_size = 128
 
     def __init__(self, live: Live, port: int) -> None:
         self.live = live
         super().__init__((HOST, port), _Handler)
         self.name = f"{HOST}:{self.server_address[1]}"
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Print errors of the program only: browsers end connections at any moment."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -211,10 +223,15 @@ class _Handler(BaseHTTPRequestHandler):
 
     server: _Server
     server_version, sys_version = "idealgas", ""
+    timeout = IDLE
 
     def do_GET(self) -> None:
         """Answer a request; other sites whose name leads here get nothing."""
-        url = urlsplit(self.path)
+        try:
+            url = urlsplit(self.path)
+        except ValueError:
+            self._answer(400, "text/plain", "wrong address")
+            return
         if self.headers["Host"] != self.server.name:
             self._answer(403, "text/plain", "not the name of this page")
         elif url.path == "/":
@@ -227,13 +244,16 @@ class _Handler(BaseHTTPRequestHandler):
     def _data(self, path: str, query: dict[str, str]) -> None:
         live = self.server.live
         try:
+            ask: Callable[[], dict[str, Any]]
             if path == "/part":
-                found = live.part(float(query["after"]), query["newest"] == "1")
+                ask = partial(live.part, _finite(query["after"]), query["newest"] == "1")
             else:
-                found = live.curves(int(query["points"]))
+                ask = partial(live.curves, int(query["points"]))
         except (LookupError, ValueError):
             self._answer(400, "text/plain", "wrong query")
             return
+        try:
+            found = ask()
         except UserError as error:  # of a log that changes while it is read, only now
             found = {"running": live.running, "state": str(error), "motion": None, "points": 0}
         self._answer(200, "application/json", json.dumps(found, allow_nan=False))
@@ -253,6 +273,13 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:
         """Print nothing."""
+
+
+def _finite(text: str) -> float:
+    """The finite number in a text. Raises ValueError if it has none."""
+    if not math.isfinite(value := float(text)):
+        raise ValueError("not a finite number")
+    return value
 
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'"

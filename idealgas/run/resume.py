@@ -59,10 +59,11 @@ def resume(
         if log.live:
             raise LogError(f"{log.path}: {IN_USE}")
         text, scene = _scene_to_resume(log, overrides)
-        if log.complete and dump_document(scene) == dump_document(log.scene):
+        if dump_document(scene) != dump_document(log.scene):
+            _check_end(log, scene)
+        elif log.complete:
             return Summary.of(log.summary)
         last = log.checkpoints[-1] if len(log.checkpoints) else None
-        _check_end(log, last, scene)
         _check_reproduces(log, last, _simulation_at(log, last, scene))
         simulation = _simulation_at(log, last, scene)
         past = _history_of(log, last, scene)
@@ -90,15 +91,11 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
     return dump_document(asked), scene
 
 
-def _check_end(log: Log, last: Checkpoint | None, scene: Scene) -> None:
-    """Raise LogError where a run would have to end before the log does."""
-    if last is None:
-        return
+def _check_end(log: Log, scene: Scene) -> None:
+    """Raise LogError where a run would have to end before the log does, or at the same number."""
     run, n = scene.run, len(log.discs)
-    stop = stop_of(scene, n)
-    time = log.end_time if log.complete else last.time
-    counts = log.summary if log.complete else last.values
-    events, collisions, trials = (int(counts[name]) for name in ("events", "disc_collisions", "trials"))
+    stop, time = stop_of(scene, n), log.end_time
+    events, collisions, trials = log.counts.values()
     for passed, asked, there, unit in (
         (time > stop.time, run.until, time, "units of time"),
         (events >= stop.events, run.events, events, "events"),

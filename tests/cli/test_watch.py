@@ -4,16 +4,19 @@ import re
 import signal
 import socket
 import subprocess
+import threading
 import urllib.error
 import urllib.request
 from contextlib import contextmanager
 
+import psutil
 import pytest
 from helpers.report_pages import assert_positions, picture
-from helpers.support import IDEALGAS, error_of
+from helpers.support import IDEALGAS, error_of, posix
 from selenium.webdriver.support.ui import WebDriverWait
 
 from idealgas.log import open_log
+from idealgas.report import live
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
@@ -24,6 +27,15 @@ box.size = [20, 10]
 species = [{name = "gas", count = 60, radius = 0.3, speed = 1.0}]
 """
 ENDLESS = SCENE + "run.events = 100_000_000\n"
+
+
+WRONG = (
+    "part?after=x&newest=0",
+    "part?after=nan&newest=0",
+    "part?after=inf&newest=1",
+    "part?after=0",
+    "curves?points=1.5",
+)
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +136,7 @@ def test_a_finished_log_is_shown_part_after_part(browser, finished):
 def test_only_this_machine_and_this_name(finished):
     with started("watch", finished) as (child, address):
         other = urllib.request.Request(address, headers={"Host": "example.org"})
-        for request, code in ((other, 403), (address + "none", 404), (address + "part?after=x&newest=0", 400)):
+        for request, code in ((other, 403), (address + "none", 404), *((address + query, 400) for query in WRONG)):
             with pytest.raises(urllib.error.HTTPError) as refused:
                 urllib.request.urlopen(request)
             with refused.value as answer:
@@ -132,6 +144,9 @@ def test_only_this_machine_and_this_name(finished):
         with urllib.request.urlopen(address) as page:
             assert "default-src 'none'" in page.headers["Content-Security-Policy"]
         port = int(address.rstrip("/").rpartition(":")[2])
+        with socket.create_connection(("127.0.0.1", port)) as browser, browser.makefile("rb") as answer:
+            browser.sendall(b"GET http://[::1/ HTTP/1.0\r\n\r\n")  # an address that Python's urlsplit refuses
+            assert answer.readline() == b"HTTP/1.0 400 Bad Request\r\n"
         line = error_of("watch", finished, "--port", port)
         assert line == f"port {port}: Address already in use\n"
         with socket.socket() as outside, pytest.raises(ConnectionRefusedError):
@@ -142,3 +157,34 @@ def test_only_this_machine_and_this_name(finished):
 def test_a_log_without_events_is_one_line(tmp_path):
     simulate(parse_scene(SCENE + "run.until = 1\nlog.events = false\n"), tmp_path / "gas.h5")
     assert "has no events (made with log.events = false)" in error_of("watch", tmp_path / "gas.h5")
+
+
+def test_a_silent_connection_is_closed(finished, monkeypatch):
+    monkeypatch.setattr(live._Handler, "timeout", 0.1)
+    with open_log(finished) as log, live._Server(live.Live(log), 0) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            half_open = [socket.create_connection(server.server_address) for _ in range(20)]
+            for connection in half_open:
+                connection.sendall(b"GET / HT")
+            assert [connection.recv(1) for connection in half_open] == [b""] * 20
+            for connection in half_open:
+                connection.close()
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+@posix
+def test_the_page_ends_with_a_killed_run(tmp_path):
+    """The page has a process of its own, which reads its standard input until the run at the other end is gone."""
+    (tmp_path / "gas.toml").write_text(ENDLESS)
+    with started("run", "gas.toml", "-o", "gas.h5", "--watch", cwd=tmp_path) as (child, _):
+        (page,) = psutil.Process(child.pid).children()
+        assert page.is_running()
+        child.kill()
+        child.wait()
+        page.wait(timeout=60)
+    with open_log(tmp_path / "gas.h5") as log:
+        assert log.run_state == "not closed (crash?)"

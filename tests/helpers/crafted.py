@@ -24,7 +24,8 @@ WRITING_SWMR = 0b101
 def opened(path: Path) -> Iterator[h5py.File]:
     """A log, open for changes; one that was not closed is in that state again afterwards."""
     unclosed = has_consistency_flags(path.read_bytes()[:48])
-    clear_consistency_flags(path)
+    with path.open("r+b") as raw:
+        clear_consistency_flags(raw.fileno())
     with h5py.File(path, "r+", **OPTIONS) as file:
         yield file
     if unclosed:

@@ -25,7 +25,13 @@ ROOT = Path(__file__).parents[2]
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
 
 
-PACKAGES = {"chromium": "chromium", "chromedriver": "chromium-driver", "h5dump": "hdf5-tools", "ffmpeg": "ffmpeg"}
+PACKAGES = {
+    "chromium": "chromium",
+    "chromedriver": "chromium-driver",
+    "h5dump": "hdf5-tools",
+    "ffmpeg": "ffmpeg",
+    "cc": "gcc",
+}
 """Programs beside Python that tests use, and what Debian packs them in."""
 
 

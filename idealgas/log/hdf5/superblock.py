@@ -25,12 +25,16 @@ def has_consistency_flags(block: bytes) -> bool | None:
     return block[11] != 0 if len(block) >= _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
-def clear_consistency_flags(path: Path) -> None:
-    """Clear the file consistency flags of a file that was not closed. Raises ValueError for a damaged superblock."""
-    with path.open("r+b") as file:
+def clear_consistency_flags(descriptor: int) -> None:
+    """Clear the file consistency flags of a file that was not closed. Raises ValueError for a damaged superblock.
+
+    descriptor: of the file, open for reading and writing.
+    """
+    with open(descriptor, "r+b", closefd=False) as file:
+        file.seek(0)
         block = file.read(_SIZE)
         if has_consistency_flags(block):
-            end = -(-os.fstat(file.fileno()).st_size // _PAGE) * _PAGE
+            end = -(-os.fstat(descriptor).st_size // _PAGE) * _PAGE
             block = _cleared(block, end)
             file.truncate(end)
             file.seek(0)

@@ -136,8 +136,13 @@ def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: 
     file.flush()
     if fsync:
         os.fsync(descriptor)
-    rows = {name: table.stored for name, table in tables.items()}
-    tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
-    Commit(sequence, os.fstat(descriptor).st_size, rows, tails).write(file[DATASET].id)
+    write_commit(file, tables, sequence, os.fstat(descriptor).st_size)
     if fsync:
         os.fsync(descriptor)
+
+
+def write_commit(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, size: int) -> None:
+    """Write the commit record of all rows in a file. size: size of the file, bytes."""
+    rows = {name: table.stored for name, table in tables.items()}
+    tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
+    Commit(sequence, size, rows, tails).write(file[DATASET].id)

@@ -40,7 +40,7 @@ class WritableFile:
         try:
             if commit is not None and commit_of(path) != commit:
                 raise ChangedError
-            clear_consistency_flags(path)
+            clear_consistency_flags(self._lock.descriptor)
             self.file = h5py.File(path, "r+", **OPTIONS)
         except BaseException:
             self._lock.close()
@@ -61,25 +61,32 @@ class WritableFile:
         return os.fstat(self._lock.descriptor).st_nlink == 0
 
     def close(self) -> None:
-        """Close the file. HDF5 does so only after other code has closed it too; until then it remains locked."""
-        alone = self._alone
-        self.file.close()
-        if alone:
-            self._lock.close()
+        """Close the file. HDF5 does so only after other code has closed it too; until then it remains locked.
+
+        HDF5 may crash where a file that it closes cannot be written, so it only flushes the file. Raises OSError if
+        that fails, and the file remains open.
+        """
+        self.file.flush()
+        if not self._alone:
+            self.file.close()
+            return
+        self._discard_writes()
+        clear_consistency_flags(self._lock.descriptor)
+        self._lock.close()
 
     def abandon(self) -> None:
         """Close a file that could not be written to, and leave it as if its writer had been killed."""
-        alone = self._alone
-        if alone:
-            discard_writes(self.file)
+        if self._alone:
+            self._discard_writes()
+            self._lock.close()
+        else:
+            with suppress(OSError, RuntimeError):
+                self.file.close()
+
+    def _discard_writes(self) -> None:
+        """Make HDF5 close the file without writing to it: it would clear the flags of a file with lost writes, too."""
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, self.file.id.get_vfd_handle())
+        os.close(nowhere)
         with suppress(OSError, RuntimeError):
             self.file.close()
-        if alone:
-            self._lock.close()
-
-
-def discard_writes(file: h5py.File) -> None:
-    """Discard what HDF5 would still write: when it closes a file, it writes what it can and clears the flags."""
-    nowhere = os.open(os.devnull, os.O_RDWR)
-    os.dup2(nowhere, file.id.get_vfd_handle())
-    os.close(nowhere)

@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from helpers.fresh_python import python
 from helpers.log_compare import scene_of
 from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
 from helpers.support import posix
@@ -261,3 +262,11 @@ def test_a_log_whose_run_ends_while_it_is_opened(tmp_path, monkeypatch):
     monkeypatch.setattr("idealgas.log.reader.is_locked", is_locked)
     with open_log(path) as log:
         assert len(log) == 300
+
+
+@pytest.mark.parametrize("keeper", ["idealgas.jit", "idealgas.jit.EntryPoint"])
+def test_a_log_that_is_open_when_python_ends(tmp_path, keeper):
+    """HDF5 ends after Python, and can then no longer read through an object of Python."""
+    write_log(tmp_path / "run.h5", 100)
+    program = f"import idealgas, idealgas.jit; {keeper}.kept = log = idealgas.open_log('run.h5'); print(len(log))"
+    assert python(program, tmp_path) == "100"

@@ -11,11 +11,12 @@ from helpers.crafted import craft, put
 from helpers.log_compare import differences, scene_of
 
 import idealgas.run.resume as going_on
+from idealgas.analysis.status import status
 from idealgas.engine.simulation import TRAJECTORY
 from idealgas.log import DamageError, LogError, LogWriter, open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
-from idealgas.scene import SceneError
+from idealgas.scene import SceneError, parse_scene
 
 SNAPSHOTS = "log.snapshot_every=0.37"
 EVENTS = 12_000
@@ -198,3 +199,45 @@ def test_the_log_tells_of_its_runs(finished, tmp_path):
         assert [command for _, command in log.runs] == ["first", "second"]
         assert (log.command, log.scene.run.events) == ("second", 6000)
         assert len(log.checkpoints) >= 1
+
+
+GAS = """
+scene.seed = 5
+box.size = [4, 4]
+species = [{ name = "gas", count = 12, radius = 0.2, temperature = 1 }]
+"""
+
+
+def test_an_interrupted_run_ends_at_one_time_and_one_number_of_events(uncompiled, tmp_path):
+    """For the run, for who reads its log, and for who wants to end it earlier."""
+    path = tmp_path / "run.h5"
+    scene = parse_scene(f"{GAS}run.events = 100_000\nlog.checkpoint_every = 1")
+    ended = simulate(scene, path, interrupted=interrupted(1))
+    with open_log(path) as log:
+        first = log.checkpoints.times[-1].item()
+        assert 0 <= first < log.end_time == ended.end_time
+        assert log.counts == {name: getattr(ended, name) for name in ("events", "disc_collisions", "trials")}
+        assert status(log).events == ended.events > log.checkpoints[-1].values["events"]
+    for end, message in (
+        (f"run.until={(first + ended.end_time) / 2!r}", f"already at {ended.end_time:,.12g} units of time; "),
+        (f"run.events={ended.events - 1}", f"already at {ended.events:,} events; {ended.events - 1:,} lies before"),
+        (f"run.events={ended.events}", f"already at {ended.events:,} events; {ended.events:,} is not a later end"),
+    ):
+        with pytest.raises(LogError, match=re.escape(message)):
+            resume(path, [end])
+
+
+@pytest.mark.parametrize("discs", [2, 12])
+def test_a_reversal_is_whole(uncompiled, tmp_path, discs):
+    """A run whose number of events is reached within it ends after it, also if it is cut there and resumed."""
+    gas = f"{GAS}steering.reversed_at = 1.0\n".replace("count = 12", f"count = {discs}")
+    before = simulate(parse_scene(f"{gas}run.until = 0.999999"), tmp_path / "before.h5").events
+    expected, path = tmp_path / "expected.h5", tmp_path / "cut.h5"
+    whole = simulate(parse_scene(f"{gas}run.events = {before + discs // 2}"), expected)
+    assert (whole.events, whole.steered, whole.end_time) == (before + discs, discs, 1.0)
+    shutil.copy(expected, path)
+    LogWriter.resume(path).close()
+    with open_log(path) as log:
+        assert (log.complete, len(log), log.end_time) == (False, whole.rows, 1.0)
+    resume(path)
+    assert differences(path, expected) == []
