@@ -15,7 +15,7 @@ from idealgas.analysis.status import status
 from idealgas.engine.simulation import TRAJECTORY
 from idealgas.log import DamageError, LogError, LogWriter, open_log
 from idealgas.run.resume import resume
-from idealgas.run.simulate import simulate
+from idealgas.run.simulate import open_run, simulate
 from idealgas.scene import SceneError, parse_scene
 
 SNAPSHOTS = "log.snapshot_every=0.37"
@@ -211,15 +211,16 @@ species = [{ name = "gas", count = 12, radius = 0.2, temperature = 1 }]
 def test_an_interrupted_run_ends_at_one_time_and_one_number_of_events(uncompiled, tmp_path):
     """For the run, for who reads its log, and for who wants to end it earlier."""
     path = tmp_path / "run.h5"
-    scene = parse_scene(f"{GAS}run.events = 100_000\nlog.checkpoint_every = 1")
-    ended = simulate(scene, path, interrupted=interrupted(1))
+    with open_run(parse_scene(f"{GAS}run.events = 100_000"), path) as run:
+        run.advance(events=1500)
+        ended = run._summarise()
     with open_log(path) as log:
-        first = log.checkpoints.times[-1].item()
-        assert 0 <= first < log.end_time == ended.end_time
+        last = log.checkpoints[-1]
+        assert 0 < last.time < log.end_time == ended.end_time
         assert log.counts == {name: getattr(ended, name) for name in ("events", "disc_collisions", "trials")}
-        assert status(log).events == ended.events > log.checkpoints[-1].values["events"]
+        assert status(log).events == ended.events == 1500 > last.values["events"] > 0
     for end, message in (
-        (f"run.until={(first + ended.end_time) / 2!r}", f"already at {ended.end_time:,.12g} units of time; "),
+        (f"run.until={(last.time + ended.end_time) / 2!r}", f"already at {ended.end_time:,.12g} units of time; "),
         (f"run.events={ended.events - 1}", f"already at {ended.events:,} events; {ended.events - 1:,} lies before"),
         (f"run.events={ended.events}", f"already at {ended.events:,} events; {ended.events:,} is not a later end"),
     ):
