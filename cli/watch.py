@@ -63,8 +63,7 @@ def watching(path: str) -> Iterator[Callable[[], None]]:
     def show() -> None:
         if not pages:
             command = [sys.executable, "-m", "idealgas", "watch", "--until-eof", "--", path]
-            pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.PIPE}
-            pages.append(subprocess.Popen(command, text=True, **pipes))
+            pages.append(subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
             Thread(target=_repeat, args=(pages[0].stderr,), daemon=True).start()
 
     try:
