@@ -98,10 +98,10 @@ def _print(summary: "Summary", output: str, from_start: bool, shows: Sequence[st
         rows |= {"trials": f"{summary.trials:,}", "  accepted": f"{summary.disc_collisions / summary.trials:.4f}"}
     rows["simulated time"] = f"{summary.end_time:.6g}"
     rows["energy drift"] = f"{summary.energy_drift:.1e}"
-    rows["deepest overlap"] = f"{summary.deepest_overlap:.1e} diameters"
+    rows["deepest overlap"] = f"{summary.deepest_overlap:.1e} of the sum of the radii"
     rows["wall time"] = f"{summary.seconds:.2f} s"
     if summary.compile_seconds > 1:
-        rows["compilation (once for these effects)"] = f"{summary.compile_seconds:.1f} s"
+        rows["compiling or loading machine code"] = f"{summary.compile_seconds:.1f} s"
     if from_start:
         rows["events per second"] = f"{summary.events / summary.seconds:,.0f}"
     with suppress(FileNotFoundError):  # moved while it was written

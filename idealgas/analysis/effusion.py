@@ -194,15 +194,17 @@ class EffusionAnalysis(Analysis):
         figure, (course, flux) = panels(2)
         for k, (name, runs) in enumerate(groups.items()):
             colour, line, marker = curve_style(k)
-            course.plot(runs[0].time, np.mean([run.beyond for run in runs], axis=0), line, color=colour, label=name)
+            beyond, label = np.mean([run.beyond for run in runs], axis=0), name or "measured"
+            course.plot(runs[0].time, beyond, line, color=colour, label=label)
             if laws := [run.expected for run in runs if run.expected is not None]:
-                course.plot(runs[0].time, np.mean(laws, axis=0), "--", color=GREY, linewidth=0.8)
+                law = np.mean(laws, axis=0)
+                course.plot(runs[0].time, law, "--", color=GREY, linewidth=0.8, label="kinetic theory")
             n, speed = runs[0].density, together[name]
             if speed.theory is None:
                 flux.axhline(n * speed.value, color=colour, linestyle=line, label=f"{name}: no theory")
             else:
                 expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
-                flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3)
+                flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3, label=label)
         highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
         ends = np.array([0.0, 1.1 * highest])
         doubt = max((one.theory_error / one.theory for one in together.values() if one.theory), default=0.0)

@@ -42,7 +42,8 @@ class SpeedPanel:
         self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0
         self._edges, self._speeds = np.linspace(0, top, BINS + 1), np.linspace(0, top, 200)
-        highest = 1.8 * self._density((top / FASTEST) ** 2 * float(gas.mass.mean()) / 2).max()
+        temperature = (top / FASTEST) ** 2 / 2 / float((1 / gas.mass).mean())  # ⟨v²⟩ of all discs is 2T ⟨1/m⟩
+        highest = 1.8 * self._density(temperature).max()
         axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)", xlabel="speed (length/time)")
         self._bars = _bars(axes, self._edges)
         (self._curve,) = axes.plot(self._speeds, self._density(1.0), color=line, animated=True)

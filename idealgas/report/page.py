@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
@@ -20,6 +21,10 @@ from idealgas.report.sections import Section, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """The program of the page, in order."""
+
+
+CODE = re.compile("`([^`]+)`")
+"""Commands and keys in a description, between backticks."""
 
 
 def text_of(name: str) -> str:
@@ -42,10 +47,10 @@ SUMMARY = {
     "epochs": "epochs",
     "energy_change": "energy change of the discs (energy)",
     "energy_drift": "energy drift (share of the energy)",
-    "deepest_overlap": "deepest overlap (sums of two radii)",
+    "deepest_overlap": "deepest overlap (share of the sum of the radii)",
     "max_wall_penetration": "largest penetration of a wall (diameters)",
     "seconds": "wall time (s)",
-    "compile_seconds": "making or loading machine code, before that (s)",
+    "compile_seconds": "compiling or loading machine code, before that (s)",
 }
 """Labels, with units, of the values in the summary of a run that the report shows."""
 
@@ -127,7 +132,8 @@ def description_html(description: str) -> str:
         if all(line.startswith("  ") for line in lines):
             html += f'<pre tabindex="0">{chr(10).join(map(escape, lines))}</pre>'
         else:
-            html += f"<p>{escape(' '.join(text.split()))}</p>"
+            words = CODE.sub(r"<code>\1</code>", escape(" ".join(text.split())))
+            html += f"<p>{words}</p>"
     return html
 
 

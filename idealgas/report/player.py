@@ -83,6 +83,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         "speed": crossing(gas.box, moving),
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
+        "mixes": _mixes(log),
         "brightest": BRIGHTEST * thermal,
         "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(gas.species_names)]},
         "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
@@ -117,6 +118,14 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
 def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
     """Time that a second of playing takes, in which a typical disc crosses a part of the box."""
     return max(box) / CROSSING / _rms_speed(velocity)
+
+
+def _mixes(log: Log) -> bool:
+    """Whether discs exchange energy, so that their speeds tend to the Maxwell-Boltzmann distribution."""
+    if not log.scene.properties.isolated:
+        return True
+    _, collisions = log.observables["disc_collisions"]
+    return bool(len(collisions) and 2 * collisions[-1] >= len(log.discs))
 
 
 def _rms_speed(velocity: np.ndarray) -> float:

@@ -242,9 +242,11 @@ class SpeedView {
     const temperature = this.temperature();
     pen.strokeStyle = theme.dark ? theme.ink : head.curve;
     pen.lineWidth = 2;
-    pen.beginPath();
-    this.law(temperature).forEach((f, k) => pen.lineTo(toX(head.fastest * k / 200), toY(f)));
-    pen.stroke();
+    if (head.mixes) {
+      pen.beginPath();
+      this.law(temperature).forEach((f, k) => pen.lineTo(toX(head.fastest * k / 200), toY(f)));
+      pen.stroke();
+    }
     shades.forEach((shade, k) => {
       const from = toX(head.brightest * k / shades.length), last = k + 1 === shades.length;
       pen.fillStyle = shade;
@@ -263,7 +265,7 @@ class SpeedView {
     pen.textAlign = "right";
     const rise = roundStep(this.top / 4);
     for (let f = 0; f <= this.top; f += rise) pen.fillText(+f.toPrecision(3), left - 6, toY(f) + 4);
-    const key = "bars: discs, line: Maxwell-Boltzmann at ";
+    const key = head.mixes ? "bars: discs, line: Maxwell-Boltzmann at " : "bars: discs, which hardly collide, at ";
     pen.fillText((w > 480 ? key : "") + "T = " + temperature.toPrecision(5), left + w, 15);
     pen.textAlign = "left";
     pen.fillText("density (time/length)", 4, 15);

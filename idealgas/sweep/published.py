@@ -102,8 +102,8 @@ def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> 
                     f"{off:+.1f} ", (side * FARTHEST, row), (-8 * side, 0), textcoords="offset points",
                     ha="right" if side > 0 else "left", va="center", fontsize=8,
                 )  # fmt: skip
-    for width in (1, 3):
-        ax.axvspan(-width, width, color=GREY, alpha=0.13, linewidth=0, label=f"±{width}σ")
+    for width, alpha in ((3, 0.15), (1, 0.4)):
+        ax.axvspan(-width, width, color=GREY, alpha=alpha, linewidth=0, label=f"±{width}σ")
     ax.set(xlim=(-1.08 * FARTHEST, 1.08 * FARTHEST), ylim=(len(papers) - 0.4, -0.6))
     ax.set_xlabel("own value - published value (σ, both errors together)")
     name_rows(ax, [f"{source} ({len(found)})" for source, found in papers.items()], fontsize=8)

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 INSTANTS = 257
 """Number of instants of the series."""
 
+MOST_IN_COLUMN = 3
+"""Largest number of panels of the picture that stand below each other."""
+
 MOST_SAMPLES = 2**14
 """Largest number of samples of the energy."""
 
@@ -221,8 +224,11 @@ class EvolutionAnalysis(Analysis):
         series, law, has_piston = result.pressure, result.law, result.track is not None
         states = series is not None and has_piston and np.ptp(series.area) > 0
         shown = [result.beyond, series, has_piston, result.given, states]
-        figure, axes = panels(1 + sum(map(bool, shown)))
-        ax, *others = axes
+        number = 1 + sum(map(bool, shown))
+        figure, axes = panels(-(-number // 2), 2) if number > MOST_IN_COLUMN else panels(number)
+        for ax in axes[number:]:
+            ax.remove()
+        ax, *others = axes = axes[:number]
         rest = iter(others)
         ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
         if result.spin is not None:

@@ -210,6 +210,9 @@ class HistogramAnalysis(Analysis):
             ax.set_xlabel(f"{result.quantity} ({result.unit})")
             ax.set_ylabel(f"density ({INVERSE.get(result.unit, f'1/{result.unit}')})")
             ax.legend()
+        ends, heights = (np.array([getattr(ax, of)() for ax in axes]) for of in ("get_xlim", "get_ylim"))
+        for ax in axes:  # species are compared by eye
+            ax.set(xlim=(ends[:, 0].min(), ends[:, 1].max()), ylim=(0, heights[:, 1].max()))
         return figure
 
 

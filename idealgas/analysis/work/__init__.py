@@ -182,22 +182,40 @@ class WorkAnalysis(Analysis):
         for crossing, works, ratio in zip(result.crossings, axes[::2], axes[1::2], strict=True):
             forward, back = crossing.forward, -crossing.back
             edges = np.histogram_bin_edges(np.concatenate((forward, back)), BINS)
-            counts = [np.histogram(work, edges)[0] for work in (forward, back)]
-            for count, colour, label in zip(
-                counts, COLOURS, (f"W, {crossing.name}", "−W of the reverse strokes"), strict=False
-            ):
-                works.stairs(count / count.sum() / np.diff(edges), edges, color=colour, label=label)
+            counts = [np.histogram(work[work != 0], edges)[0] for work in (forward, back)]
+            names = f"W, {crossing.name}", "−W of the reverse strokes"
+            for count, work, colour, label in zip(counts, (forward, back), COLOURS, names, strict=False):
+                works.stairs(count / len(work) / np.diff(edges), edges, color=colour, label=label)
+                if still := np.count_nonzero(work == 0):  # an atom, which has no density
+                    share = f"{100 * still / len(work):.0f} % of {'W' if work is forward else '−W'} are 0"
+                    marker = "^" if work is forward else "v"
+                    works.plot(0, 0, marker, color=colour, clip_on=False, fillstyle="none", label=share)
             _mark(works, crossing.free_energy)
-            some = (counts[0] > 0) & (counts[1] > 0)
-            (a, b), middle = (count[some] for count in counts), (edges[:-1] + edges[1:])[some] / 2
+            middle, (a, b) = _pairs(forward, back, edges)
             logs, error = np.log(a / b * (len(back) / len(forward))), np.sqrt(1 / a + 1 / b)
             ratio.errorbar(middle, logs, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="ln(P_F/P_R)")
             if (theory := crossing.free_energy.theory) is not None:
-                line, doubt = (middle - theory) / result.temperature, crossing.free_energy.theory_error
-                ratio.theory(middle, line, doubt / result.temperature, "theory: (W − ΔF)/T")
+                ends = edges[[0, -1]]
+                line, doubt = (ends - theory) / result.temperature, crossing.free_energy.theory_error
+                ratio.theory(ends, line, doubt / result.temperature, "theory: (W − ΔF)/T")
             ratio.set(xlabel="W (energy)", ylabel="ratio of the distributions, logarithm (no unit)")
             ratio.legend()
         return figure
+
+
+def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Works (n,) and numbers (2, n) of strokes forward and back in the bins that have both, energy.
+
+    Strokes without work are a value of their own, as no disc may meet the piston. The place of a bin is the mean of its
+    works.
+    """
+    works, rows = (forward, back), []
+    for low, high in pairwise(edges):
+        inside = [work[(work >= low) & (work < high) & (work != 0)] for work in works]
+        rows.append((np.concatenate(inside).mean() if all(map(len, inside)) else 0.0, *map(len, inside)))
+    rows.append((0.0, *(np.count_nonzero(work == 0) for work in works)))
+    place, *counts = np.array(sorted(row for row in rows if all(row[1:])), float).reshape(-1, 3).T
+    return place, np.array(counts)
 
 
 def _mark(ax: Any, free_energy: Estimate) -> None:

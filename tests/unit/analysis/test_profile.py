@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import kstest
 
-from idealgas import profile
+from idealgas import evolution, profile, temperature
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, column_temperature
 from idealgas.analysis.profile.strips import strip_test
 from idealgas.analysis.profile.theory import JUMP, conduct, expected_profile, natural_axis
@@ -147,6 +147,45 @@ def test_a_column_in_a_heat_bath(make):
     assert expected.temperature == pytest.approx(5.0, rel=1e-12)
 
 
+def test_all_commands_have_one_temperature_of_a_column(make):
+    """2E/(2N) of light and heavy discs in a tall box, as each degree of freedom and each height has T/2 and T.
+
+    Strips have the T of fixed energy, which falls by 1/N; its mean over the discs is T.
+    """
+    low = [f"species.{name}.{key}" for name in ("light", "heavy") for key in ("region=[0, 0, 12, 8]", "radius=0.02")]
+    log = make(
+        "gravity={ acceleration = [0, -9] }", "box.size=[12, 400]", "run.until=5", "run.collisions_per_disc=", *low
+    )
+    gas = log.discs
+    lowest = float(gas.mass @ (gas.position[:, 1] - gas.radius))
+    t = (gas.kinetic_energy + 9 * lowest) / (2 * len(gas))
+    found = temperature(log, start=0.0)
+    assert evolution(log).law.temperature == pytest.approx(t, rel=1e-6)
+    assert profile(log, start=0.0).law == f"barometric at fixed energy, T = {t:.6g} on average over the discs"
+    assert found.law == f"T = {t:.6g} (of a dilute column at fixed energy)"
+    for entry in found.species:
+        for estimate in (entry.x, entry.y, entry.both):
+            assert estimate.theory == pytest.approx(t, rel=1e-6)
+            assert 0 < estimate.theory_error < 0.02 * t
+    strips = expected_profile(log, 1, np.linspace(0.02, 399.98, 4001), 0.0)
+    weight = strips.density / strips.density.sum(axis=1, keepdims=True)
+    for mean in (weight * strips.temperature).sum(axis=1):
+        assert mean == pytest.approx(t, rel=2e-3)
+
+
+def test_sheared_sides_have_one_heat(make):
+    """How their energy is divided between them is a convention; the sum is the work of the shear."""
+    log = make(
+        *(f"box.{side}='periodic'" for side in ("left", "right")),
+        "box.bottom={ shear = 0.3 }",
+        "box.top={ shear = 0.3 }",
+    )
+    found = profile(log, bins=3, start=0.0)
+    time, given = log.observables["wall_energy"]
+    assert found.heat.keys() == {"bottom and top"}
+    assert found.heat["bottom and top"].value == pytest.approx((given[-1] - given[0])[2:].sum() / (time[-1] - time[0]))
+
+
 def test_between_two_thermal_sides(make):
     hot_and_cold = "box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }"
     assert expected_profile(make(*hot_and_cold), 1, np.linspace(0, 8, 42), 0.0) is None  # light and heavy drift apart
@@ -164,6 +203,14 @@ def test_between_two_thermal_sides(make):
     time, given = log.observables["wall_energy"]
     gain = (given[-1] - given[0]) / (time[-1] - time[0])
     assert [found.heat[name].value for name in ("bottom", "top")] == pytest.approx(gain[2:])
+    flow = found.heat_flow
+    assert flow.value == pytest.approx((gain[2] - gain[3]) / 2)
+    dilute = 1.029 * 2 / 0.2 / np.sqrt(np.pi)  # λ₀/√T
+    fall = 12 * 2 / 3 * (low - high) / 8
+    assert 1.0 < flow.theory / (dilute * fall) < 1.3  # Enskog's factor at φ = 0.098
+    assert 0.02 < flow.theory_error / flow.theory < 0.2
+    assert "Heat flows along y at the rate " in found.summary()
+    assert profile(log, bins=3, start=0.0, along="x").heat_flow is None
 
 
 def test_a_dense_gas_between_two_thermal_sides_has_one_pressure(make):

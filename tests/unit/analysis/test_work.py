@@ -12,6 +12,7 @@ from idealgas.analysis.registry import find
 from idealgas.analysis.theory.free_energy import log_configurations
 from idealgas.analysis.theory.two_discs import configurations
 from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.work import _pairs
 from idealgas.analysis.work.processes import crossings, process
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
@@ -77,6 +78,13 @@ def test_strokes_that_do_not_overlap_or_are_few():
     assert crossings(strokes(draw, 9), 2.0) == ()
     assert crossings(strokes(draw, 50)[:1], 2.0) == ()
     assert crossings(strokes(draw, 50, spread=0.01, free=0.7, temperature=1e-3), 1e-3) == ()
+
+
+def test_strokes_without_work_are_a_value_of_their_own():
+    forward, back = np.array([0.0, 0.0, 0.0, 0.1, 0.9]), np.array([0.0, 0.2, 0.2, 0.3, -0.8])
+    place, counts = _pairs(forward, back, np.array([-1.0, 0.0, 0.5, 1.0]))
+    assert place == pytest.approx([0.0, 0.2])
+    assert counts.tolist() == [[3, 1], [1, 3]]
 
 
 @pytest.fixture(scope="module")

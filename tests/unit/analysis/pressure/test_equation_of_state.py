@@ -1,10 +1,15 @@
+import csv
+import io
 import math
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
+from idealgas.analysis.core.quantities import as_csv
+from idealgas.analysis.core.result import Origin
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
 from idealgas.analysis.pressure.tables import pressure_tables
@@ -49,6 +54,21 @@ def test_a_wrong_pressure_is_found():
         for s in samples([0.1, 0.2], 1e-4)
     ]
     assert equation_of_state(wrong).check().agrees is False
+
+
+def test_rows_of_states_have_n_and_phi_and_seeds():
+    """In CSV each state has a row of Z with the number of the table, for N → ∞."""
+    runs = list(samples([0.1, 0.2], 1e-3, number=100, runs=2))
+    origins = [Origin(f"{k}.h5", str(k), "", "", "", False, 3 + k % 2, "") for k in range(4)]
+    found = equation_of_state([replace(run, origin=origin) for run, origin in zip(runs, origins, strict=True)])
+    rows = {row["quantity"]: row for row in csv.DictReader(io.StringIO(as_csv(found.as_dict(), "pressure")))}
+    z = [row for name, row in rows.items() if name.endswith(".Z")]
+    assert [row["group"] for row in z] == [f"φ = {phi}, N = 100, seeds 3, 4" for phi in (0.1, 0.2)]
+    table = pressure_tables(found)[0]
+    shown = [row[table.heads.index("Z")].value for row in table.rows]
+    assert [float(row["value"]) for row in z] == shown == [state.infinite.value for state in found.states]
+    of_n = [float(row["value"]) for name, row in rows.items() if name.endswith(".Z_of_this_N")]
+    assert of_n == [state.compressibility_factor.value for state in found.states] != shown
 
 
 def test_few_states_give_no_coefficients():
