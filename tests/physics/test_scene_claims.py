@@ -1,0 +1,293 @@
+"""Every shipped scene shows what its description says: a command prints each claim, true within its errors.
+
+`CLAIMS` has a line for each claim: the scene, its words in the description, the command that prints the number, and
+what has to hold. Estimates are within 4 standard errors; their errors are bounded too, so that the claim can fail.
+"""
+
+import csv
+import io
+import re
+import tomllib
+from collections.abc import Callable
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+import pytest
+from helpers.support import ROOT, called, output_of
+
+from idealgas.analysis import registry
+from idealgas.scene import load_scene
+
+SCENES = {path.stem: path for path in sorted(ROOT.glob("configs/*.toml"))}
+SIGMAS = 4.0
+QUICK = {"bounce", "corner", "three-discs", "wedge"}
+"""Scenes of some discs, whose runs take a second."""
+
+
+class Output:
+    """What a command prints: its text, and its numbers by the names of quantities."""
+
+    def __init__(self, path: str, command: str) -> None:
+        self.path, self.words = path, command.split()
+
+    @property
+    def text(self) -> str:
+        return called(self.words[0], self.path, *self.words[1:]).stdout
+
+    def rows(self, quantity: str) -> list[dict[str, float]]:
+        """Rows of the numbers whose names match, in order."""
+        printed = called(self.words[0], self.path, *self.words[1:], "--csv").stdout
+        lines = csv.DictReader(io.StringIO(printed))
+        found = [row for row in lines if fnmatchcase(row["quantity"], quantity)]
+        assert found, f"no {quantity} in `idealgas {' '.join(self.words)}`"
+        numbers = ("value", "standard_error", "theory", "theory_error", "deviation")
+        return [{name: float(row[name]) for name in numbers if row[name]} for row in found]
+
+
+Holds = Callable[[Output], None]
+
+
+def agrees(quantity: str, resolution: float) -> Holds:
+    """All such estimates agree with theory, and their standard errors are small beside it."""
+
+    def holds(output: Output) -> None:
+        for row in output.rows(quantity):
+            assert row["standard_error"] <= resolution * abs(row["theory"])
+            assert abs(row["deviation"]) <= SIGMAS
+
+    return holds
+
+
+def near(quantity: str, expected: float, resolution: float, own: float = 0.0) -> Holds:
+    """All such estimates are that number within their errors, and `own`, what the description leaves out."""
+
+    def holds(output: Output) -> None:
+        for row in output.rows(quantity):
+            assert row["standard_error"] <= resolution
+            assert abs(row["value"] - expected) <= SIGMAS * row["standard_error"] + own
+
+    return holds
+
+
+def between(quantity: str, low: float, high: float, entry: int = -1) -> Holds:
+    """A number, of a series by default the last one, is between two others."""
+
+    def holds(output: Output) -> None:
+        assert low <= output.rows(quantity)[entry]["value"] <= high
+
+    return holds
+
+
+def constant(quantity: str, relative: float = 1e-12) -> Holds:
+    """A series does not change but for rounding."""
+
+    def holds(output: Output) -> None:
+        values = [row["value"] for row in output.rows(quantity)]
+        assert max(values) - min(values) <= relative * max(abs(value) for value in values)
+
+    return holds
+
+
+def prints(pattern: str) -> Holds:
+    """The text of the command matches."""
+
+    def holds(output: Output) -> None:
+        assert re.search(pattern, output.text, re.MULTILINE), output.text
+
+    return holds
+
+
+def series(quantity: str, check: Callable[[list[float]], bool]) -> Holds:
+    """A property of the whole series."""
+
+    def holds(output: Output) -> None:
+        assert check([row["value"] for row in output.rows(quantity)])
+
+    return holds
+
+
+def event(time: str, disc: int, x: float, y: float) -> Holds:
+    """The event of a disc at a time has this place, to the last digit."""
+
+    def holds(output: Output) -> None:
+        rows = csv.DictReader(io.StringIO(output.text))
+        assert [
+            (float(row["x"]), float(row["y"])) for row in rows if (row["time"], row["disc"]) == (time, str(disc))
+        ] == [(x, y)]
+
+    return holds
+
+
+class Claim(NamedTuple):
+    """A claim. words: of the description. command: without the path of the log. holds: what its output has to be."""
+
+    scene: str
+    words: str
+    command: str
+    holds: Holds
+
+
+T = "evolution.temperature"
+BALANCE = between("evolution.end.balance", -1e-12, 1e-12)
+
+CLAIMS = [
+    Claim("adiabatic-piston", "until the pressures are equal", "evolution --from 50", agrees("evolution.rest", 0.2)),
+    Claim("adiabatic-piston", "The temperatures are not equal yet", "evolution --from 50",
+          between("evolution.chambers.left", 2.0, 3.0, 0)),
+    Claim("adiabatic-piston", "until both gases have one temperature", "evolution --from 50",
+          series("evolution.chambers.left", lambda t: t[-1] < 1.75 < 2 < t[0])),
+    Claim("adiabatic-piston", "`--from 50`, from a state of equal pressures, it compares them", "evolution --from 50",
+          prints("law, left")),
+    Claim("atmosphere", "exp(-m g y/T), here by a factor e every 5", "profile",
+          series("profile.species.air.density.[0-3]", lambda n: 1.5 < n[0] / n[1] < 2.1)),
+    Claim("atmosphere", "the temperature is the same at all heights", "profile",
+          agrees("profile.species.air.temperature.[0-5]", 0.05)),
+    Claim("baffle", "every chamber holds a quarter of them", "profile --bins 4",
+          near("profile.species.gas.density.*", 2.0, 0.25, 0.05)),
+    Claim("baffle", "at the temperature of the start", "evolution", constant(T)),
+    Claim("bounce", "20     floor at (7, 0.5)", "events --csv", event("20.0", 0, 7.0, 0.5)),
+    Claim("bounce", "15     right side at (9.5, 8)", "events --csv", event("15.0", 0, 9.5, 8.0)),
+    Claim("brownian", "Enskog's friction", "transport", agrees("transport.collision_rates.grain_gas.rate", 0.05)),
+    Claim("brownian", "it diffuses with D = T/Mγ", "transport", agrees("transport.diffusion.grain.coefficient", 0.2)),
+    Claim("clustering", "does not stay uniform", "cooling", between("cooling.last_scatter", 4.0, 100.0)),
+    Claim("clustering", "First they move together in vortices", "cooling", between("cooling.last_flow", 4.0, 100.0)),
+    Claim("clustering", "it cools more slowly than Haff's law", "cooling",
+          series("cooling.last_temperature", lambda t: t[0] > 0)),
+    Claim("clustering", "it cools more slowly than Haff's law", "evolution", between(T, 5 * 3.3e-5, 1e-3)),
+    Claim("compression", "so the temperature doubles", "evolution", between(T, 1.96, 2.08)),
+    Claim("compression", "equals the energy gained by the gas, to rounding", "evolution", BALANCE),
+    Claim("conduction", "right side takes the heat that the left side gives", "profile",
+          series("profile.heat.*", lambda q: abs(q[0] + q[1]) < 0.4 < 1.4 < q[0])),
+    Claim("conduction", "with a jump at each side", "profile",
+          series("profile.species.gas.temperature.*", lambda t: t[0] < 1.97 and t[-1] > 1.03)),
+    Claim("cooling", "A collision takes (1 - e²) T on average", "cooling", agrees("cooling.loss", 0.02)),
+    Claim("cooling", "τ = 13.7 here", "cooling", near("cooling.haff", 13.7, 0.3)),
+    Claim("cooling", "small enough for the gas to stay uniform", "cooling", between("cooling.last_scatter", 0.4, 1.2)),
+    Claim("corner", "2 collisions, 6 wall hits", "info", prints(r"disc collisions: 2$|disc collisions +2\b|disc collisions: 2\b")),
+    Claim("corner", "2.25   disc 4 turns at the right side", "events --csv", event("2.25", 4, 7.5, 1.0)),
+    Claim("crystal", "|Ψ₆| stays near 1", "order", between("order.whole", 0.9, 1.0)),
+    Claim("crystal", "the cages that their six neighbours make", "order", near("order.hexagons", 1.0, 0.01, 0.001)),
+    Claim("crystal", "S(k) has sharp peaks", "order", between("order.structure.positional_order_squared", 0.7, 1.0)),
+    Claim("crystal", "the pressure is close to that of free-volume theory", "pressure",
+          near("pressure.routes.pairs_virial.compressibility_factor", 16.45, 0.05, 0.8)),
+    Claim("demon", "almost all of them are on the right", "evolution", between("evolution.beyond.gas", 0.95, 1.0)),
+    Claim("demon", "at the temperature of the start", "evolution", constant(T)),
+    Claim("demon", "the entropy of the gas falls by N ln 2", "entropy",
+          between("entropy.species.gas.positions", -0.69315, -0.55)),
+    Claim("dense", "four times as hard as an ideal gas would", "pressure",
+          near("pressure.routes.pairs_virial.compressibility_factor", 4.0, 0.02, 0.2)),
+    Claim("dilute", "1 + 2φ = 1.02", "pressure",
+          near("pressure.routes.pairs_virial.compressibility_factor", 1.02, 0.001, 0.001)),
+    Claim("dilute", "about 1, fifty-five radii and a tenth of the box", "pressure",
+          near("pressure.free_paths.gas.path", 1.0, 0.01, 0.05)),
+    Claim("effusion", "n⟨v⟩/π arrive per length and time", "effusion", agrees("effusion.speed", 0.1)),
+    Claim("effusion", "about 435 of the 2000 are on the right", "effusion", between("effusion.beyond", 395, 475)),
+    Claim("escape", "pi A/(l v) = 441.9 at the speed 1", "escape", near("escape.mean_time", 441.9, 20.0)),
+    Claim("free-expansion", "its energy stays the same to rounding", "evolution", constant(T)),
+    Claim("free-expansion", "The pressure falls to a half", "evolution",
+          series("evolution.pressure.pressure.left_wall", lambda p: 0.35 < sum(p[-4:]) / 4 / p[0] < 0.65)),
+    Claim("heat-bath", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.routes.Var*", 0.1)),
+    Claim("lorentz", "perimeter of the scatterers, 0.6213", "billiard", near("billiard.path", 0.6213, 0.005)),
+    Claim("lorentz", "where D would be 0.162", "transport", between("transport.diffusion.gas.coefficient", 0.17, 0.35)),
+    Claim("loschmidt", "at t = 21 the gas is in the left half", "evolution", prints(r"At the end 0\.0 %")),
+    Claim("loschmidt", "follows the fraction in the right half", "evolution",
+          series("evolution.beyond.gas", lambda share: max(share) > 0.4 and share[-1] == 0)),
+    Claim("melting", "|Ψ₆| falls from 1 to that of a fluid", "order",
+          series("order.series", lambda psi: psi[0] > 0.99 and psi[-1] < 0.3)),
+    Claim("mixing", "until each fills the whole box", "evolution", between("evolution.beyond.blue", 0.37, 0.63)),
+    Claim("mixing", "until each fills the whole box", "evolution", between("evolution.beyond.red", 0.37, 0.63)),
+    Claim("mixing", "temperature and pressure do not change at all", "evolution", constant(T)),
+    Claim("mixture", "until both have the same temperature", "temperature", agrees("temperature.species.*y.both", 0.02)),
+    Claim("mixture", "half as fast as the light ones", "histogram",
+          series("histogram.distributions.*.mean", lambda v: abs(v[0] / v[1] - 2) < 0.05)),
+    Claim("novak-bortz", "become Maxwell-Boltzmann distributed within a few collisions each", "relaxation",
+          between("relaxation.relaxation_collisions_per_disc", 1.0, 6.0)),
+    Claim("osmosis", "the pressure on the right is higher by the osmotic pressure Π", "pressure",
+          near("pressure.walls.membrane_right.pressure", 1.0, 0.05, 0.05)),
+    Claim("otto", "the account of energy shows the work of the piston", "evolution",
+          between("evolution.given.piston", -2500, -800)),
+    Claim("otto", "and the heat of the left side", "evolution", between("evolution.given.left", 800, 2500)),
+    Claim("periodic", "that of an endless gas, without the corrections", "pressure",
+          agrees("pressure.collision_rates.gas_gas.rate", 0.02)),
+    Claim("piston", "Its position fluctuates about that where P A = N T", "evolution", agrees("evolution.rest", 0.01)),
+    Claim("piston", "The energy of discs and piston and P A together are conserved", "evolution", BALANCE),
+    Claim("poiseuille", "the viscosity of kinetic theory and a slip", "profile",
+          agrees("profile.species.gas.velocity.*", 0.2)),
+    Claim("polydisperse", "the pressure is that of the mixture theory", "pressure",
+          agrees("pressure.routes.pairs_virial.compressibility_factor", 0.01)),
+    Claim("polydisperse", "lower than that of equal discs of the same packing fraction", "pressure",
+          between("pressure.routes.pairs_virial.compressibility_factor", 2.18, 2.23)),
+    Claim("quench", "the temperature falls exponentially at first", "evolution",
+          series(T, lambda t: abs(t[60] - 4) < 0.5 and t[90] < 2.5)),
+    Claim("quench", "levels off at that of the walls", "evolution", between(T, 0.8, 1.2)),
+    Claim("quickstart", "their speeds follow the Maxwell-Boltzmann distribution", "histogram",
+          near("histogram.distributions.gas.mean", 0.8862, 0.002)),
+    Claim("quickstart", "hard discs add 2φ = 10 %", "pressure",
+          near("pressure.routes.pairs_virial.compressibility_factor", 1.10, 0.002, 0.012)),
+    Claim("relaxation-100", "they come to equilibrium in about 25 units of time", "relaxation",
+          between("relaxation.settled_time", 5.0, 45.0)),
+    Claim("relaxation-500", "come to equilibrium in about five units of time", "relaxation",
+          between("relaxation.settled_time", 2.5, 7.5)),
+    Claim("rough", "until all are at temperature 1", "temperature", near("temperature.species.gas.both", 1.0, 0.01)),
+    Claim("rough", "the heat capacity is 3N/2, not N", "evolution", between("evolution.spin", 0.9, 1.1)),
+    Claim("rough-cooling", "their ratio comes to 0.71", "cooling", near("cooling.temperature_ratio", 0.71, 0.05)),
+    Claim("separation", "a column of its own", "profile", agrees("profile.species.heavy.density.[0-4]", 0.03)),
+    Claim("separation", "the heavy one gathers at the bottom", "profile",
+          series("profile.species.heavy.density.*", lambda n: n[0] > 10 * n[-1])),
+    Claim("shear", "the viscosity times the shear rate", "shear", near("shear.viscosity", 0.571, 0.06)),
+    Claim("sinai", "67.4214", "billiard", between("billiard.reach.area", 67.42135, 67.42145)),
+    Claim("sinai", "55.0999", "billiard", between("billiard.reach.perimeter", 55.09985, 55.09995)),
+    Claim("sinai", "the mean free path is 3.8441", "billiard", near("billiard.path", 3.8441, 0.1)),
+    Claim("sound", "the equation of state (`idealgas pressure`) and the transport coefficients", "sound",
+          agrees("sound.waves.*.speed", 0.05)),
+    Claim("stadium", "4.3636", "billiard", near("billiard.path", 4.3636, 0.05)),
+    Claim("szilard", "heat turns into the work T ln 2 = 0.693", "evolution",
+          between("evolution.given.piston", -0.75, -0.6)),
+    Claim("thermostat", "The energy comes to NT in a few times 1/rate", "evolution", between(T, 0.7, 1.3)),
+    Claim("thermostat", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.routes.Var*", 0.12)),
+    Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"disc collisions:? *12\b")),
+    Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"wall hits:? *18\b")),
+    Claim("two-pistons", "In equilibrium both gases have the external pressure", "pressure",
+          near("pressure.walls.piston_left.pressure", 2.0, 0.01)),
+    Claim("two-pistons", "for the motion of each piston", "evolution", BALANCE),
+    Claim("vibrated-granular", "hottest at the floor", "profile",
+          series("profile.species.gas.temperature.*", lambda t: t[0] > 0.9 > 0.7 > min(t[2:4]))),
+    Claim("vibrated-granular", "falls to a minimum at a height of about 2.5 and rises again above", "profile",
+          series("profile.species.gas.temperature.[0-7]", lambda t: min(t) in t[2:4] and t[6] > min(t))),
+    Claim("wedge", "Hits of the left wall follow each other at equal times, 4 √2 apart", "info", prints(r"wall hits:? *5\d\b")),
+    Claim("work", "exp(-W/T) has the mean exp(-ΔF/T)", "work", agrees("work.processes.*.free_energy", 1.0)),
+]  # fmt: skip
+
+
+def words_of(name):
+    return " ".join(load_scene(SCENES[name]).scene.description.split())
+
+
+def slow_unless_quick(name):
+    return pytest.param(name, marks=() if name in QUICK else pytest.mark.slow)
+
+
+def test_every_scene_with_a_description_has_a_claim_and_leads_with_analyses():
+    described = [name for name in SCENES if words_of(name)]
+    assert {claim.scene for claim in CLAIMS} == set(described)
+    shows = {name: tomllib.loads(SCENES[name].read_text())["scene"].get("shows") for name in described}
+    assert [name for name, analyses in shows.items() if not analyses] == []
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: f"{claim.scene}-{claim.words[:20]}")
+def test_a_claim_is_in_the_description(claim):
+    assert " ".join(claim.words.split()) in words_of(claim.scene)
+
+
+@pytest.mark.parametrize("name", map(slow_unless_quick, sorted({claim.scene for claim in CLAIMS})))
+def test_a_scene_shows_what_it_says(name, tmp_path):
+    """And the analyses that it leads with apply to it."""
+    path = str(tmp_path / "run.h5")
+    printed = called("run", SCENES[name], "-o", path).stdout
+    leads = registry.shown(load_scene(SCENES[name]))
+    assert printed.splitlines()[-1].startswith(f"what it shows: `idealgas {leads[0]} ")
+    for analysis in leads:
+        output_of(analysis, path)
+    for claim in CLAIMS:
+        if claim.scene == name:
+            claim.holds(Output(path, claim.command))
