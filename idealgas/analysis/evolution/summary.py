@@ -12,6 +12,9 @@ from idealgas.analysis.core.tables import format_estimate
 if TYPE_CHECKING:
     from idealgas.analysis.evolution import Evolution
 
+RETURNED = 0.2
+"""Fraction of the discs that have come back from beyond a wall, from which on the headline says how many were there."""
+
 
 def evolution_summary(result: "Evolution") -> str:
     """Return the temperatures at the start and the end with theory, the piston, and the discs beyond a wall."""
@@ -58,4 +61,7 @@ def _beyond(result: "Evolution") -> Iterator[str]:
         expected = [] if known is None else [(name, replace(known, value=share[-1], theory=known.value))]
         discs = f"species '{name}'" if len(result.beyond) > 1 else "the discs"
         said = agreement(expected, "equilibrium")
+        most = int(share.argmax())
+        if share[most] > share[-1] + RETURNED:
+            yield f"Up to {100 * share[most]:.1f} % of {discs} are beyond the wall, at t = {result.time[most]:.4g}."
         yield f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {said}."

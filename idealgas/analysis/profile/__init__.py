@@ -216,6 +216,8 @@ class ProfileAnalysis(Analysis):
                 if not known:
                     continue
                 (x0, first), (x1, last) = known[0], known[-1]
+                if name == "velocity":  # of a flow between sides it is the largest in the middle
+                    x1, last = max(known, key=lambda entry: abs(entry[1].value - known[0][1].value))
                 if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
                     ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
                     found.append(f"The {name} of {entry.species} is {ends}.")
