@@ -151,8 +151,6 @@ CLAIMS = [
     Claim("brownian", "it diffuses with D = T/Mγ", "transport", agrees("transport.diffusion.grain.coefficient", 0.2)),
     Claim("clustering", "does not stay uniform", "cooling", between("cooling.last_scatter", 4.0, 100.0)),
     Claim("clustering", "First they move together in vortices", "cooling", between("cooling.last_flow", 4.0, 100.0)),
-    Claim("clustering", "it cools more slowly than Haff's law", "cooling",
-          series("cooling.last_temperature", lambda t: t[0] > 0)),
     Claim("clustering", "it cools more slowly than Haff's law", "evolution", between(T, 5 * 3.3e-5, 1e-3)),
     Claim("compression", "so the temperature doubles", "evolution", between(T, 1.96, 2.08)),
     Claim("compression", "equals the energy gained by the gas, to rounding", "evolution", BALANCE),
