@@ -70,7 +70,8 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
-        if wall.solid and not wall.name:  # one of many that meet: their numbers would cover each other
+        if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs have no such key
+            # Many such walls meet, and their numbers would cover each other.
             label = ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))
