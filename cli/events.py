@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from idealgas.errors import OutputError
+from idealgas.errors import OutputError, UserError
 
 from ._analysis import log_argument, open_log
 from ._terminal import data
@@ -33,6 +33,8 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
     """
     with open_log(path) as log:
         log.require_events()
+        if disc is not None and disc >= len(log.discs):
+            raise UserError(f"{path}: no such disc (got {disc}; allowed 0 to {len(log.discs) - 1})")
         row = 0 if t0 is None else log.row_at(t0)
         while True:
             live = follow and log.live  # before the rows are read, so that none is missed

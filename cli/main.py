@@ -74,7 +74,7 @@ class Commands(click.Group):
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[Any, ...]:
         """Name, command and arguments of a command line; UserError, with the most similar name, if unknown."""
         if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
-            raise unknown("command", args[0], self.list_commands(ctx))
+            raise unknown("command", args[0], [*self.list_commands(ctx), "--version"])
         return super().resolve_command(ctx, args)
 
     def main(self, *args: Any, **options: Any) -> Any:

@@ -1,7 +1,7 @@
 """Errors that a user can correct, printed as plain lines, never as a traceback; and text made safe to print."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -36,6 +36,12 @@ def install(extra: str) -> str:
     return f'.venv/bin/pip install -e ".[{extra}]" in the top folder'
 
 
+def did_you_mean(got: str, allowed: Iterable[str]) -> str:
+    """Return a suggestion for a message, `, did you mean "heavy"?`, or nothing if no allowed name is similar."""
+    close = get_close_matches(got, list(allowed), n=1)
+    return f', did you mean "{close[0]}"?' if close else ""
+
+
 def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
     """UserError for an unknown name; it suggests the most similar allowed name.
 
@@ -44,6 +50,4 @@ def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
         got: the unknown name.
         allowed: all known names.
     """
-    close = get_close_matches(got, allowed, n=1)
-    mean = f', did you mean "{close[0]}"?' if close else ""
-    return UserError(f"unknown {what}{mean} (got {got}; allowed {', '.join(allowed)})")
+    return UserError(f"unknown {what}{did_you_mean(got, allowed)} (got {got}; allowed {', '.join(allowed)})")

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MOST_PAIRED = 32
+"""Largest number of species of which every pair is told apart; memory and time would grow with its square."""
+
 
 @dataclass(frozen=True)
 class Gas:
@@ -32,6 +35,19 @@ class Gas:
     def __len__(self) -> int:
         """Number N of discs."""
         return len(self.mass)
+
+    @property
+    def partners(self) -> tuple[str, ...]:
+        """Names of the G groups of discs by which collisions of a species are counted: the species, or "all" discs.
+
+        All discs are one group if there are more than MOST_PAIRED species.
+        """
+        return self.species_names if len(self.species_names) <= MOST_PAIRED else ("all",)
+
+    @property
+    def partner(self) -> np.ndarray:
+        """Index (N,) into `partners` of each disc."""
+        return self.species if len(self.species_names) <= MOST_PAIRED else np.zeros_like(self.species)
 
     @property
     def unlike(self) -> tuple[str, ...]:

@@ -20,8 +20,8 @@ class Diagnostics(NamedTuple):
         kinetic_energy: sum over the discs, mass length²/time².
         momentum: (2,) f8, sum over the discs, mass length/time.
         overlap: deepest overlap of two discs, divided by the sum of their radii; 0 without any.
-        outside: largest distance by which a disc reaches beyond a side of the box, divided by its diameter; 0 without
-            any.
+        outside: largest distance by which a disc reaches beyond a side that is not periodic, divided by its diameter;
+            0 without any.
     """
 
     kinetic_energy: float
@@ -48,11 +48,20 @@ def deepest_overlap_of_all(record, periodic, absorbing):
     return deepest
 
 
-def check_invariants(gas: Gas, overlap: float, absorbing: np.ndarray | None) -> Diagnostics:
-    """Measure a gas whose deepest overlap (divided by the sum of the radii) is known."""
+def check_invariants(
+    gas: Gas, overlap: float, absorbing: np.ndarray | None, periodic: tuple[bool, bool]
+) -> Diagnostics:
+    """Measure a gas whose deepest overlap (divided by the sum of the radii) is known.
+
+    periodic: whether the sides along x and along y are periodic, so that no disc can be beyond them.
+    """
     here = inside(gas.position[:, 0], absorbing)
     radius, position = gas.radius[here], gas.position[here]
-    reach = [np.maximum(radius - x, x + radius - side) for x, side in zip(position.T, gas.box, strict=True)]
-    outside = float((np.array(reach) / (2 * radius)).max(initial=0.0))
+    reach = (
+        np.maximum(radius - x, x + radius - side)
+        for x, side, wraps in zip(position.T, gas.box, periodic, strict=True)
+        if not wraps
+    )
+    outside = max((float((beyond / (2 * radius)).max(initial=0.0)) for beyond in reach), default=0.0)
     momentum = (gas.mass[:, None] * gas.velocity).sum(axis=0)
     return Diagnostics(gas.kinetic_energy, momentum, overlap, outside)

@@ -300,11 +300,15 @@ class Simulation:
 
     def check_invariants(self) -> Diagnostics:
         """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
-        return check_invariants(self.gas, self.method.deepest_overlap(), self.effects.absorbing)
+        return check_invariants(
+            self.gas, self.method.deepest_overlap(), self.effects.absorbing, periodic_axes(self.effects.periodic)
+        )
 
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
         method = copy.copy(self.method)
         sides, shift = copy_of(self.effects.periodic), shear.at(self.effects.shear, self.reached)
         method.start(gas, for_kernels(self.effects._replace(periodic=sides, shear=shift)))
-        return check_invariants(gas, method.deepest_overlap(), self.effects.absorbing)
+        return check_invariants(
+            gas, method.deepest_overlap(), self.effects.absorbing, periodic_axes(self.effects.periodic)
+        )

@@ -11,7 +11,7 @@ import numpy as np
 from idealgas.columns import OUTWARD, SIDES, axis_of, is_upper
 from idealgas.physics.arc_geometry import nearest_points
 from idealgas.scene import Scene
-from idealgas.scene.checks.piston import called
+from idealgas.scene.checks.piston import piston_names
 from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 
@@ -48,7 +48,7 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
                     touches &= ~np.array([wall.lets_pass(name) for name in gas.species_names])[gas.species]
                 pressed = _first(accelerations @ normal.T) < 0
                 yield f"wall {k}", touches & pressed & ((normal * gas.velocity).sum(axis=1) == 0)
-    for piston, name in zip(scene.piston, called(len(scene.piston)), strict=True):
+    for piston, name in zip(scene.piston, piston_names(scene.piston), strict=True):
         outward = piston.outward_from(gas.position, gas.box)
         gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
         own = np.array([piston.acceleration(gas.box, acceleration) for acceleration in accelerations])

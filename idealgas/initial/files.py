@@ -1,18 +1,20 @@
 """Columns of discs from files: .npz, .csv, .gsd and .extxyz, those of `idealgas export` among them."""
 
 import csv
+import math
 import re
 import zipfile
-from collections.abc import Callable, Iterator
-from itertools import compress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import compress, islice
 from pathlib import Path
-from typing import Any, Literal
+from typing import IO, Any, Literal
 
 import numpy as np
 
 from idealgas.errors import install
 from idealgas.locks import regular
-from idealgas.scene.start import COLUMNS, StartError
+from idealgas.scene.checks import MOST_DISCS
+from idealgas.scene.start import COLUMNS, SINGLE, StartError
 
 Instant = float | Literal["end"]
 State = tuple[dict[str, Any], float]
@@ -21,11 +23,14 @@ State = tuple[dict[str, Any], float]
 LABELS = {"time", "disc", "image_x", "image_y", "speed"}
 """Columns of exported frames that are not part of a state."""
 
-MOST_BYTES = 2**31
-"""Largest size of a file, and of an array in it, bytes."""
+MOST_BYTES, MOST_COLUMN_BYTES = 2**31, 2**28
+"""Largest sizes of a file, and of a column in memory, bytes."""
 
-SINGLE = 2.0**-22
-"""Overlap in units of the largest coordinate that rounding to single precision explains: four roundings by 2⁻²⁴."""
+LONGEST_LINE = 2**17
+"""Largest number of characters of a line; Python's csv module has the same limit for a field."""
+
+ROWS = 2**14
+"""Number of rows of a text that are in memory as text at a time."""
 
 
 def read_state(path: Path, time: Instant) -> State:
@@ -47,6 +52,7 @@ def read_state(path: Path, time: Instant) -> State:
     except StartError:
         raise
     except (
+        csv.Error,
         zipfile.BadZipFile,
         ValueError,
         TypeError,
@@ -66,18 +72,22 @@ def _inside(columns: dict[str, Any]) -> dict[str, Any]:
     if motion[0].shape != motion[1].shape or motion[0].ndim != 2:
         return columns
     here = ~np.isnan(np.hstack(motion)).all(axis=1)
-    return {
-        name: list(compress(values, here)) if isinstance(values, list) else np.asarray(values)[here]
-        for name, values in columns.items()
-    }
+
+    def kept(values: Any) -> Any:
+        if isinstance(values, list):
+            return list(compress(values, here))
+        return np.asarray(values)[here] if np.ndim(values) else values  # one number for all discs
+
+    return {name: kept(values) for name, values in columns.items()}
 
 
 def _npz(path: Path, time: Instant) -> State:
     if time != "end":
         raise StartError("time", "no times in a .npz file", f"{time:g}", '"end"')
     with zipfile.ZipFile(path) as archive:
-        if (size := max((entry.file_size for entry in archive.infolist()), default=0)) > MOST_BYTES:
-            raise StartError("file", "too large", f"{size:,} bytes", f"<= {MOST_BYTES:,}")
+        for name in archive.namelist():
+            with archive.open(name) as file:
+                _check_column(Path(name).stem, *_shape_of(file))
     with np.load(path, allow_pickle=False) as archive:
         columns = {name: archive[name] for name in archive.files}
     if "species" in columns:
@@ -90,51 +100,137 @@ def _npz(path: Path, time: Instant) -> State:
     return columns, _single(columns) if single else 0.0
 
 
+def _shape_of(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
+    """Shape and type of an array in a .npy file, from its header."""
+    read = {1: np.lib.format.read_array_header_1_0, 2: np.lib.format.read_array_header_2_0}
+    major, _ = np.lib.format.read_magic(file)
+    if major not in read:
+        raise ValueError(f"version {major} of its format is not known")
+    shape, _, dtype = read[major](file)
+    return shape, dtype
+
+
+def _check_column(name: str, shape: tuple[int, ...], dtype: np.dtype) -> None:
+    """Refuse a column that is too large before it is read, or of numbers that are not real."""
+    _check_number(shape[0] if shape else 1)
+    if name not in COLUMNS:
+        raise StartError("file", "unknown column", name, ", ".join(COLUMNS))
+    if name != "species" and dtype.kind not in "biuf":
+        raise StartError("file", f"column {name} not of real numbers", str(dtype), "numbers such as float64")
+    if (size := math.prod(shape) * dtype.itemsize) > MOST_COLUMN_BYTES:
+        raise StartError("file", f"column {name} too large", f"{size:,} bytes", f"<= {MOST_COLUMN_BYTES:,}")
+
+
+def _check_number(discs: int) -> None:
+    if discs > MOST_DISCS:
+        raise StartError("file", "too many discs", f"{discs:,}", f"<= {MOST_DISCS:,}")
+
+
 def _single(columns: dict[str, Any]) -> float:
     return SINGLE * float(np.nanmax(np.abs(np.array(columns["position"], float)), initial=0.0))
 
 
+def _lines(file: IO[str]) -> Iterator[str]:
+    """Lines of a text, none of them longer than LONGEST_LINE."""
+    while line := file.readline(LONGEST_LINE + 1):
+        if len(line) > LONGEST_LINE:
+            raise ValueError(f"a line of more than {LONGEST_LINE:,} characters")
+        yield line
+
+
+def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
+    """Cells (n, width) of the next rows, as text."""
+    rows = iter(rows)
+    while chunk := list(islice(rows, ROWS)):
+        if any(len(row) != width for row in chunk):
+            raise ValueError("rows of different lengths")
+        yield np.array(chunk, object).reshape(-1, width)
+
+
+class _Moment:
+    """State at the wanted time, from parts of a file with their times, "end" for the last time of all."""
+
+    def __init__(self, wanted: Instant) -> None:
+        self._wanted, self._range = wanted, (math.inf, -math.inf)
+        self.begin(-math.inf)
+
+    def begin(self, time: float) -> None:
+        """Forget the parts before, as the next ones are at another time, or of a later frame."""
+        self.time, self._parts, self._discs = time, list[dict[str, np.ndarray]](), 0
+
+    def wants(self, time: float) -> bool:
+        """Whether parts at this time may be those of the wanted state."""
+        self._range = min(self._range[0], time), max(self._range[1], time)
+        return time >= self.time if self._wanted == "end" else time == self._wanted
+
+    def add(self, columns: dict[str, np.ndarray]) -> None:
+        """Add discs to the state."""
+        self._discs += len(columns["position"])
+        _check_number(self._discs)
+        self._parts.append(columns)
+
+    def columns(self) -> dict[str, Any]:
+        """Columns of the state; those of text as lists. Raises StartError if the file has no such time."""
+        if not self._parts:
+            allowed = "{:g} to {:g}".format(*self._range) if self._range[0] < math.inf else "a file with discs"
+            raise StartError("time", "no such time in the file", f"{self._wanted}", allowed)
+        columns = {name: np.concatenate([part[name] for part in self._parts]) for name in self._parts[0]}
+        return {name: values.tolist() if values.dtype == object else values for name, values in columns.items()}
+
+
 def _csv(path: Path, time: Instant) -> State:
-    with open(path, newline="", encoding="utf-8") as file:
-        reader = csv.reader(file)
-        names = next(reader, [])
-        rows = [row for row in reader if row]
-    known = {"x", "y", "vx", "vy", *COLUMNS[2:], *LABELS}
-    if wrong := [name for name in names if name not in known] or [name for name in names if names.count(name) > 1]:
-        raise StartError("file", "unknown column, or one that appears twice", wrong[0], ", ".join(sorted(known)))
-    if any(len(row) != len(names) for row in rows):
-        raise ValueError("rows of different lengths")
-    texts = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else dict.fromkeys(names, ())
-    chosen = _at(np.array(texts["time"], float), time) if "time" in texts else slice(None)
-    if "time" not in texts and time != "end":
-        raise StartError("time", "no column time in the file", f"{time:g}", '"end"')
+    moment = _Moment(time)
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        rows = csv.reader(_lines(file))
+        names = next(rows, [])
+        known = {"x", "y", "vx", "vy", *COLUMNS[2:], *LABELS}
+        if wrong := [name for name in names if name not in known] or [n for n in names if names.count(n) > 1]:
+            raise StartError("file", "unknown column, or one that appears twice", wrong[0], ", ".join(sorted(known)))
+        if "time" not in names:
+            if time != "end":
+                raise StartError("time", "no column time in the file", f"{time:g}", '"end"')
+            moment.begin(0.0)
+            moment.add(_state_columns(dict.fromkeys(names, np.empty(0, object))))
+        for cells in _chunks((row for row in rows if row), len(names)):
+            texts = dict(zip(names, cells.T, strict=True))
+            times = np.array(texts["time"], float) if "time" in texts else np.zeros(len(cells))
+            now = float(times.max()) if time == "end" else time
+            if moment.wants(now):
+                if now != moment.time:
+                    moment.begin(now)
+                moment.add(_state_columns({name: column[times == now] for name, column in texts.items()}))
+    return moment.columns(), 0.0
+
+
+def _state_columns(texts: dict[str, np.ndarray]) -> dict[str, Any]:
+    """Columns of a state from columns of text by name."""
     columns: dict[str, Any] = {}
-    for name in COLUMNS[2:]:
-        if name == "species" and name in texts:
-            columns[name] = np.array(texts[name], object)[chosen].tolist()
-        elif name in texts:
-            columns[name] = np.array(texts[name], float)[chosen]
+    for name in (name for name in COLUMNS[2:] if name in texts):
+        columns[name] = texts[name] if name == "species" else np.array(texts[name], float)
     for name, parts in (("position", ("x", "y")), ("velocity", ("vx", "vy"))):
         if name == "position" or parts[0] in texts or parts[1] in texts:
-            columns[name] = np.column_stack([np.array(texts[part], float)[chosen] for part in parts])
-    return columns, 0.0
-
-
-def _at(times: np.ndarray, time: Instant) -> np.ndarray:
-    """Mask of the rows of a time."""
-    wanted = times.max(initial=-np.inf) if time == "end" else time
-    found = times == wanted
-    if not found.any():
-        raise StartError("time", "no such time in the file", f"{time}", f"one of {len(np.unique(times))}")
-    return found
+            columns[name] = np.column_stack([np.array(texts[part], float) for part in parts])
+    return columns
 
 
 def _gsd(path: Path, time: Instant) -> State:
     import gsd.hoomd
 
+    moment = _Moment(time)
     with gsd.hoomd.open(str(path), "r") as file:
-        times = np.array([float(frame.log.get("time", [k])[0]) for k, frame in enumerate(file)])
-        frame = file[int(np.flatnonzero(_at(times, time))[-1])]
+        wanted = None
+        for k in range(len(file)):
+            has_time = file.file.chunk_exists(frame=k, name="log/time")
+            now = float(file.file.read_chunk(frame=k, name="log/time")[0]) if has_time else float(k)
+            if moment.wants(now):
+                moment.begin(now)
+                wanted = k
+        if wanted is None:
+            return moment.columns(), 0.0
+        for k in (wanted, 0):  # a frame without a number of its own has that of the first
+            if file.file.chunk_exists(frame=k, name="particles/N"):
+                _check_number(int(file.file.read_chunk(frame=k, name="particles/N")[0]))
+        frame = file[wanted]
     particles, box = frame.particles, np.array(frame.configuration.box[:2], float)
     columns = {
         "position": np.array(particles.position[:, :2], float) + box / 2,
@@ -151,36 +247,51 @@ _NAMES = {"pos": "position", "velo": "velocity", "radius": "radius", "mass": "ma
 
 
 def _extxyz(path: Path, time: Instant) -> State:
-    frames = list(_frames(path))
-    times = np.array(
-        [float(found[1]) if (found := re.search(r"\bTime=(\S+)", head)) else k for k, (head, _) in enumerate(frames)]
-    )
-    head, rows = frames[int(np.flatnonzero(_at(times, time))[-1])]
-    if (found := re.search(r"\bProperties=(\S+)", head)) is None:
-        raise ValueError("no Properties in the second line")
-    parts = found[1].split(":")
-    columns: dict[str, Any] = {}
-    first = 0
-    for name, kind, width in zip(parts[::3], parts[1::3], map(int, parts[2::3]), strict=True):
-        cells = [row[first : first + width] for row in rows]
-        if name in _NAMES and kind in "RI":
-            values = np.array(cells, float)
-            columns.setdefault(_NAMES[name], values[:, :2] if width > 1 else values[:, 0])
-        elif name == "type" or (name == "species" and "species" not in columns):
-            columns["species"] = [cell[0] for cell in cells]
-        first += width
-    return columns, 0.0
-
-
-def _frames(path: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    """Second line and rows of each frame."""
+    moment = _Moment(time)
     with open(path, encoding="utf-8") as file:
-        while (line := file.readline()).strip():
-            head = file.readline()
-            rows = [file.readline().split() for _ in range(int(line))]
-            if not all(rows):
+        lines, frame = _lines(file), 0
+        while first := next(lines, "").strip():
+            discs, head = int(first), next(lines, "")
+            _check_number(discs)
+            stated = re.search(r"\bTime=(\S+)", head)
+            now = float(stated[1]) if stated else float(frame)
+            rows, read = islice(lines, discs), 0
+            if moment.wants(now):
+                moment.begin(now)
+                places = _places_of(head)
+                for cells in _chunks(map(str.split, rows), max((last for _, last, _ in places.values()), default=0)):
+                    moment.add(_frame_columns(cells, places))
+                    read += len(cells)
+            else:
+                read = sum(1 for _ in rows)
+            if read < discs:
                 raise ValueError("a frame is incomplete")
-            yield head, rows
+            frame += 1
+    return moment.columns(), 0.0
+
+
+def _places_of(head: str) -> dict[str, tuple[int, int, str]]:
+    """First and last column, and type, of each property in the second line of a frame, by name."""
+    if (stated := re.search(r"\bProperties=(\S+)", head)) is None:
+        raise ValueError("no Properties in the second line")
+    parts, first = stated[1].split(":"), 0
+    places: dict[str, tuple[int, int, str]] = {}
+    for name, kind, width in zip(parts[::3], parts[1::3], map(int, parts[2::3]), strict=True):
+        places.setdefault(name, (first, first + width, kind))
+        first += width
+    return places
+
+
+def _frame_columns(cells: np.ndarray, places: dict[str, tuple[int, int, str]]) -> dict[str, np.ndarray]:
+    """Columns of a state from the cells (n, columns) of a frame of extended XYZ, as text."""
+    columns: dict[str, np.ndarray] = {}
+    for name, (first, last, kind) in places.items():
+        if name in _NAMES and kind in "RI":
+            values = np.array(cells[:, first:last], float)
+            columns.setdefault(_NAMES[name], values[:, :2] if last - first > 1 else values[:, 0])
+        elif name == "type" or (name == "species" and "species" not in columns):
+            columns["species"] = cells[:, first]
+    return columns
 
 
 READERS: dict[str, Callable[[Path, Instant], State]] = {".npz": _npz, ".csv": _csv, ".gsd": _gsd, ".extxyz": _extxyz}

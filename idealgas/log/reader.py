@@ -143,10 +143,11 @@ class Log(LogHistory):
         """Samples taken during the run: times (P,) and values (P,) or (P, components), by name; read when asked for.
 
         Every log has kinetic_energy, momentum, energy (of the discs), overlap (deepest, relative to the sum of two
-        radii), outside (farthest reach out of the box, in diameters), and the numbers of events, disc_collisions,
-        wall_hits and trials since the start. Effects add rotational_energy, potential_energy, piston_position
-        and piston_velocity (of each piston), wall_energy (from each wall since the start), dissipated_energy (lost
-        since the start in collisions of discs, then at each wall), thermostat_collisions and bath_energy. With
+        radii), outside (farthest reach beyond sides that reflect, in diameters), and the numbers of events,
+        disc_collisions, wall_hits and trials since the start. Effects add rotational_energy, potential_energy,
+        piston_position and piston_velocity (of each piston), wall_energy (from each wall since the start),
+        dissipated_energy (lost since the start in collisions of discs, then at each wall), thermostat_collisions and
+        bath_energy. With
         `log.pressure` samples have the sums of idealgas/log/README.md: kinetic_flow, collision_flow, wall_virial,
         face_normal_impulse, face_tangential_impulse, face_hits and, in mixtures, pair_collisions; with
         `log.heat_flow` also kinetic_heat_flow and collision_heat_flow.

@@ -34,7 +34,8 @@ class Summary:
             walls, a heat bath and changes, relative to the largest of these: rounding errors only.
         deepest_overlap: deepest overlap of two discs at epoch starts and the end, relative to the sum of their radii;
             with time steps that of all collisions.
-        max_wall_penetration: largest distance by which a disc reached out of the box at these times, in diameters.
+        max_wall_penetration: largest distance by which a disc reached beyond a side at these times, in diameters; not
+            of periodic sides, which no disc can be beyond.
         seconds: wall time of the last run without start-up and compilation, s.
         compile_seconds: wall time of compilation, s.
         threads: number of threads that shared the work of the last run; 1 if they shared no slice.

@@ -14,7 +14,7 @@ from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
 from idealgas.scene.walls import number_walls
-from idealgas.state import Gas
+from idealgas.state import MOST_PAIRED, Gas
 
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
@@ -96,6 +96,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
     heat = [momentum * speed * flight] * 2 + [momentum * speed * apart] * 2 if scene.log.heat_flow else []
     frame = gas.mass @ gas.velocity / gas.mass.sum() if heat else np.zeros(2)
     faces, species = 2 * len(number_walls(scene)) - FIRST_SEGMENT, len(gas.species_names)
+    paired = 1 < species <= MOST_PAIRED
     normal_impulse, tangential_impulse = (make_sums([momentum] * faces) for _ in range(2))
     return StressAccumulator(
         tensor=make_sums(tensor),
@@ -104,8 +105,8 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
         normal_impulse=normal_impulse,
         tangential_impulse=tangential_impulse,
         hits=np.zeros(faces, np.int64),
-        pairs=np.zeros((species, species), np.int64) if species > 1 else None,
-        species=gas.species.copy() if species > 1 else None,
+        pairs=np.zeros((species, species), np.int64) if paired else None,
+        species=gas.species.copy() if paired else None,
         x=gas.box[0] / 2,
         y=gas.box[1] / 2,
         heat=make_sums(heat) if heat else None,

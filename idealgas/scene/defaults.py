@@ -28,6 +28,18 @@ def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
     return (sum(speeds) + spread) / max(len(velocity) + sum(s.count for s in species), 1)
 
 
+def mean_kinetic_energy(species: Sequence[Species], mass: np.ndarray, velocity: np.ndarray) -> float:
+    """Return the mean kinetic energy of some species and of discs of masses (n,) and velocities (n, 2) at the start."""
+    total = float(mass @ (velocity**2).sum(axis=1)) / 2
+    for s in species:
+        masses = np.repeat([size.mass for size in s.sizes], [size.number for size in s.sizes])
+        if s.velocities is not None:
+            total += float(masses @ (np.array(s.velocities).reshape(-1, 2) ** 2).sum(axis=1)) / 2
+        else:
+            total += s.count * (s.temperature or 0.0) + (s.speed or 0.0) ** 2 * float(masses.sum()) / 2
+    return total / max(len(velocity) + sum(s.count for s in species), 1)
+
+
 def reference_speed(run: Run, largest: float) -> float:
     """Reference speed of the Monte Carlo method, by default five times the largest speed at the start, length/time."""
     return run.v_ref or 5.0 * largest

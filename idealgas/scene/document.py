@@ -15,7 +15,7 @@ from idealgas.effects.piston import Piston, inner_pistons
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
-from idealgas.scene.defaults import RestingDisc, mean_speed, reference_speed
+from idealgas.scene.defaults import RestingDisc, mean_kinetic_energy, mean_speed, reference_speed
 from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
@@ -203,6 +203,13 @@ class Document(_DiscsAndEffects):
         return mean_speed([s for _, s in self.placed], self.given.velocity)
 
     @property
+    def mean_kinetic_energy(self) -> float:
+        """Expected mean kinetic energy of the discs at the start, energy."""
+        if self.draws_velocities:
+            return mean_kinetic_energy(self.species, np.empty(0), np.empty((0, 2)))
+        return mean_kinetic_energy([s for _, s in self.placed], self.given.mass, self.given.velocity)
+
+    @property
     def largest_radius(self) -> float:
         """Largest radius of the discs, length; 0 without discs."""
         return max([float(self.given.radius.max(initial=0.0)), *(s.largest_radius for _, s in self.placed)])
@@ -219,6 +226,10 @@ class Document(_DiscsAndEffects):
 
         The speed is that of a disc with the mean speed at the start after a fall through half of the room.
         """
+        return self.free_time_at(self.mean_speed)
+
+    def free_time_at(self, speed: float) -> float:
+        """Expected time between two collisions of a disc at a mean speed (length/time) before its fall, time."""
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
         size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
@@ -226,7 +237,7 @@ class Document(_DiscsAndEffects):
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
         encounters *= size[0] * size[1] / area
         path = 1.0 / max(encounters, 1.0 / sum(size))
-        speed = math.sqrt(self.mean_speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
+        speed = math.sqrt(speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
         return path / speed if speed > 0 else math.inf
 
     @property

@@ -15,6 +15,7 @@ from idealgas.scene.discs import Discs, Given
 from idealgas.scene.document import Document
 from idealgas.scene.start import StartError, read_start
 from idealgas.toml.issues import Issue, SceneError, as_issues, table_at
+from idealgas.toml.overrides import names_of
 from idealgas.toml.text import Origin
 
 
@@ -177,6 +178,7 @@ def make_scene(
     columns: discs from which the scene starts, by column. discs: the same, of the log of this scene.
     """
     try:
+        origin.names = names_of(document)
         context = {"folder": origin.folder, "columns": columns, "discs": discs}
         scene = Scene.model_validate(document, context=context).resolved().from_origin(origin)
     except ValidationError as error:

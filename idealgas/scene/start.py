@@ -4,9 +4,11 @@
 |---|---|---|
 | `position` (n, 2) | length | required; `x` and `y` in a .csv file |
 | `velocity` (n, 2) | length/time | 0; `vx` and `vy` in a .csv file |
-| `radius`, `mass` (n,) | length, mass | those of the species' table; without them radius is required and mass 1 |
+| `radius`, `mass` (n,) | length, mass | those of the species' table; without a table radius is required and mass 1 |
 | `angular_velocity` (n,) | 1/time | 0 |
 | `species` (n,) | names | that of the only table [[species]], or "disc" |
+
+A radius or mass that differs from that of the species' table is an error.
 """
 
 from __future__ import annotations
@@ -27,6 +29,9 @@ if TYPE_CHECKING:
     from idealgas.scene.document import Document
 
 VECTORS = ("position", "velocity")
+SINGLE = 2.0**-22
+"""Relative difference that rounding to single precision explains: four roundings by 2⁻²⁴."""
+
 COLUMNS = (*VECTORS, "radius", "mass", "angular_velocity", "species")
 """Names of the columns."""
 
@@ -89,13 +94,20 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
     for name, array in arrays.items():
         if len(array) != n:
             raise StartError(key, f"column {name} of another length", f"{len(array)} rows", f"{n}, as position")
-    arrays |= {name: arrays.get(name, np.full(n, value)) for name, value in (("radius", math.nan), ("mass", 1.0))}
     kinds = np.array(names)
-    for table in tables.values():
-        own = kinds == table.name
-        if isinstance(table.radius, float):
-            arrays["radius"][own] = table.radius
-        arrays["mass"][own] = mass_of(table.mass, arrays["radius"][own])
+    for name, default in (("radius", math.nan), ("mass", 1.0)):
+        given, values = name in arrays, arrays.setdefault(name, np.full(n, default))
+        for table in tables.values():
+            members = np.flatnonzero(kinds == table.name)
+            if name == "radius" and not isinstance(table.radius, float):
+                continue
+            expected = table.radius if name == "radius" else mass_of(table.mass, arrays["radius"][members])
+            differs = ~(np.abs(values[members] - expected) <= SINGLE * np.abs(expected)) if given else np.zeros(1, bool)
+            if differs.any():
+                row = int(members[differs.argmax()])
+                allowed = f'{np.broadcast_to(expected, len(members))[differs.argmax()]}, that of "{table.name}"'
+                raise StartError(key, f"column {name}, disc {row}: not that of its species", f"{values[row]}", allowed)
+            values[members] = expected
     for name, array in arrays.items():
         size = np.abs(array).reshape(n, -1)
         wrong = ~np.isfinite(size) | (size > LARGEST) | ((size > 0) & (size < SMALLEST))
@@ -111,6 +123,8 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
 def _numbers(name: str, values: Any, key: str) -> np.ndarray:
     """Column of numbers, (n,) or (n, 2)."""
     try:
+        if np.iscomplexobj(values):
+            raise TypeError
         array = np.array(values, float)
     except (TypeError, ValueError, OverflowError):
         raise StartError(key, f"column {name} not of numbers", type(values).__name__, "an array of numbers") from None

@@ -1,15 +1,14 @@
 """Errors of a document, also those of pydantic, as `table.key: what is wrong (got …; allowed …)`."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from difflib import get_close_matches
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from idealgas.errors import UserError
+from idealgas.errors import UserError, did_you_mean
 from idealgas.toml.dump import toml_value
 
 Key = tuple[str | int, ...]
@@ -46,13 +45,14 @@ class Issue(NamedTuple):
     got: str
     allowed: str
 
+    def line(self, names: Mapping[Key, str]) -> str:
+        """Return the issue as a line of a message; names: of tables in arrays, by key, in place of their numbers."""
+        key = self.keys[0]
+        steps = [str(names.get(key[: k + 1], step)) for k, step in enumerate(key)]
+        return f"{'.'.join(steps)}: {self.wrong} (got {self.got}; allowed {self.allowed})"
+
     def __str__(self) -> str:
-        return f"{dotted(self.keys[0])}: {self.wrong} (got {self.got}; allowed {self.allowed})"
-
-
-def dotted(key: Key) -> str:
-    """Key as in messages and `--set`."""
-    return ".".join(map(str, key))
+        return self.line({})
 
 
 class SceneError(UserError, ValueError):
@@ -63,9 +63,15 @@ class SceneError(UserError, ValueError):
         self.errors = list(errors)
 
 
-def as_issues(findings: Iterable[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
-    """Issues from the errors that pydantic found in a document of a model."""
-    return [_issue(finding, model) for finding in findings]
+def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
+    """Issues from the errors that pydantic found in a document of a model.
+
+    An array of too few valid items is no mistake of its own if an item is invalid.
+    """
+    above = {finding["loc"][:n] for finding in findings for n in range(len(finding["loc"]))}
+    return [
+        _issue(finding, model) for finding in findings if finding["type"] != "too_short" or finding["loc"] not in above
+    ]
 
 
 def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
@@ -73,8 +79,7 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
         known = [name for table in _tables_at(key[:-1], model) for name in _keys(table)]
-        close = get_close_matches(str(key[-1]), known, n=1)
-        wrong = f"unknown {'key' if key[1:] else 'table'}" + (f', did you mean "{close[0]}"?' if close else "")
+        wrong = f"unknown {'key' if key[1:] else 'table'}{did_you_mean(str(key[-1]), known)}"
         return Issue((key,), wrong, str(key[-1]), ", ".join(known))
     if kind == "missing" and isinstance(key[-1], int):
         return Issue((key[:-1],), "too short", _shown(got), _described(key, model))
@@ -88,7 +93,7 @@ def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     wrong, allowed = _WORDS.get(kind, ("wrong value", finding["msg"]))
     if kind == "literal_error":
         known = re.findall(r"""['"]([^'"]+)['"]""", finding["ctx"]["expected"])
-        wrong += "".join(f', did you mean "{close}"?' for close in get_close_matches(str(got), known, n=1))
+        wrong += did_you_mean(str(got), known)
     return Issue((key,), wrong, _shown(got), allowed.format(**finding.get("ctx", {})))
 
 

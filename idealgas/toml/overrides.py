@@ -1,9 +1,14 @@
 """`--set table.key=value`: changes to a document before it is checked."""
 
+import re
 import tomllib
+from collections.abc import Mapping
 from typing import Any
 
+from idealgas.errors import did_you_mean
 from idealgas.toml.issues import Key
+
+_WORD = re.compile(r"[^\W\d][\w-]*")
 
 
 class OverrideError(ValueError):
@@ -45,7 +50,8 @@ def find(override: str, document: dict[str, Any], missing: bool = False) -> tupl
         elif isinstance(node, dict):
             step = name
         else:
-            raise OverrideError(f"nothing of this name (got {name}; allowed {_choices(node)})")
+            close = did_you_mean(name, _names(node))
+            raise OverrideError(f"nothing of this name{close} (got {name}; allowed {_choices(node)})")
         key = (*key, step)
         if depth == len(names) - 1:
             break
@@ -64,8 +70,21 @@ def _index(items: list[Any], name: str) -> int | None:
 def _choices(node: Any) -> str:
     if not isinstance(node, list):
         return "no key below a value"
-    names = [item["name"] for item in node if isinstance(item, dict) and isinstance(item.get("name"), str)]
-    return ", ".join([f"0 to {len(node) - 1}", *names]) if node else "none: the array is empty"
+    return ", ".join([f"0 to {len(node) - 1}", *_names(node)]) if node else "none: the array is empty"
+
+
+def _names(node: Any) -> dict[str, int]:
+    """Index of the first table of each name in an array of tables."""
+    names: dict[str, int] = {}
+    for k, item in enumerate(node if isinstance(node, list) else ()):
+        if isinstance(item, dict) and isinstance(name := item.get("name"), str) and _WORD.fullmatch(name):
+            names.setdefault(name, k)
+    return names
+
+
+def names_of(document: Mapping[str, Any]) -> dict[Key, str]:
+    """Return the names of the tables in arrays, by key, with which `--set` finds them: ("species", 1) is "heavy"."""
+    return {(array, k): name for array, node in document.items() for name, k in _names(node).items()}
 
 
 def value_of(text: str) -> Any:

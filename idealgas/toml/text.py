@@ -19,6 +19,9 @@ from idealgas.toml.issues import Issue, Key, SceneError
 MOST_BYTES, MOST_TEXT = 2_000_000, 8_000_000
 """Largest sizes of a TOML file, bytes, and of a text, which may have all defaults of a file, characters."""
 
+MOST_LINES = 20
+"""Largest number of mistakes of a document that are reported one by one."""
+
 MOST_PARTS = 32
 """Largest number of parts of a dotted key; a scene needs 4; the time to parse one grows with their square."""
 
@@ -167,12 +170,14 @@ class Origin:
         name: name of its file.
         overridden: overrides as written, by the key that they set.
         above: key of the scene within the text.
+        names: names of tables in arrays, by key.
     """
 
     text: str = field(default="", compare=False)
     name: str = field(default="", compare=False)
     overridden: Mapping[Key, str] = field(default_factory=dict, compare=False)
     above: Key = field(default=(), compare=False)
+    names: Mapping[Key, str] = field(default_factory=dict, compare=False)
 
     @property
     def folder(self) -> Path:
@@ -180,14 +185,19 @@ class Origin:
         return Path(self.name).parent
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line per issue, in the order of the file; issues of overrides come last."""
-        lines = []
+        """One line per issue, in the order of the file; issues of overrides come last.
+
+        Of many the first MOST_LINES and the number of the others.
+        """
+        lines: dict[str, tuple[bool, int]] = {}
         for issue in issues:
             blamed = next((o for key in issue.keys if (o := self._override(key)) is not None), None)
             line = self.line(issue.keys[0])
             place = f"{blamed}: " if blamed is not None else f"{self.name}:{line}: " if self.name else ""
-            lines.append((blamed is not None, line, f"{place}{issue}"))
-        return [text for *_, text in sorted(lines, key=lambda item: item[:2])]
+            lines.setdefault(f"{place}{issue.line(self.names)}", (blamed is not None, line))
+        texts = sorted(lines, key=lambda text: lines[text])
+        more = [f"… and {len(texts) - MOST_LINES:,} more mistakes"] if len(texts) > MOST_LINES else []
+        return [*texts[:MOST_LINES], *more]
 
     def _override(self, key: Key) -> str | None:
         """Override that sets the key, or another key of a table that is missing in the text."""

@@ -217,6 +217,7 @@ def test_help_shows_every_group_with_an_example_and_no_summary_cut_off():
 def test_help_of_a_command():
     assert called("help", "run").stdout == called("run", "--help").stdout
     assert "did you mean" in called("help", "rum").stderr
+    assert error_of("version").startswith('unknown command, did you mean "--version"? (got version; allowed new, ')
 
 
 def examples():

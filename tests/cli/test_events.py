@@ -46,6 +46,8 @@ def test_every_row_with_every_digit(folder):
 def test_filters(folder):
     assert KINDS == KIND_NAMES
     printed = rows(output_of("events", folder / "run.h5"))
+    refused = f"{folder / 'run.h5'}: no such disc (got 50; allowed 0 to 49)\n"
+    assert error_of("events", folder / "run.h5", "--disc", 50) == refused
     some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 20.5))
     assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 20.5]
     assert some

@@ -60,7 +60,7 @@ def compare(number, packing_fraction, box, periodic, *, seeds=16, collisions=20_
     )
     agree(found.pairs, theory.pairs.value, resolved, theory.pairs.error)
     speed = math.sqrt(math.pi / 2 * 2) * finite_speed_factor(2 * number - sum(periodic))
-    rate = found.collisions[:, 0, 0] * 2 / number  # of one disc
+    rate = found.collisions[:, 0, 0] / number  # of one disc
     expected = float(theory.contacts[0, 0]) * speed
     agree(rate, expected, resolved * 3, expected * float(theory.rate_error[0, 0]))
     if theory.walls is not None:
@@ -94,7 +94,7 @@ def test_mixtures(ratio, packing_fraction, periodic):
     agree(found.pairs, theory.pairs.value, 5e-3, theory.pairs.error)
     speed = math.sqrt(math.pi) * finite_speed_factor(4 * n - sum(periodic))
     for i, j in ((0, 0), (0, 1), (1, 1)):
-        expected = float(theory.contacts[i, j]) * speed * n / (2 if i == j else 1)
+        expected = float(theory.contacts[i, j]) * speed * n
         agree(found.collisions[:, i, j], expected, 0.03, expected * float(theory.rate_error[i, j]))
 
 

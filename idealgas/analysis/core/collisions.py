@@ -18,7 +18,7 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class CollisionRate:
-    """Collision rate of one disc of `species` with all discs of the species `other`, in 1/time."""
+    """Collision rate of one disc of `species` with all discs of the group `other`, see `Gas.partners`, in 1/time."""
 
     species: str
     other: str
@@ -40,9 +40,9 @@ class FreePath:
 
 
 class ExpectedRates(NamedTuple):
-    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, with their errors.
+    """Collision rates Γ_ij of one disc of species i with the discs of group j by theory, with their errors.
 
-    rate: (S, S), 1/time; nan if theory has no value. relative_error: (S, S), relative standard deviation of its error.
+    rate: (S, G), 1/time; nan if theory has no value. relative_error: (S, G), relative standard deviation of its error.
     discs: kinds of discs, see `classes`. of_kinds: the same rates and errors (2, K, K) between kinds.
     """
 
@@ -73,7 +73,7 @@ def theory_of(log: Log) -> BoxTheory:
 
 
 def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None) -> ExpectedRates:
-    """Collision rates Γ_ij of one disc of species i with the discs of species j by theory, in 1/time.
+    """Collision rates Γ_ij of one disc of species i with the discs of group j by theory, in 1/time.
 
     The product of the contacts per relative speed, from which the pressure follows as well, and of the mean relative
     speed, which is a little larger at fixed total energy than by Maxwell-Boltzmann's law.
@@ -89,30 +89,29 @@ def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxT
         contacts, error = hard_discs.contacts_without_positions(discs.radius, discs.number, box), 0 * speed
     else:
         contacts, error = theory.contacts, theory.rate_error
-    rate, off = (discs.shares @ rates @ discs.members.T for rates in (contacts * speed, error * contacts * speed))
+    rate, off = (discs.with_partners(rates) for rates in (contacts * speed, error * contacts * speed))
     with np.errstate(invalid="ignore"):
-        relative = np.where(rate > 0, off / rate, 0.0) if len(rate) < len(speed) else error
+        relative = np.where(rate > 0, off / rate, 0.0) if rate.shape < speed.shape else error
     return ExpectedRates(rate, relative, discs, np.array((contacts * speed, error)))
 
 
 def collision_rates(
     discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts | SampledImpacts
 ) -> tuple[CollisionRate, ...]:
-    """Measured collision rates of all ordered pairs of species, in 1/time.
+    """Measured collision rates of each species with each group of discs, in 1/time; empty without their numbers.
 
     expected: rates by theory, from `expected_rates`. n collisions count as n samples at most.
     """
-    counts = window.of(impacts.collisions)
+    counts, others = window.of(impacts.collisions), discs.partners
 
     def rate(i: int, j: int) -> Estimate:
-        discs_per_event = 2 if i == j else 1
-        events = counts[:, min(i, j), max(i, j)]
-        found = mean(discs_per_event * events / discs.number[i], theory=expected.between(i, j))
-        number = float(events.sum()) * window.width
+        found = mean(counts[:, i, j] / discs.number[i], theory=expected.between(i, j))
+        of_pairs = 2 if others[j] == discs.name[i] else 1  # a collision of two like discs counts for both
+        number = float(counts[:, i, j].sum()) * window.width / of_pairs
         return replace(found, independent_samples=min(found.independent_samples, number))
 
-    species = range(len(discs.name))
-    return tuple(CollisionRate(discs.name[i], discs.name[j], rate(i, j)) for i in species for j in species)
+    species, groups = range(counts.shape[1]), range(len(others))
+    return tuple(CollisionRate(discs.name[i], others[j], rate(i, j)) for i in species for j in groups)
 
 
 def free_paths(
@@ -127,12 +126,12 @@ def free_paths(
 
     expected: collision rates by theory, from `expected_rates`.
     """
-    counts = window.of(impacts.collisions)
+    counts, mean_speeds = window.of(impacts.collisions), equilibrium.mean_speed
     paths = []
     for i, (name, number) in enumerate(zip(discs.name, discs.number, strict=True)):
-        own = (counts[:, i, :] + counts[:, :, i]).sum(axis=1) / number  # a collision of two like discs counts for both
+        own = counts[:, i].sum(axis=1) / number
         speeds = window.of(moments.flights)[:, i, 0] / number
-        speed = float(equilibrium.mean_speed[i])
+        speed = float(mean_speeds[i])
         rate = expected.of(i)
         free_time = rate.inverse() if rate and rate.value else None
         paths.append(

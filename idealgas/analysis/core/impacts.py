@@ -19,7 +19,8 @@ class Impacts:
     energy·time. inner_virial: (B,), Σ r·Δp over all other events along the same axes, energy·time.
     passed_on: (B, 4), momentum that all events but its own hits pass on towards each side of the box, see `add`,
     mass·length/time.
-    collisions: (B, S, S), numbers of pair collisions; only the upper triangle is filled.
+    collisions: (B, S, G), numbers of collisions that discs of a species have with those of a group, `Gas.partners`: a
+    pair collision counts for both of its discs.
     impulse: (B, W, 2), momentum given to each wall, mass·length/time. hits: (B, W), numbers of hits of each wall.
     """
 
@@ -32,15 +33,16 @@ class Impacts:
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
-        blocks, species = len(edges) - 1, len(gas.species_names)
+        blocks = len(edges) - 1
         self.pair_virial = np.zeros(blocks)
         self.wall_virial = np.zeros(blocks)
         self.inner_virial = np.zeros(blocks)
         self._passed_on = np.zeros((len(SIDES), blocks))
-        self.collisions = np.zeros((blocks, species, species), np.int64)
+        self.collisions = np.zeros((blocks, len(gas.species_names), len(gas.partners)), np.int64)
         self._impulse = np.zeros((2, blocks, self.walls))
         self.hits = np.zeros((blocks, self.walls), np.int64)
-        self._box, self._species, self._mass, self._radius = gas.box, gas.species.astype(np.intp), gas.mass, gas.radius
+        self._box, self._mass, self._radius = gas.box, gas.mass, gas.radius
+        self._species, self._partner = gas.species.astype(np.intp), gas.partner.astype(np.intp)
 
     def add(self, flights: Flights) -> None:
         """Add the events at the ends of the next flights.
@@ -77,11 +79,13 @@ class Impacts:
     def _add_pairs(self, flights: Flights, given: tuple[np.ndarray, np.ndarray]) -> None:
         """Add collisions of two discs. given: x and y, (n,), of the momentum that each event gives to its disc."""
         second, apart = contacts(flights, self._box, self.periodic)
-        block, species = flights.block[second], self._species
-        one, other = species.take(flights.disc[second]), species.take(flights.partner[second])
+        block = flights.block[second]
         add_to(self.pair_virial, block, apart[:, 0] * given[0][second] + apart[:, 1] * given[1][second])
-        number = self.collisions.shape[1]
-        add_to(self.collisions, (block * number + np.minimum(one, other)) * number + np.maximum(one, other))
+        _, species, groups = self.collisions.shape
+        pair = flights.disc[second], flights.partner[second]
+        for disc, partner in (pair, pair[::-1]):
+            place = (block * species + self._species.take(disc)) * groups + self._partner.take(partner)
+            add_to(self.collisions, place)
 
 
 def contacts(

@@ -20,7 +20,6 @@ SUMS = (
     "face_normal_impulse",
     "face_tangential_impulse",
     "face_hits",
-    "pair_collisions",
 )
 
 
@@ -41,9 +40,7 @@ class SampledImpacts:
         """
         self.edges = edges
         found = {name: in_blocks(*log.observables[name], edges) for name in SUMS if name in log.observables}
-        species = len(log.discs.species_names)
-        if "pair_collisions" not in found:  # those of a single species are all there are
-            found["pair_collisions"] = in_blocks(*log.observables["disc_collisions"], edges)
+        self.collisions = _collisions(log, edges)
         self.kinetic_flow, self.collision_flow = found["kinetic_flow"], found["collision_flow"]
         still = centre_of_mass_velocity(log)
         whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]] * np.diff(edges)[:, None]
@@ -51,7 +48,6 @@ class SampledImpacts:
         self.pair_virial = self.collision_flow[:, 0] + self.collision_flow[:, 2]
         self.inner_virial = self.collision_flow[:, :3:2][:, [not wrapped for wrapped in log.periodic]].sum(axis=1)
         self.wall_virial = found["wall_virial"]
-        self.collisions = found["pair_collisions"].reshape(-1, species, species)
         self.push, self.drag = found["face_normal_impulse"], found["face_tangential_impulse"]
         self.dragged = bool(self.drag.any())
         into, along = face_directions(log)
@@ -94,9 +90,8 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     impacts = SampledImpacts(log, edges)
     if start is not None:
         return Window(edges, 0, detected=False), impacts
-    series = map(
-        Observable, (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, impacts.collisions.sum(axis=(1, 2)))
-    )
+    pairs = in_blocks(*log.observables["disc_collisions"], edges)
+    series = map(Observable, (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, pairs))
     window = Window(edges, equilibrated_from(log, edges, tuple(series)), detected=True, state=kind_of_state(log))
     energies = window.of(impacts.kinetic_flow[:, ::2]) - log.discs.mass.sum() * centre_of_mass_velocity(log) ** 2
     must_be_shared(log, energies[:, None])
@@ -108,6 +103,20 @@ def in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndar
     columns = total.reshape(len(time), -1).T
     grown = np.array([np.diff(np.interp(edges, time, column)) for column in columns])
     return grown.T.reshape(-1, *total.shape[1:])
+
+
+def _collisions(log: Log, edges: np.ndarray) -> np.ndarray:
+    """Collisions (B, S, G) of each species with each group of discs; (B, 0, G) if the log does not tell species apart.
+
+    Samples have the numbers of pairs of species in the upper triangle.
+    """
+    species = len(log.discs.species_names)
+    if species == 1:
+        return 2 * in_blocks(*log.observables["disc_collisions"], edges).reshape(-1, 1, 1)
+    if len(log.discs.partners) < species or "pair_collisions" not in log.observables:
+        return np.zeros((len(edges) - 1, 0, len(log.discs.partners)))
+    pairs = in_blocks(*log.observables["pair_collisions"], edges)
+    return pairs + np.swapaxes(pairs, 1, 2)
 
 
 def _by_wall(faces: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ import numpy as np
 from idealgas.analysis.theory import conserved, distributions
 from idealgas.analysis.theory.barometric import ColumnProfile, barometric_temperature, fixed_energy_column
 from idealgas.scene import Scene
-from idealgas.state import Gas
+from idealgas.state import MOST_PAIRED, Gas
 
 DIRECTIONS = 128
 """Number of directions over which speeds are averaged where the axes have different temperatures."""
@@ -46,6 +46,19 @@ class Composition(NamedTuple):
         """Part of the discs of a species (species, S) that are of a kind."""
         numbers = self.members * self.number
         return numbers / numbers.sum(axis=1, keepdims=True)
+
+    @property
+    def partners(self) -> tuple[str, ...]:
+        """Names of the groups of discs by which collisions are counted, as `Gas.partners`."""
+        names = tuple(dict.fromkeys(self.name))
+        return names if len(names) <= MOST_PAIRED else ("all",)
+
+    def with_partners(self, rates: np.ndarray) -> np.ndarray:
+        """Rates (species, G) of a disc of each species with groups of discs, from those (S, S) with each kind."""
+        first = np.flatnonzero(np.diff(self.species, prepend=-1))
+        groups = first if len(first) <= MOST_PAIRED else [0]
+        weight = self.number / np.add.reduceat(self.number, first)[self.species]
+        return np.add.reduceat(weight[:, None] * np.add.reduceat(rates, groups, axis=1), first)
 
     def packing_fraction(self, density: np.ndarray) -> float:
         """Packing fraction φ of a gas whose species have the number densities `density` (S,), in 1/length²."""

@@ -5,7 +5,7 @@ freedom D (2N discs between reflecting walls; momentum is not conserved there).
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import overload
 
 import numpy as np
@@ -134,16 +134,51 @@ def confinement(
     count by the part of the pair virial along it, which the walls across this axis balance.
     """
     radius = np.asarray(radius, float)
-    own, other = radius[:, None, None], radius[:, None]
-    angle = (np.arange(4096) + 0.5) / 4096 * 2 * math.pi
-    share = np.ones(()) if axis is None else 2 * (np.cos(angle), np.sin(angle))[axis] ** 2
-    for side, is_periodic, component in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
-        if is_periodic:
-            continue
-        a, b = side - 2 * own, side - 2 * other  # lengths of the ranges of the centres
-        inside = np.clip((a + b) / 2 - (own + other) * np.abs(component), 0.0, np.minimum(a, b))
-        share = share * inside * side / (a * b)
-    return np.broadcast_to(share, (len(radius), len(radius), len(angle))).mean(axis=2)
+    along_x, along_y = (_room_along(radius, *side) for side in zip(box, periodic, strict=True))
+    total = np.zeros((len(radius), len(radius)))
+    for x_constant, x_slope, x_least, x_most in along_x:  # quarter circle: x by |cos θ|, y by |sin θ|
+        for y_constant, y_slope, y_least, y_most in along_y:
+            first, last = (
+                np.maximum(np.arccos(x_most), np.arcsin(y_least)),
+                np.minimum(np.arccos(x_least), np.arcsin(y_most)),
+            )
+            parts = _trigonometric_integrals(np.minimum(first, last), last, axis)
+            terms = (x_constant * y_constant, x_slope * y_constant, x_constant * y_slope, x_slope * y_slope)
+            total += sum(term * part for term, part in zip(terms, parts, strict=True))
+    return total / (math.pi / 2)
+
+
+def _room_along(radius: np.ndarray, side: float, is_periodic: bool) -> list[tuple[np.ndarray, ...]]:
+    """Room for a pair in contact along an axis, relative to that at random, where the component of r̂ is c = 0 to 1.
+
+    Both centres have room a + b c in each of the pieces least < c < most, which are (a, b, least, most), each (S, S):
+    as much as the larger disc, then less the larger c is, then none.
+    """
+    none, all_of = np.zeros((len(radius), len(radius))), np.ones((len(radius), len(radius)))
+    if is_periodic:
+        return [(all_of, none, none, all_of)]
+    sigma, larger = radius[:, None] + radius, np.maximum(radius[:, None], radius)
+    scale = side / ((side - 2 * radius[:, None]) * (side - 2 * radius))
+    bend, end = (2 * larger - sigma) / sigma, np.minimum(side / sigma - 1, 1.0)
+    bend = np.minimum(bend, end)
+    return [
+        ((side - 2 * larger) * scale, none, none, bend),
+        ((side - sigma) * scale, -sigma * scale, bend, end),
+    ]
+
+
+def _trigonometric_integrals(first: np.ndarray, last: np.ndarray, axis: int | None) -> Iterator[np.ndarray]:
+    """Integrals of w, w cos θ, w sin θ, w cos θ sin θ over θ, with w = 1, 2 cos² θ (axis 0) or 2 sin² θ (axis 1)."""
+
+    def primitives(angle: np.ndarray) -> tuple[np.ndarray, ...]:
+        c, s = np.cos(angle), np.sin(angle)
+        if axis is None:
+            return angle, s, -c, s**2 / 2
+        if axis == 0:
+            return angle + s * c, 2 * s - 2 / 3 * s**3, -2 / 3 * c**3, -(c**4) / 2
+        return angle - s * c, 2 / 3 * s**3, 2 / 3 * c**3 - 2 * c, s**4 / 2
+
+    return (after - before for before, after in zip(primitives(first), primitives(last), strict=True))
 
 
 def box_contacts(

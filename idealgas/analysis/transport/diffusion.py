@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import CollisionRate
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.statistics import Estimate, mean
@@ -94,17 +93,19 @@ class Limits(NamedTuple):
         return sum(math.sqrt(displacement / math.pi) / way for way in self.ways)
 
 
-def diffusion_limits(
-    log: Log, discs: Composition, rates: Sequence[CollisionRate], equilibrium: Ensemble
-) -> list[Limits]:
+def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[Limits]:
     """Limits of the diffusion of each species, from measured collision rates.
 
-    A disc of species i forgets its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij.
+    A disc of species i forgets its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij; among many species, of whose pairs
+    the rates are not known, with the mean mass of all discs.
+
+    collisions: (B, S, G), rates of the collisions of all discs of a species with those of a group, 1/time.
     """
-    count, found = len(discs.name), []
-    each = np.array([one.rate.value for one in rates]).reshape(count, count)
+    found = []
+    each = collisions.mean(axis=0) / discs.number[:, None]
+    masses = discs.mass if each.shape[1] == len(discs.mass) else discs.number @ discs.mass / discs.number.sum()
     for rate, mass, radius in zip(each, discs.mass, discs.radius, strict=True):
-        friction = float(rate @ (2 * discs.mass / (mass + discs.mass)))
+        friction = float((rate * (2 * masses / (mass + masses))).sum())
         whole = float(rate.sum())
         needed = max(LEAST_LAG / whole, LEAST_MEMORIES / friction) if whole else math.inf
         friction_d = equilibrium.temperature / mass / friction if whole else math.inf

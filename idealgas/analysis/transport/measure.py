@@ -44,6 +44,7 @@ from idealgas.analysis.transport.pair_distribution import PairDistribution, pair
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
+from idealgas.state import MOST_PAIRED
 
 FEWEST_SEGMENTS = 8  # of the window, each as long as the longest lag
 LEAST_WINDOW = 16.0  # longest lags; in one of eight, coefficients of the whole gas are too small by up to a fourth
@@ -117,16 +118,19 @@ def transport(
     else:
         window, impacts = sampled(log, start, end, needs)
         flow = impacts.flow
+        if not impacts.collisions.size:
+            most = f"no collisions by species (kept for up to {MOST_PAIRED} of them)"
+            raise UserError(f"{log.path}: has neither events nor {most}")
     gas, discs, box = log.discs, composition(log.discs), theory_of(log)
     expected, enskogs = expected_rates(gas.box, equilibrium, box), enskog(log, discs, equilibrium)
     rates = collision_rates(discs, expected, window, impacts)
-    free_time = _free_time(discs, rates)
+    free_time = _free_time(impacts, discs, window)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
     limits: list[Limits] = []
     spreading: tuple[Diffusion, ...] = ()
     if log.has_events:
         alone = [enskogs.diffusion] if enskogs else self_diffusion(log, equilibrium, expected)
-        limits = diffusion_limits(log, discs, rates, equilibrium)
+        limits = diffusion_limits(log, discs, window.of(impacts.collisions), equilibrium)
         spreading = diffusion(log, discs, window, longest, limits, (enskogs, alone, equilibrium))
     whole, followed = None, float(spreading[0].lag[-1]) if spreading else longest
     if all(log.periodic):
@@ -168,7 +172,7 @@ def _among_fixed_discs(
     impacts = Impacts(len(log.walls), log.periodic)
     window = measure(log, [impacts], start, end, progress, ("conserves_motion",))
     gas, discs = log.discs, composition(log.discs)
-    met = float((window.of(impacts.hits).sum(axis=1) + 2 * window.of(impacts.collisions).sum(axis=(1, 2))).mean())
+    met = float((window.of(impacts.hits).sum(axis=1) + window.of(impacts.collisions).sum(axis=(1, 2))).mean())
     free_time = len(gas) / met if met else math.inf
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
     limits = [Limits(1 / free_time, LEAST_LAG * free_time, equilibrium.temperature, ())] * len(discs.name)
@@ -214,16 +218,17 @@ def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ..
     discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
     others = discs.number - np.eye(len(discs.number))  # a disc does not meet itself
-    random = discs.shares @ (2 * (discs.radius[:, None] + discs.radius) * others / area * speed) @ discs.members.T
+    random = discs.with_partners(2 * (discs.radius[:, None] + discs.radius) * others / area * speed)
+    groups = random.shape[1]
     return tuple(
         Contact(found.species, found.other, found.rate.times(1 / alone))
-        for k, (found, alone) in enumerate(zip(rates, random.ravel().tolist(), strict=True))
-        if k // len(random) <= k % len(random) and alone > 0
+        for k, (found, alone) in enumerate(zip(rates, random.ravel().tolist(), strict=bool(rates)))
+        if (groups == 1 or k // groups <= k % groups) and alone > 0
     )
 
 
-def _free_time(discs: Composition, rates: tuple[CollisionRate, ...]) -> float:
+def _free_time(impacts: Impacts | SampledImpacts, discs: Composition, window: Window) -> float:
     """Longest mean free time of a species, time; infinite if none collides."""
-    per_disc = [sum(r.rate.value for r in rates if r.species == name) for name in discs.name]
-    slowest = min((rate for rate in per_disc if rate > 0), default=0.0)
+    per_disc = window.of(impacts.collisions).sum(axis=2).mean(axis=0) / discs.number
+    slowest = float(per_disc[per_disc > 0].min(initial=math.inf))
     return 1 / slowest if slowest else math.inf

@@ -32,8 +32,14 @@ class PairDistribution:
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
     """Pair distribution of every pair of species between two times; a species of one disc has none with itself.
 
+    More than MOST_PAIRED species are taken together, as "all" discs.
+
     In a box with walls the numbers of pairs are divided by those of discs at random positions in the same box.
     """
+    if len(discs.partners) < len(discs.name):
+        whole = len(log.discs)
+        radius, mass = (np.array([discs.number @ values / whole]) for values in (discs.radius, discs.mass))
+        discs = Composition(discs.partners, radius, mass, np.array([whole]), np.zeros(1, int))
     sigma, nearest = discs.radius[:, None] + discs.radius, _smallest(log)
     pairs = [(i, j) for i in range(len(discs.name)) for j in range(i, len(discs.name)) if i != j or discs.number[i] > 1]
     edges = {}
@@ -43,7 +49,7 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
         bins = max(int(BINS_A_DIAMETER * (reach - first) / sigma[i, j]), 1)
         edges[i, j] = np.linspace(first, max(reach, 1.01 * sigma[i, j]), bins + 1)
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
-    members = [np.flatnonzero(log.discs.species == s) for s in range(len(discs.name))]
+    members = [np.flatnonzero(log.discs.partner == s) for s in range(len(discs.name))]
     period = np.where(log.periodic, log.box, 0.0)  # 0: no images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
         places = inside(log, state.position)
@@ -55,9 +61,9 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
 
 
 def _smallest(log: Log) -> np.ndarray:
-    """Smallest radius of each species, length."""
-    smallest = np.full(len(log.discs.species_names), np.inf)
-    np.minimum.at(smallest, log.discs.species, log.discs.radius)
+    """Smallest radius of each species, or of all discs if they are taken together, length."""
+    smallest = np.full(len(log.discs.partners), np.inf)
+    np.minimum.at(smallest, log.discs.partner, log.discs.radius)
     return smallest
 
 

@@ -39,6 +39,9 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from found  # before anything that takes long for so many
         return
     box = None if "box" in invalid else scene.box
+    if box is not None and "piston" not in invalid and (found := list(piston.closed_issues(scene, invalid))):
+        yield from found  # before anything that needs room for the gas
+        return
     mobile = [i for i, disc in enumerate(scene.disc) if disc is None or not disc.fixed]
     if not scene.species and not mobile and scene.start is None:
         yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]], or [start]")

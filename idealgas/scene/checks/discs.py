@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from idealgas.errors import did_you_mean
 from idealgas.scene.checks.overlaps import MOST_OVERLAPS, disc_keys, label, rounding
 from idealgas.scene.checks.piston import CLOSE_PACKING
 from idealgas.scene.discs import EXPLICIT
@@ -91,7 +92,8 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
         for name in (wall and wall.permeable_to) or ():
             if name not in known:
                 key = ("wall", i, "permeable_to")
-                yield Issue((key,), "no such species", f'"{name}"', " or ".join(f'"{one}"' for one in known))
+                wrong = f"no such species{did_you_mean(name, known)}"
+                yield Issue((key,), wrong, f'"{name}"', " or ".join(f'"{one}"' for one in known))
 
 
 def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
@@ -221,7 +223,7 @@ def placement_issues(scene: Document) -> Iterator[Issue]:
 def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
     """Check for compression in a narrow box, or next to discs and walls that are not compressed."""
     key: Key = ("species", i, "placement")
-    others = [f"species.{k}.placement = {s.placement}" for k, s in kinds if s.placement != "compressed"]
+    others = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
     others += ["[start]" if scene.start else "[[disc]]"] if len(scene.given) else []
     others += ["[[wall]]"] if scene.walls else []
     if others:

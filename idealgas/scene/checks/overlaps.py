@@ -202,7 +202,9 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
         number, radius = int(scene.given.index[k]), scene.given.radius[k]
         place: Key = getattr(walls[i], "place", ("wall", i))
         keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
-        wrong = f"{label(scene, number)}overlaps {f'wall {i}' if place[0] == 'wall' else walls[i].name}"
+        wrong = (
+            f"{label(scene, number)}overlaps {f'wall {walls[i].name or i}' if place[0] == 'wall' else walls[i].name}"
+        )
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
 
 

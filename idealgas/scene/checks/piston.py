@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -27,9 +27,9 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
-def called(number: int) -> list[str]:
-    """What the pistons of a scene are called in messages: by their tables, or a single one the piston."""
-    return ["the piston"] if number == 1 else [f"piston {k}" for k in range(number)]
+def piston_names(pistons: Sequence[Piston]) -> list[str]:
+    """Names of the pistons in messages: 'piston upper' or 'piston 0', or 'the piston' if there is only one."""
+    return ["the piston"] if len(pistons) == 1 else [f"piston {p.name or k}" for k, p in enumerate(pistons)]
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
@@ -43,6 +43,19 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
         yield from _holes_between(scene)
         for k in range(len(scene.piston)):
             yield from _walls_in_the_way(scene, k)
+
+
+def closed_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
+    """Check that the pistons leave room for the gas at the start."""
+    left, bottom, right, top = scene.room
+    if left < right and bottom < top:
+        return
+    if found := list(issues(scene, invalid)):
+        yield from found
+        return
+    keys = tuple(("piston", k, "position") for k, piston in enumerate(scene.piston) if not piston.inner)
+    got = " and ".join(f"{scene.piston[k].wall} at {scene.piston[k].start(scene.box.size):g}" for _, k, _ in keys)
+    yield Issue((*keys, ("box", "size")), "no room for the gas", got, "a piston with the gas on its inner side")
 
 
 def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
@@ -253,7 +266,7 @@ def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
         if low - wall.radius < most and high + wall.radius > least:
             allowed = f"none from {least:.6g} to {most:.6g} along {'xy'[axis]}, where it may come"
             got = f"from {low:.6g} to {high:.6g}"
-            yield Issue(_in_the_way(wall, i, k), f"wall in the way of {called(len(scene.piston))[k]}", got, allowed)
+            yield Issue(_in_the_way(wall, i, k), f"wall in the way of {piston_names(scene.piston)[k]}", got, allowed)
 
 
 def _holes_between(scene: Document) -> Iterator[Issue]:
@@ -277,7 +290,7 @@ def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> 
     axis, size = scene.piston[0].axis, scene.box.size
     chamber = np.searchsorted([piston.start(size) for piston in scene.piston], position[:, axis])
     gases = [radii[chamber == c] for c in range(len(scene.piston) + 1)]
-    names = called(len(scene.piston))
+    names = piston_names(scene.piston)
     for k in range(1, len(scene.piston)):
         if not len(gases[k]):
             keys: tuple[Key, ...] = (("piston", k, "position"), ("piston", k - 1, "position"))
@@ -303,7 +316,9 @@ def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]
         rooms = np.interp(times, *np.array(high).T) - np.interp(times, *np.array(low).T)
         room, time = min(zip(rooms.tolist(), times, strict=True))
         if room < least:
-            other = next((f"the {SIDES[sides[k]]} side" for k in (a, b) if k in sides), called(last)[max(a, 0)])
+            other = next(
+                (f"the {SIDES[sides[k]]} side" for k in (a, b) if k in sides), piston_names(scene.piston)[max(a, 0)]
+            )
             got = f"a distance of {room:.6g} from {other} {_when(scene, time)}"
             yield Issue(_moving_keys(*moving), "crushes the gas before the run ends", got, f">= {least:.6g}")
 

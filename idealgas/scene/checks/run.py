@@ -31,6 +31,12 @@ PLAIN = "float64"
 MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e10, 1e10
 """Largest numbers of snapshots, steps and trials of a run, which take hours even for a few discs."""
 
+MOST_EVENTS = 1e14
+"""Largest number of collisions that a bath or side may drive a run to, which takes more than a year."""
+
+MOST_HEATING = 2.0**40
+"""Largest temperature of a later step over the temperatures and energies before it: sums of energy have one unit."""
+
 LONGEST = 2.0**52
 """Number of mean free times after which a float cannot distinguish the times of two collisions."""
 
@@ -127,6 +133,7 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
         got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
         allowed = f"<= {LONGEST:.3g} of them, a time <= {LONGEST * scene.mean_free_time:.3g}"
         yield Issue((("run", "until"), ("run",)), "too long for the digits of the clock", got, allowed)
+    yield from _heated_issues(scene)
     every = None if "log" in invalid else scene.log.snapshot_every
     for key, period, what, most in (
         (("log", "snapshot_every"), every, "snapshots", MOST_SNAPSHOTS),
@@ -141,6 +148,32 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
     if MOST_TRIALS < trials < math.inf:
         allowed = f"<= {MOST_TRIALS:g}, by a speed <= {run.v_ref * MOST_TRIALS / trials:.3g}"
         yield Issue((("run", "v_ref"), ("run",)), "too many trials", f"about {trials:.3g}", allowed)
+
+
+def _heated_issues(scene: Document) -> Iterator[Issue]:
+    """Check for sides and heat baths so hot that sums of energy lose their digits, or that the run would take years."""
+    run, properties = scene.run, scene.properties
+    keys: list[Key] = []
+    for effect in scene.active_effects:
+        if effect.properties.temperatures:
+            keys += [("thermostat", "temperature") if key == ("thermostat",) else key for key in effect.keys]
+    if not keys:
+        return
+    first = [t for t in (*properties.emits, properties.bath) if t is not None]
+    before, later = max([scene.mean_kinetic_energy, *first]), max(properties.later_temperatures, default=0.0)
+    if later > MOST_HEATING * before:
+        got, allowed = f"{later:g} after {before:.3g}", f"at most {MOST_HEATING:.3g} times as hot"
+        yield Issue((*keys, ("run",)), "a step beyond the digits of the account of energy", got, allowed)
+        return
+    lightest, hottest = min([*(size.mass for size in scene.sizes), *scene.given.mass.tolist()]), max(*first, later, 0.0)
+    speed = math.sqrt(math.pi * hottest / (2 * lightest))  # the discs may be cold at the start
+    if run.until is None or speed <= scene.mean_speed:
+        return
+    events = scene.number_of_discs * run.until / scene.free_time_at(speed)
+    if events > MOST_EVENTS:
+        got = f"{hottest:g}, about {events:.3g} collisions until t = {run.until:g}"
+        allowed = f"<= {MOST_EVENTS:g}, at T <= {hottest * (MOST_EVENTS / events) ** 2:.3g}"
+        yield Issue((*keys, ("run", "until")), "too hot for a run that ends", got, allowed)
 
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:

@@ -32,7 +32,10 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
     if made and (crossing := _crossing(scene)):
         a, b = crossing
         yield Issue(
-            (("wall", a, "solid"), ("wall", b, "solid")), "curves that cross", f"wall {b}", "closed curves apart"
+            (("wall", a, "solid"), ("wall", b, "solid")),
+            "curves that cross",
+            f"wall {scene.wall[b].name or b}",
+            "closed curves apart",
         )
     elif made and fixed and (reaching := list(_reaching(scene, fixed, made))):
         yield from reaching

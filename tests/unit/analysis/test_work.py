@@ -45,6 +45,17 @@ def test_free_energy_against_random_configurations(number, radius):
     assert abs(found.value - random) <= 4 * error + found.error
 
 
+def test_species_of_one_radius_are_equal_discs():
+    """Two species of two discs each have the configurations of four discs of one."""
+    both = (
+        "species = [{ name = 'a', count = 2, radius = 0.3, temperature = 1 }, "
+        "{ name = 'b', count = 2, radius = 0.3, temperature = 1 }]"
+    )
+    rooms = (4.0, 3.0), (False, False)
+    mixed = log_configurations(make_gas(parse_scene(f"box.size = [4, 3]\nrun.until = 1\n{both}")), *rooms)
+    assert mixed == log_configurations(make_gas(parse_scene(BOX.format(4, 0.3))), *rooms)
+
+
 def test_discs_that_do_not_fit():
     gas = make_gas(parse_scene(BOX.format(2, 0.5)))
     assert log_configurations(gas, (0.9, 3.0), (False, False)) is None

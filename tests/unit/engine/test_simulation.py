@@ -1,6 +1,7 @@
 """Epochs, stops and diagnostics of a simulation, on gases whose motion is known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,9 @@ from helpers.support import record
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
+from idealgas.initial.build import make_gas
+from idealgas.run.effects import make_effects
+from idealgas.scene import parse_scene
 from idealgas.state import Gas
 
 pytestmark = pytest.mark.interpreted
@@ -141,6 +145,19 @@ def test_diagnostics_find_overlaps_and_escapes():
         diagnostics = Simulation(gas_of((10, 10), *discs), method()).check_invariants()
         assert diagnostics.overlap == pytest.approx(0.25)
         assert diagnostics.outside == pytest.approx(0.05)
+
+
+def test_no_disc_is_beyond_a_periodic_side():
+    """A disc at a periodic side reaches across it by its radius; at the side that reflects another one by a tenth."""
+    scene = """
+    box = { size = [10, 10], left = "periodic", right = "periodic" }
+    disc = [{ position = [0.1, 5], radius = 1 }, { position = [5, 5], radius = 1, velocity = [1, 0] }]
+    run.until = 1
+    """
+    scene = parse_scene(scene)
+    gas = replace(make_gas(scene), position=np.array([[0.1, 5.0], [5.0, 0.8]]))
+    diagnostics = Simulation(gas, BruteForce(), make_effects(scene, gas)).check_invariants()
+    assert diagnostics.outside == pytest.approx(0.1)
 
 
 @methods

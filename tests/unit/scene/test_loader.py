@@ -3,7 +3,7 @@ from helpers.support import ROOT
 
 from idealgas.errors import UserError
 from idealgas.examples import load_example
-from idealgas.scene import Header, Log, Scene, SceneError, load_scene, parse_scene
+from idealgas.scene import Header, Log, Scene, SceneError, Species, load_scene, parse_scene
 from idealgas.toml.dump import dump_document
 from idealgas.toml.table import LARGEST
 
@@ -22,6 +22,39 @@ def refused(text, *overrides):
     with pytest.raises(SceneError) as refusal:
         parse_scene(text, "s.toml", overrides)
     return refusal.value.errors
+
+
+def test_of_many_mistakes_the_first_are_lines_and_the_others_a_number():
+    errors = refused(MINIMAL + "".join(f"wrong{k} = 1\n" for k in range(100)))
+    assert errors[0].startswith("s.toml:9: run.wrong0: unknown key (got wrong0; allowed ")
+    assert errors[19].startswith("s.toml:28: run.wrong19: unknown key")
+    assert errors[20:] == ["… and 80 more mistakes"]
+
+
+def test_messages_have_the_names_of_tables():
+    species = "[[species]]\nname = '{}'\ncount = 1\nradius = 0.1\n{}\n"
+    text = MINIMAL + species.format("light", "temperature = 1") + species.format("heavy", "temperature = 1\nmas = 2")
+    assert refused(text) == [
+        's.toml:20: species.heavy.mas: unknown key, did you mean "mass"? (got mas; allowed '
+        + ", ".join(Species.model_fields)
+        + ")"
+    ]
+    text = text.replace("mas = 2", "")
+    assert refused(text, "species.heavy.radius=-1") == [
+        "--set species.heavy.radius=-1: species.heavy.radius: out of range (got -1; allowed > 0)"
+    ]
+    assert refused(text, "species.heavi.radius=1") == [
+        '--set species.heavi.radius=1: nothing of this name, did you mean "heavy"? '
+        "(got heavi; allowed 0 to 1, light, heavy)"
+    ]
+    wall = "[[wall]]\nname = 'membrane'\nfrom = [2, 0]\nto = [2, 2]\npermeable_to = ['heavi']\n"
+    assert refused(text + wall)[0].startswith(
+        's.toml:21: wall.membrane.permeable_to: no such species, did you mean "heavy"? (got "heavi"; allowed '
+    )
+    assert refused(text + wall.replace("heavi", "heavy"), "wall.membran.to=[2, 1]") == [
+        '--set wall.membran.to=[2, 1]: nothing of this name, did you mean "membrane"? '
+        "(got membran; allowed 0 to 0, membrane)"
+    ]
 
 
 def test_defaults():

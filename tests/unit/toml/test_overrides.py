@@ -79,7 +79,7 @@ def test_a_value_cannot_bring_other_keys_along():
 
 def test_errors_name_the_override_not_the_file():
     assert refused("species.neon.radius=-1") == [
-        "--set species.neon.radius=-1: species.1.radius: out of range (got -1; allowed > 0)"
+        "--set species.neon.radius=-1: species.neon.radius: out of range (got -1; allowed > 0)"
     ]
     assert refused("run.events=") == [
         "--set run.events=: run: no stop rule (got nothing; allowed at least one of until, events and "

@@ -140,6 +140,22 @@ def test_confinement_is_the_part_of_the_contact_circle_in_the_box(radius):
             assert abs(found[i, j] - scale * fits.mean()) < 4 * error
 
 
+@pytest.mark.parametrize("box", [(5.0, 3.0), (2.1, 2.4), (2.0, 30.0)], ids=str)
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)], ids=str)
+@pytest.mark.parametrize("axis", [None, 0, 1])
+def test_confinement_is_a_mean_over_the_contact_circle(box, periodic, axis):
+    """The closed form against the sum over a million angles, also where the box is hardly wider than two discs."""
+    radius, angle = np.array([0.1, 0.3, 0.9]), (np.arange(10**6) + 0.5) * 2e-6 * math.pi
+    found = hard_discs.confinement(radius, box, periodic, axis)
+    for i, j in np.ndindex(3, 3):
+        share = np.ones_like(angle) if axis is None else 2 * (np.cos(angle), np.sin(angle))[axis] ** 2
+        for side, wraps, along in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
+            a, b = side - 2 * radius[i], side - 2 * radius[j]
+            inside = np.clip((a + b) / 2 - (radius[i] + radius[j]) * np.abs(along), 0, min(a, b))
+            share = share if wraps else share * inside * side / (a * b)
+        assert found[i, j] == pytest.approx(share.mean(), rel=1e-9)
+
+
 def test_confinement_vanishes_in_a_large_box():
     assert hard_discs.confinement([0.5], (1e6, 1e6)) == pytest.approx(1.0, abs=2e-6)
 
