@@ -278,7 +278,6 @@ def test_faults_are_lines(tmp_path, old, text, message):
         ("a.extxyz", f"1\nProperties=pos:R:3:radius:R:1\n{'1' * 200_000} 1 0 1\n"),
         ("a.csv", f"x,y,radius\n{'1' * 200_000},1,1\n"),
         ("a.csv", 'x,y,radius\n"' + "1\n" * 100_000 + '",1,1\n'),
-        ("a.csv", "x,y,radius,time\n1,1,1,nan\n"),
     ],
 )
 def test_damaged_files_are_lines(tmp_path, name, text):

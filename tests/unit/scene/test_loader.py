@@ -35,7 +35,7 @@ def test_messages_have_the_names_of_tables():
     species = "[[species]]\nname = '{}'\ncount = 1\nradius = 0.1\n{}\n"
     text = MINIMAL + species.format("light", "temperature = 1") + species.format("heavy", "temperature = 1\nmas = 2")
     assert refused(text) == [
-        's.toml:20: species.heavy.mas: unknown key, did you mean "mass"? (got mas; allowed '
+        's.toml:19: species.heavy.mas: unknown key, did you mean "mass"? (got mas; allowed '
         + ", ".join(Species.model_fields)
         + ")"
     ]
