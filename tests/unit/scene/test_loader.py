@@ -49,7 +49,7 @@ def test_messages_have_the_names_of_tables():
     ]
     wall = "[[wall]]\nname = 'membrane'\nfrom = [2, 0]\nto = [2, 2]\npermeable_to = ['heavi']\n"
     assert refused(text + wall)[0].startswith(
-        's.toml:21: wall.membrane.permeable_to: no such species, did you mean "heavy"? (got "heavi"; allowed '
+        's.toml:24: wall.membrane.permeable_to: no such species, did you mean "heavy"? (got "heavi"; allowed '
     )
     assert refused(text + wall.replace("heavi", "heavy"), "wall.membran.to=[2, 1]") == [
         '--set wall.membran.to=[2, 1]: nothing of this name, did you mean "membrane"? '
