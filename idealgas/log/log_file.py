@@ -160,9 +160,8 @@ class LogFile:
             source.seek(0)
             raise LogError(f"{self.path}: not a log of idealgas, but {describe_file_type(source.read(HEAD))}")
         self.unclosed = source.unclosed
-        size = os.fstat(source.fileno()).st_size
         if not self.unclosed:
-            self._check_size(size, source.end)
+            self._check_size(os.fstat(source.fileno()).st_size, source.end)
         self._file = h5py.File(source, "r")
         self._opened.append(self._file)
         if "format" not in self._file.attrs or _text_or_integer(self._file, "format") != schema.FORMAT:
@@ -171,6 +170,7 @@ class LogFile:
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
+        size = os.fstat(source.fileno()).st_size  # after the commit: a writer may have extended the file since
         if self.unclosed:
             self._check_size(size, self.commit.file_size)
         self._columns = {path: self._column_at(path) for path in self.commit.tails}

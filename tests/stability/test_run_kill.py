@@ -7,11 +7,13 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 from helpers.log_compare import NO_END, differences
 from helpers.support import IDEALGAS, ROOT, idealgas
 
 from idealgas.log import open_log
+from idealgas.report.live import Live
 
 pytestmark = pytest.mark.slow
 
@@ -115,5 +117,36 @@ def test_killed_ten_times(kind, undisturbed, tmp_path):
     for n in range(TEN):
         arguments = ["resume", str(path)] if path.exists() else [*command(kind), "-o", str(path)]
         kill(arguments, path, random.uniform(0.2, 0.9) * duration if n == 0 else random.uniform(0.1, 0.4) * duration)
+    resumed(path)
+    assert differences(path, expected) == []
+
+
+@pytest.mark.parametrize("case", [0, *(pytest.param(case, marks=pytest.mark.long) for case in range(1, 20))])
+def test_a_killed_run_that_is_watched(case, undisturbed, tmp_path):
+    """Its page ends with it, the page of another process shows that it was killed, and the run goes on."""
+    expected, duration = undisturbed("fast")
+    path = tmp_path / "run.h5"
+    seconds = duration + np.random.default_rng(case).uniform(0.1, 1.0) * duration  # watched, it takes longer
+    arguments = [*command("fast"), "-o", str(path)]
+    child = subprocess.Popen([IDEALGAS, *arguments, "--watch"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        while not path.exists() and child.poll() is None:
+            time.sleep(0.02)
+        watched = open_log(path)
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and child.poll() is None:
+            watched.refresh()
+            time.sleep(0.02)
+        pages = psutil.Process(child.pid).children()
+    finally:
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+    psutil.wait_procs(pages, timeout=60)
+    assert not any(page.is_running() for page in pages)
+    with watched:
+        watched.refresh()
+        shown = Live(watched)
+        assert not shown.running
+        assert shown.curves(0)["state"].startswith(("not closed (crash?): ", "complete: "))
     resumed(path)
     assert differences(path, expected) == []

@@ -42,7 +42,7 @@ def steer(path: Path | str, changes: int, pause: float = 0.0) -> None:
                 time.sleep(pause)
 
 
-@pytest.mark.parametrize("case", range(3))
+@pytest.mark.parametrize("case", [*range(3), *(pytest.param(case, marks=pytest.mark.long) for case in range(3, 20))])
 def test_a_killed_program_leaves_a_log_that_goes_on(case, tmp_path):
     """What is in the log is whole: changes up to the last checkpoint, each with the motion after it."""
     killed, expected = tmp_path / "killed.h5", tmp_path / "expected.h5"
