@@ -1,4 +1,5 @@
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -154,6 +155,15 @@ def test_confinement_is_a_mean_over_the_contact_circle(box, periodic, axis):
             inside = np.clip((a + b) / 2 - (radius[i] + radius[j]) * np.abs(along), 0, min(a, b))
             share = share if wraps else share * inside * side / (a * b)
         assert found[i, j] == pytest.approx(share.mean(), rel=1e-9)
+
+
+def test_confinement_of_a_thousand_species_takes_little_memory():
+    """A few arrays of 8 MB, a million pairs each; a sum over angles would take 30 GB."""
+    tracemalloc.start()
+    found = hard_discs.confinement(np.linspace(0.3, 0.6, 1000), (100.0, 100.0))
+    assert tracemalloc.get_traced_memory()[1] < 400_000_000
+    tracemalloc.stop()
+    assert found[0, 999] == pytest.approx(hard_discs.confinement([0.3, 0.6], (100.0, 100.0))[0, 1], rel=1e-15)
 
 
 def test_confinement_vanishes_in_a_large_box():
