@@ -17,6 +17,7 @@ from idealgas.analysis.core.equilibration import (
     detect_equilibration,
     memory_time,
 )
+from idealgas.analysis.core.exchange import Exchange
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
@@ -146,7 +147,8 @@ def shear(
     series = [reduced] if heats else [reduced, temperatures]
     first = _first(log, edges, series) if start is None else 0
     memory = memory_time(one[first:] for one in series) * block
-    window = Window(edges, first, start is None, kind_of_state(log), memory)
+    slowest = Exchange(memory, "the flow and its temperature forget their values")
+    window = Window(edges, first, start is None, kind_of_state(log), slowest)
     p, t = pressure[first:], temperatures[first:]
     temperature = mean(t)
     collisions = 2 * passed_on.collisions[first:].sum() / (len(gas) * window.duration)

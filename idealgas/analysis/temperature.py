@@ -17,6 +17,7 @@ from idealgas.analysis.core.ensemble import (
     nonstationary_reason,
 )
 from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.exchange import with_pistons
 from idealgas.analysis.core.fields import OMITTED, reported
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.result import Result
@@ -119,10 +120,14 @@ def temperature(
             of_axes = [Theory(t, relative * t, "equipartition") for t in (*axes.tolist(), float(axes.mean()))]
             along_x, along_y = of_axes[:2] if shared else (None, None)
             both = of_axes[2]
-        energy = mean((x + y) / 2, both)
+        part = np.isin(log.discs.species, np.arange(len(discs.name))[chosen])
+        of_x, of_y, energy = (
+            with_pistons(mean(series, theory), log, part, window.duration)
+            for series, theory in ((x, along_x), (y, along_y), ((x + y) / 2, both))
+        )
         if isolated and number == len(log.discs) and np.ptp(x + y) < CONSERVED * (x + y).mean():
             energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, but for rounding
-        return SpeciesTemperature(name, number, mean(x, along_x), mean(y, along_y), energy, means)
+        return SpeciesTemperature(name, number, of_x, of_y, energy, means)
 
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
     if len(entries) > 1:

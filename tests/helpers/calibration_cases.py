@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from helpers import calibration_estimates as estimates
 from helpers.calibration_estimates import Named
-from idealgas import Log, scattering, shear, transport
+from idealgas import Log, profile, scattering, shear, transport
+from idealgas.analysis.core.caveats import of_window
 
 
 class Case(NamedTuple):
@@ -78,6 +79,42 @@ HOLE = "[box]\nsize = [10, 10]\n[[species]]\nname = 'points'\ncount = 100\nradiu
 
 STROKES = [[0, 0]] + [[22 * k + at, v] for k in range(400) for at, v in ((20, (-0.5, 0.5)[k % 2]), (22, 0))]
 """Velocities of a piston that rests for 20 and moves for 2, in and out."""
+
+HALF_PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("bottom", "top"))
+RADIUS = math.sqrt(0.4 / (60 * math.pi * (1 + 0.15**2)))
+UNLIKE = (
+    "[box]\nsize = [1, 1]\n[[species]]\nname = 'gas'\ncount = 60\ntemperature = 1\n"
+    f"radius = {{ normal = [{RADIUS!r}, {0.15 * RADIUS!r}] }}\nmass = {{ density = {1 / (math.pi * RADIUS**2)!r} }}\n"
+)
+"""Closed box of 60 discs of radii of a standard deviation of 15 %, packing fraction 0.4."""
+
+ONE_TO_FIVE = f"[box]\nsize = [1, 1]\n{HALF_PERIODIC}" + "".join(
+    f"[[species]]\nname = '{name}'\ncount = 30\nradius = {math.sqrt(0.2 / (60 * math.pi))!r}\nmass = {mass}\n"
+    "temperature = 1\n"
+    for name, mass in (("light", 1), ("heavy", 5))
+)
+"""Discs of one size and masses 1 and 5 between walls on the left and on the right."""
+
+EXCHANGE = ("collisions_per_disc = 350", "collisions_per_disc = 2000")
+"""Runs in which heat and discs cross the box a few times, and many times."""
+
+
+def slow_along(axis: Literal["x", "y"]) -> Callable[[Log], Sequence[str]]:
+    """Caveats of a window that is short for what crosses the box along an axis."""
+    return lambda log: of_window(profile(log, axis, 2).window)
+
+
+def in_a_row(*gases: tuple[int, float, float]) -> str:
+    """Gases in a row with pistons between them: numbers of discs, lengths, and masses of the pistons after them."""
+    text, place = f"[box]\nsize = [{sum(length for _, length, _ in gases)}, 10]\n", 0.0
+    for k, (count, length, mass) in enumerate(gases):
+        region = f"region = [{place}, 0, {place + length}, 10]\n"
+        text += f"[[species]]\nname = 'gas{k}'\ncount = {count}\nradius = 0.05\ntemperature = 1\n{region}"
+        place += length
+        if mass:
+            text += f"[[piston]]\nname = 'piston{k}'\ninner = 'x'\nposition = {place}\nmass = {mass}\n"
+    return text
+
 
 CASES = {
     "closed box": Case(GAS.format(sides=""), SHORT_AND_LONG, estimates.box),
@@ -181,5 +218,23 @@ CASES = {
         ("collisions_per_disc = 45",),
         estimates.equal_speeds,
         steady=False,
+    ),
+    "box of 60": Case(equal(60, 0.4), EXCHANGE, estimates.along_x, caveats=slow_along("x")),
+    "box of 60, unlike radii": Case(UNLIKE, EXCHANGE, estimates.along_x, caveats=slow_along("x")),
+    "thin box of 60": Case(equal(60, 0.1), EXCHANGE, estimates.along_x, caveats=slow_along("x")),
+    "half-periodic mixture": Case(ONE_TO_FIVE, EXCHANGE, estimates.along_x, caveats=slow_along("x")),
+    "inner piston": Case(in_a_row((40, 8, 20), (60, 12, 0)), ("until = 700", "until = 6000"), estimates.of_parts),
+    # chosen before any result was known
+    "long box": Case(equal(80, 0.05).replace("[1, 1]", "[4, 1]"), EXCHANGE, estimates.along_x, caveats=slow_along("x")),
+    "column of two masses": Case(
+        "[box]\nsize = [10, 10]\n[gravity]\nacceleration = [0, -0.3]\n"
+        "[[species]]\nname = 'light'\ncount = 40\nradius = 0.2\ntemperature = 1\n"
+        "[[species]]\nname = 'heavy'\ncount = 20\nradius = 0.2\nmass = 3\ntemperature = 1\n",
+        EXCHANGE,
+        estimates.along_y,
+        caveats=slow_along("y"),
+    ),
+    "three gases": Case(
+        in_a_row((30, 8, 5), (40, 10, 20), (50, 12, 0)), ("until = 700", "until = 6000"), estimates.of_parts
     ),
 }

@@ -1,6 +1,7 @@
 """Estimates that are calibrated, taken of the log of a gas."""
 
 from collections.abc import Iterator
+from typing import Literal
 
 from idealgas import (
     Log,
@@ -61,6 +62,38 @@ def strips(log: Log) -> Named:
         yield f"temperature {place}", strips.temperature[k]
     assert strips.gradient is not None
     yield "temperature gradient", strips.gradient
+
+
+def along_x(log: Log) -> Named:
+    """Profiles in ten strips along x: two at a side, and one in the middle."""
+    return _profiles(log, "x", 10, (0, 1, 4))
+
+
+def along_y(log: Log) -> Named:
+    """Profiles in five strips along y, the lowest ones."""
+    return _profiles(log, "y", 5, (0, 1, 2))
+
+
+def _profiles(log: Log, axis: Literal["x", "y"], bins: int, strips: tuple[int, ...]) -> Named:
+    """Densities and temperatures of each species, temperature gradients, and the pressure tensor in some strips."""
+    found = profile(log, axis, bins)
+    for entry in found.species:
+        for k in strips:
+            yield f"density of {entry.species} in strip {k}", entry.density[k]
+            yield f"temperature of {entry.species} in strip {k}", entry.temperature[k]
+        assert entry.gradient is not None
+        yield f"temperature gradient of {entry.species}", entry.gradient
+    for name, parts in found.pressure.items():
+        for k in strips:
+            yield f"P_{name} in strip {k}", parts[k]
+    yield from of_parts(log)
+
+
+def of_parts(log: Log) -> Named:
+    """Temperatures of the species that share the energy."""
+    for entry in temperature(log).species:
+        if entry.both.standard_error > 0:
+            yield f"temperature of {entry.species}", entry.both
 
 
 def periodic(log: Log) -> Named:

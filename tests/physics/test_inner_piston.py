@@ -12,7 +12,7 @@ from scipy import integrate
 from idealgas import UserError, evolution, load_scene, open_log, parse_scene, pressure, simulate
 from idealgas.analysis import registry
 from idealgas.analysis.core.statistics import estimate, mean
-from idealgas.analysis.evolution.adiabatic_piston import heat_flow, relaxation
+from idealgas.analysis.theory.adiabatic_piston import heat_flow, relaxation
 from idealgas.columns import Kind
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "piston-inner.toml"

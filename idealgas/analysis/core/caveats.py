@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from idealgas.analysis.core.equilibration import Window
+from idealgas.analysis.core.exchange import INDEPENDENT
 from idealgas.analysis.core.result import Origin, Result
 from idealgas.analysis.theory import conserved, time_steps
 from idealgas.errors import UserError
@@ -24,9 +25,6 @@ MOST = 6
 
 NAMED = 3
 """Largest number of logs that one sentence names."""
-
-RELAXATIONS = 42.0
-"""Length of a window in relaxation times of its gas from which on errors are right (measured to 10 %)."""
 
 WIDE, WIDE_PERIODIC = 20.0, 5.0
 """Diameters of the discs by which a box is wide between walls, which take a twentieth of it, and if it is periodic."""
@@ -50,13 +48,13 @@ def of_paths(log: Log, window: Window) -> tuple[str, ...]:
 
 
 def of_window(window: Window) -> tuple[str, ...]:
-    """Caveat of a window that is too short for the slow fluctuations of its gas."""
-    if window.duration >= RELAXATIONS * window.relaxation:
+    """Caveat of a window that is too short for the slowest exchange in its gas."""
+    time, process = window.slowest
+    if window.duration >= INDEPENDENT * time:
         return ()
     return (
-        f"This gas relaxes slowly, in t = {window.relaxation:.2g}; the window is only "
-        f"{window.duration / window.relaxation:.2g} times as long. Standard errors may be too small, those of "
-        f"collision rates in dense mixtures up to 3 times; from {RELAXATIONS:g} times on they are right.",
+        f"This gas relaxes slowly: {process} in t = {time:.2g}, and the window is only {window.duration / time:.2g} "
+        f"times as long. Standard errors may be up to 3 times too small; from {INDEPENDENT:g} times on they are right.",
     )
 
 

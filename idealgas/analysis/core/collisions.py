@@ -9,7 +9,7 @@ from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.samples import SampledImpacts
-from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
+from idealgas.analysis.core.statistics import Estimate, estimate, mean, of_events, ratio
 from idealgas.analysis.theory import conserved, hard_discs
 from idealgas.analysis.theory.ensemble import Composition, Ensemble, classes
 from idealgas.analysis.theory.values import BoxTheory, Theory, box_theory
@@ -131,14 +131,16 @@ def free_paths(
     for i, (name, number) in enumerate(zip(discs.name, discs.number, strict=True)):
         own = counts[:, i].sum(axis=1) / number
         speeds = window.of(moments.flights)[:, i, 0] / number
-        speed = float(mean_speeds[i])
+        speed, collided = float(mean_speeds[i]), float(own.sum()) * window.width * number
         rate = expected.of(i)
         free_time = rate.inverse() if rate and rate.value else None
         paths.append(
             FreePath(
                 name,
-                path=ratio(speeds, own, theory=free_time.times(speed) if free_time and speed else None),
-                time=estimate(lambda rate: 1 / rate, own, theory=free_time),
+                path=of_events(
+                    ratio(speeds, own, theory=free_time.times(speed) if free_time and speed else None), collided
+                ),
+                time=of_events(estimate(lambda rate: 1 / rate, own, theory=free_time), collided),
                 speed=mean(speeds, theory=speed or None),
             )
         )

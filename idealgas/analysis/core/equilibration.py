@@ -25,6 +25,7 @@ from idealgas.analysis.core.ensemble import (
     must_be_shared,
     not_steady,
 )
+from idealgas.analysis.core.exchange import NOTHING, Exchange, through_pistons
 from idealgas.analysis.core.fields import OMITTED, Key, as_dict, reported
 from idealgas.analysis.core.observables import Observable, TimeSeries
 from idealgas.analysis.core.stream import Tally, block_edges, stream
@@ -51,8 +52,8 @@ MEMORIES = 10.0
 FEWEST_SAMPLES = 4.0
 """Least number of independent samples with which a series counts as longer than its fluctuations."""
 
-_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float, float, bool], tuple[int, float]]] = WeakKeyDictionary()
-"""First block of the steady gas of a log and its relaxation time, by the number of event rows and what was asked."""
+_KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float, float, bool], tuple[int, Exchange]]] = WeakKeyDictionary()
+"""First block of the steady gas of a log and its slowest exchange, by the number of event rows and what was asked."""
 
 
 @dataclass(frozen=True)
@@ -60,14 +61,14 @@ class Window:
     """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
     edges: (B + 1,), times between the blocks. first: index of the first block used. detected: whether it was detected.
-    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`. relaxation: see `relaxation_time`.
+    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`. slowest: see `slowest_exchange`.
     """
 
     edges: Annotated[np.ndarray, OMITTED]
     first: Annotated[int, OMITTED]
     detected: Annotated[bool, Key("equilibration_detected")]
     state: Annotated[str, OMITTED] = "equilibrium"
-    relaxation: Annotated[float, OMITTED] = 0.0
+    slowest: Annotated[Exchange, OMITTED] = NOTHING
 
     @property
     @reported
@@ -90,6 +91,11 @@ class Window:
     def width(self) -> float:
         """Width of one block, time."""
         return float(self.edges[1] - self.edges[0])
+
+    @property
+    def memory(self) -> float:
+        """Number of blocks per independent one by the slowest exchange."""
+        return self.slowest.time / self.width
 
     def of(self, sums: np.ndarray) -> np.ndarray:
         """Sums (B, …) of a tally for the blocks of the window, divided by the width of a block: rates per time."""
@@ -133,11 +139,11 @@ def measure(
         if detected:
             first = equilibrated_from(log, edges, [*series.observables(), *series.centres()])
             must_be_shared(log, series.rates[first:, :, 1:])
-        known[key] = first, series.relaxation_time(first)
+        known[key] = first, max(series.slowest_exchange(first), through_pistons(log))
     elif tallies:
         stream(log, edges, tallies, progress)
-    first, relaxation = known[key]
-    return Window(edges, first, detected, kind_of_state(log), relaxation)
+    first, slowest = known[key]
+    return Window(edges, first, detected, kind_of_state(log), slowest)
 
 
 # ── detection ──

@@ -8,6 +8,7 @@ import numpy as np
 
 from idealgas.analysis.core.autoregression import inefficiency
 from idealgas.analysis.core.ensemble import ROUNDING, known_ensemble, nonstationary_reason
+from idealgas.analysis.core.exchange import Exchange
 from idealgas.analysis.core.flights import DensityBins, Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import Tally
@@ -18,8 +19,8 @@ from idealgas.log import Log
 BINS = 4
 """Number of bins along each axis in which discs are counted for the centre of a species."""
 
-MIXING = 0.2
-"""Packing fraction from which on collision rates depend on where the species are (measured: not at 0.06, at 0.3)."""
+MIXING = 0.15
+"""Packing fraction from which on collision rates depend on where the species are (measured: not at 0.06, at 0.2)."""
 
 DENSE, FREE_TIMES = 0.5, 50.0
 """Packing fraction from which on the structure of any gas relaxes slowly, and the mean free times that this takes.
@@ -107,8 +108,8 @@ class TimeSeries:
             for discs in np.moveaxis(self.bins.discs, 0, 2).reshape(-1, *self.bins.discs.shape[::3]):
                 yield Observable(discs @ place, least=float(discs[0].sum() * (place**2).mean()))
 
-    def relaxation_time(self, first: int) -> float:
-        """Time in which slow fluctuations relax, from a block on; 0 where nothing is known to be slow.
+    def slowest_exchange(self, first: int) -> Exchange:
+        """Slowest fluctuations that the log shows from a block on; their time is 0 where nothing is known to be slow.
 
         In a mixture it is twice the longest time for which a species stays where it is, relative to all discs;
         collision rates follow that with so small an amplitude that their own series do not show it. In a dense gas it
@@ -124,4 +125,9 @@ class TimeSeries:
             if self.fraction >= DENSE and (collisions := self.moments.events[first:, 0].sum()):
                 free_time = number.sum() * len(centre) / (2 * collisions)
         mixing = (inefficiency(one) for one in slow if np.ptp(one) > ROUNDING)
-        return max(HEAT * exchange, FREE_TIMES * free_time, *mixing) * self.width
+        found = (
+            (HEAT * exchange, "heat crosses the gas"),
+            (FREE_TIMES * free_time, "the discs of a dense gas change places"),
+            (max(mixing, default=0.0), "species move past each other"),
+        )
+        return max(Exchange(time * self.width, process) for time, process in found)

@@ -4,6 +4,7 @@ import numpy as np
 
 from idealgas.analysis.core.ensemble import centre_of_mass_velocity, kind_of_state, must_apply, must_be_shared
 from idealgas.analysis.core.equilibration import Window, equilibrated_from
+from idealgas.analysis.core.exchange import through_pistons
 from idealgas.analysis.core.observables import Observable
 from idealgas.analysis.core.stream import MOST_BLOCKS, span
 from idealgas.columns import FIRST_SEGMENT, OUTWARD
@@ -89,10 +90,11 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     edges = np.linspace(time[0], time[-1], min(len(time) - 1, MOST_BLOCKS) + 1)
     impacts = SampledImpacts(log, edges)
     if start is not None:
-        return Window(edges, 0, detected=False), impacts
+        return Window(edges, 0, detected=False, slowest=through_pistons(log)), impacts
     pairs = in_blocks(*log.observables["disc_collisions"], edges)
     series = map(Observable, (*impacts.kinetic_flow[:, ::2].T, impacts.pair_virial, pairs))
-    window = Window(edges, equilibrated_from(log, edges, tuple(series)), detected=True, state=kind_of_state(log))
+    first = equilibrated_from(log, edges, tuple(series))
+    window = Window(edges, first, detected=True, state=kind_of_state(log), slowest=through_pistons(log))
     energies = window.of(impacts.kinetic_flow[:, ::2]) - log.discs.mass.sum() * centre_of_mass_velocity(log) ** 2
     must_be_shared(log, energies[:, None])
     return window, impacts

@@ -28,6 +28,9 @@ LEAST_DOUBT = 1e-4
 FEWEST_BLOCKS = 8
 """Least number of blocks whose scatter gives an error; it is then known to 27 %."""
 
+FEWEST_EVENTS = 8
+"""Least number of events whose mean has an error; it is then known to 27 %."""
+
 FULL = 40.0
 """Times in which the change of a store has grown to all that it can be, to the last bit."""
 
@@ -102,11 +105,13 @@ class Estimate:
         return as_dict(self)
 
 
-def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
+def estimate(
+    function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0
+) -> Estimate:
     """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
 
     The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
-    `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`.
+    `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`. memory: see `error_of_mean`.
     """
     columns = np.array(series, float)
     means = columns.mean(axis=1)
@@ -120,7 +125,7 @@ def estimate(function: Callable[..., Any], *series: np.ndarray, theory: Theory |
                 slope = (function(*(means + shift)) - function(*(means - shift))) / (2 * step)
                 influence += slope * (column - means[k])
         value = float(function(*means))
-    error, samples = error_of_mean(influence)
+    error, samples = error_of_mean(influence, memory=memory)
     return Estimate(value, error, samples, *parts_of(theory), errors_by_blocks(influence, error))
 
 
@@ -143,9 +148,9 @@ def parts_of(theory: Theory | float | None) -> tuple[float | None, float]:
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
-def mean(series: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Estimate of the mean of one correlated series."""
-    return estimate(lambda a: a, series, theory=theory)
+def mean(series: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0) -> Estimate:
+    """Estimate of the mean of one correlated series; memory: see `error_of_mean`."""
+    return estimate(lambda a: a, series, theory=theory, memory=memory)
 
 
 def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
@@ -208,9 +213,22 @@ def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, fl
     return -2 * stored * math.expm1(-reached), 2 * effective / share**2
 
 
-def ratio(numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Estimate of the ratio of the means of two correlated series."""
-    return estimate(lambda a, b: a / b, numerator, denominator, theory=theory)
+def ratio(
+    numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0
+) -> Estimate:
+    """Estimate of the ratio of the means of two correlated series; memory: see `error_of_mean`."""
+    return estimate(lambda a, b: a / b, numerator, denominator, theory=theory, memory=memory)
+
+
+def of_events(estimate: Estimate, number: float) -> Estimate:
+    """Return an estimate from blocks of time in which `number` events happened, with no more samples than events.
+
+    Blocks without an event do not make an error better known. With fewer than FEWEST_EVENTS there is no error: the
+    scatter of a few lengths or times of an unknown distribution decides nothing.
+    """
+    if number < FEWEST_EVENTS:
+        return replace(estimate, standard_error=math.nan, independent_samples=number, blocks=())
+    return replace(estimate, independent_samples=min(estimate.independent_samples, number))
 
 
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:

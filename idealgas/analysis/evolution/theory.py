@@ -17,8 +17,8 @@ from idealgas.analysis.core.ensemble import (
 )
 from idealgas.analysis.core.fields import OMITTED
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.evolution.adiabatic_piston import relaxation
 from idealgas.analysis.theory import granular, hard_discs
+from idealgas.analysis.theory.adiabatic_piston import relaxation
 from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside

@@ -10,7 +10,7 @@ from idealgas.analysis.core.collision_statistics import CollisionCounts, ImpactP
 from idealgas.analysis.core.ensemble import nonstationary_reason
 from idealgas.analysis.core.equilibration import Window, measure
 from idealgas.analysis.core.intervals import FreeFlights, Intervals, WaitingTimes
-from idealgas.analysis.core.statistics import estimate, ratio
+from idealgas.analysis.core.statistics import estimate, of_events, ratio
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.histogram.distribution import ALL_DISCS, BINS, Distribution, distribution_of
 from idealgas.analysis.histogram.laws import (
@@ -131,7 +131,8 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
         chosen = (tally.sample_species == s) & (tally.sample_index >= begin)
         even = np.random.default_rng(0).uniform(-0.5, 0.5, int(chosen.sum()))
         sums = tally.sums[begin:, s].T
-        average = ratio(sums[1], sums[0], theory=mean)
+        collided = float(sums[1].sum())
+        average = of_events(ratio(sums[1], sums[0], theory=mean), collided)
         one = distribution_of(
             name,
             edges,
@@ -143,8 +144,8 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
             error,
         )
         measured = {
-            "variance_over_mean": estimate(_variance, *sums[:3], theory=cumulants[0]),
-            "third_cumulant_over_mean": estimate(_third, *sums, theory=cumulants[1]),
+            "variance_over_mean": of_events(estimate(_variance, *sums[:3], theory=cumulants[0]), collided),
+            "third_cumulant_over_mean": of_events(estimate(_third, *sums, theory=cumulants[1]), collided),
         }
         found.append(replace(one, counted_in=time, cumulants=measured))
     return window, found, why_not
@@ -175,6 +176,6 @@ def _intervals(
     """Distribution of the intervals of species s in some blocks of time."""
     counts = tally.counts[blocks, s].astype(float)
     chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
-    average = ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected)
+    average = of_events(ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected), float(counts.sum()))
     samples, edges = tally.sample[chosen], np.linspace(0, high, BINS + 1)
     return distribution_of(name, edges, counts, average, samples, None, possible, law_error)

@@ -16,6 +16,7 @@ import numpy as np
 from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
 from idealgas.analysis.core.check import PValue, agreement
 from idealgas.analysis.core.equilibration import Window, measure
+from idealgas.analysis.core.exchange import across
 from idealgas.analysis.core.fields import OMITTED, OPTIONAL
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, mean, ratio
@@ -151,16 +152,17 @@ class ProfileAnalysis(Analysis):
         axis = natural_axis(log) if along is None else "xy".index(along)
         reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
         window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
+        window = replace(window, slowest=max(window.slowest, across(log, axis)))
         along_flow = flow_axis(log)
         times = window.edges[window.first :]
-        sums, carried = collect(log, axis, along_flow, times, edges, progress)
-        pressure = pressure_of_strips(log, axis, edges, times, carried, progress)
+        sums, carried, stored = collect(log, axis, along_flow, times, edges, progress)
+        pressure = pressure_of_strips(log, axis, edges, times, carried, stored, progress)
         expected = expected_profile(log, axis, edges, window.start)
         flow = expected_flow(log, axis, edges) if along_flow == 1 - axis else None
         strip = float(edges[1] - edges[0]) * log.box[1 - axis]
         spinning = log.inertia is not None
         species = tuple(
-            _of_species(name, sums[:, s], edges, strip, expected, s, spinning, flow and flow.velocity)
+            _of_species(name, sums[:, s], edges, strip, expected, s, spinning, flow and flow.velocity, window.memory)
             for s, name in enumerate(composition(log.discs).name)
         )
         caveats = (*_unknown_strips(species), *_limits(log, axis, float(edges[1] - edges[0]), species, expected))
@@ -315,8 +317,9 @@ def _of_species(
     s: int,
     spinning: bool,
     flow: Sequence[Theory] | None,
+    memory: float,
 ) -> SpeciesProfile:
-    """Profiles of one species from its sums (F, K, 5); strip: area of a strip, length²."""
+    """Profiles of one species from its sums (F, K, 5); strip: area of a strip, length². memory: of the window."""
     strips = range(sums.shape[1])
 
     def per_disc(k: int, column: int, by: int = 0, theory: Theory | None = None) -> Estimate:
@@ -324,22 +327,22 @@ def _of_species(
             return Estimate(np.nan, np.nan, 0.0)
         if expected is not None:
             theory = expected.of_temperature(s, k) if column == 1 else expected.of_spin(s, k)
-        return ratio(sums[:, k, column], sums[:, k, by], theory)
+        return ratio(sums[:, k, column], sums[:, k, by], theory, memory)
 
     density_test = temperature_test = None
     if expected is not None and not expected.dilute:  # χ² would find the errors of a law of dilute gases
         number = strip * expected.density[s]
         density, warmth = ([of(s, k) for k in strips] for of in (expected.of_density, expected.of_temperature))
         excess = sums[..., 1] - [one.value for one in warmth] * sums[..., 0]
-        density_test = strip_test(sums[..., 0], number, strip * np.array([one.error for one in density]))
-        temperature_test = strip_test(excess, number, number * np.array([one.error for one in warmth]))
+        density_test = strip_test(sums[..., 0], number, strip * np.array([one.error for one in density]), memory)
+        temperature_test = strip_test(excess, number, number * np.array([one.error for one in warmth]), memory)
     return SpeciesProfile(
         name,
-        tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None) for k in strips),
+        tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None, memory) for k in strips),
         tuple(per_disc(k, 1) for k in strips),
         tuple(per_disc(k, 2) for k in strips) if spinning else None,
         tuple(per_disc(k, 3, 4, flow[k] if flow else None) for k in strips) if sums[..., 3].any() else None,
-        gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s),
+        gradient(sums[..., 0], sums[..., 1], (edges[1:] + edges[:-1]) / 2, expected, s, memory),
         density_test,
         temperature_test,
     )

@@ -3,19 +3,27 @@
 import numpy as np
 
 from idealgas.analysis.core.analysis import Progress
-from idealgas.analysis.core.statistics import Estimate, mean
+from idealgas.analysis.core.ensemble import conserved_momentum
+from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.stress import PassedOn
 from idealgas.log import Log
 
 
 def pressure_of_strips(
-    log: Log, axis: int, edges: np.ndarray, times: np.ndarray, carried: np.ndarray, progress: Progress | None
+    log: Log,
+    axis: int,
+    edges: np.ndarray,
+    times: np.ndarray,
+    carried: np.ndarray,
+    stored: np.ndarray,
+    progress: Progress | None,
 ) -> dict[str, tuple[Estimate, ...]]:
     """Components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
     xy is the flow along the axis of momentum across it. Between walls, the component along the axis is the force
-    through a line across the box over the width of the box.
+    through a line across the box over the width of the box. Smooth walls across the axis pass none of the momentum
+    along them on: what has gone through a line then is no more than what the gas on one side of it has lost.
 
     Args:
         log: log of the gas.
@@ -23,6 +31,7 @@ def pressure_of_strips(
         edges: of the strips, length.
         times: (F,), of the frames.
         carried: (F, K, 3), what the discs of each frame carry of xx, yy and xy, energy.
+        stored: (F, K), momentum across the axis of the discs below a line, mean over the lines of a strip.
         progress: called with the numbers of rows read and of all rows.
     """
     passed_on = PassedOn(axis, edges, log.periodic, log.scene.properties.shear)
@@ -31,4 +40,9 @@ def pressure_of_strips(
     rates = passed_on.stress / np.diff(times)[:, None, None]
     pressure = ((carried[1:] + carried[:-1]) / 2 + rates) / area
     strips = range(len(edges) - 1)
-    return {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
+    found = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
+    if not log.periodic[axis] and conserved_momentum(log)[1 - axis]:
+        lost = -np.diff(stored, axis=0) / np.diff(times)[:, None] / log.box[1 - axis]
+        shear = pressure[..., 2]  # less what was lost, it is the scatter of what discs carry at single instants
+        found["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)
+    return found

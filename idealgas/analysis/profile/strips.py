@@ -35,20 +35,24 @@ class StripTest:
 
 def collect(
     log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: Progress | None
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sums (F, S, K, 5) of 1, m v²/2, I ω², m u and m over discs of a strip, and (F, K, 3) of m vx², m vy², m vx vy.
 
-    At F times. u: velocity along the axis `flow`, if there is a flow; v is then relative to the mean of u in the strip.
+    And (F, K) of the momentum across the axis of the discs at lower coordinates than lines across the box, averaged
+    over the lines of a strip. All are at F times. u: velocity along the axis `flow`, if there is a flow; v is then
+    relative to the mean of u in the strip.
     Between sheared sides v is relative to their flow.
     """
     gas, frame = log.discs, centre_of_mass_velocity(log)
     shape = (len(gas.species_names), len(edges) - 1)
     sums, carried = np.zeros((len(times), *shape, 5)), np.zeros((len(times), shape[1], 5))
+    stored = np.zeros((len(times), shape[1]))
     rate, height = log.scene.properties.shear, log.box[1]
     inertia = np.zeros(len(gas)) if log.inertia is None else log.inertia
     for k, state in enumerate(frames(log, times, progress)):
         place = state.position[:, axis]
-        strip = np.clip(((place - edges[0]) / (edges[1] - edges[0])).astype(np.int64), 0, shape[1] - 1)
+        within = (place - edges[0]) / (edges[1] - edges[0])
+        strip = np.clip(within.astype(np.int64), 0, shape[1] - 1)
         cell = gas.species.astype(np.int64) * shape[1] + strip
         spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
         velocity = state.velocity - frame
@@ -61,6 +65,9 @@ def collect(
         vx, vy = velocity.T
         for c, value in enumerate((px * vx, py * vy, px * vy, px, py)):
             carried[k, :, c] = np.bincount(strip, value, shape[1])
+        across = gas.mass * velocity[:, 1 - axis]
+        lower = np.bincount(strip, across, shape[1])
+        stored[k] = np.cumsum(lower) - lower + np.bincount(strip, across * (strip + 1 - within), shape[1])
     momentum, mass = sums[..., 3], sums[..., 4]
     mean_velocity = momentum.sum(axis=0) / np.maximum(mass.sum(axis=0), np.finfo(float).tiny)
     sums[..., 1] -= mean_velocity * momentum - mean_velocity**2 * mass / 2
@@ -68,10 +75,10 @@ def collect(
         whole, u = mass.sum(axis=1), momentum.sum(axis=(0, 1)) / np.maximum(mass.sum(axis=(0, 1)), np.finfo(float).tiny)
         carried[..., flow] -= 2 * u * carried[..., 3 + flow] - u**2 * whole
         carried[..., 2] -= u * carried[..., 4 - flow]
-    return sums, carried[..., :3]
+    return sums, carried[..., :3], stored
 
 
-def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> StripTest | None:
+def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory: float = 0.0) -> StripTest | None:
     """Test of a series (F, K) over K strips whose deviations from theory are 0 on the average; None with few discs.
 
     Strips of one gas fluctuate together, as discs are not lost and long waves die out slowly. So each wave across the
@@ -84,6 +91,7 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> Str
         series: one for each frame and strip, with a mean of weight times a constant by theory, or of 0.
         weight: (K,), mean number of discs in a strip by theory.
         error: (K,), error of theory of the mean of the series; in each wave strips add up as badly as they can.
+        memory: number of frames per independent one, if it is known.
     """
     from scipy import special
 
@@ -94,7 +102,7 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> Str
     waves = np.linalg.qr(np.sqrt(weight)[:, None] * powers)[0] / np.sqrt(weight)[:, None]
     squares = []
     for wave in waves.T[1:]:
-        found = mean(series @ wave, Theory(0.0, float(error @ np.abs(wave)), "theory"))
+        found = mean(series @ wave, Theory(0.0, float(error @ np.abs(wave)), "theory"), memory)
         if found.deviation is None:
             continue
         p_value = 2 * special.stdtr(max(found.independent_samples - 1, 1.0), -abs(found.deviation))
@@ -105,11 +113,11 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray) -> Str
 
 
 def gradient(
-    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int
+    counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int, memory: float
 ) -> Estimate | None:
     """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T.
 
-    Theory may be too high at one end and too low at the other.
+    Theory may be too high at one end and too low at the other. memory: number of frames per independent one.
     """
     known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
     if np.count_nonzero(known) < 2:
@@ -125,4 +133,4 @@ def gradient(
         along = expected.share[s] * expected.temperature[s, known]
         slope = float(lever @ along) if np.ptp(along) > 0 else 0.0
         theory = Theory(slope, 2 * expected.error / float(np.ptp(place)), expected.law)
-    return mean(lever @ temperature + influence @ lever, theory)
+    return mean(lever @ temperature + influence @ lever, theory, memory)

@@ -3,10 +3,12 @@
 import math
 
 import pytest
+from helpers.support import ROOT
 
 from idealgas import analyse, open_log, parse_scene, simulate
 from idealgas.analysis.core.caveats import of_window
 from idealgas.analysis.core.equilibration import Window
+from idealgas.analysis.core.exchange import INDEPENDENT, Exchange
 
 PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
 
@@ -64,11 +66,13 @@ def test_slow_structure_is_said(name, start, tmp_path):
     for result in found:
         said = [sentence for sentence in result.caveats if "relaxes slowly" in sentence]
         assert bool(said) == (name in SLOW)
-        assert all(f"in t = {result.window.relaxation:.2g}" in sentence for sentence in said)
+        assert all(f"in t = {result.window.slowest.time:.2g}" in sentence for sentence in said)
 
 
 def test_window_of_many_relaxation_times_needs_no_caveat():
     edges = [0.0, 100.0]
-    assert of_window(Window(edges, 0, True, relaxation=2.3)) == ()
-    (said,) = of_window(Window(edges, 0, True, relaxation=10.0))
-    assert "in t = 10; the window is only 10 times as long" in said
+    assert of_window(Window(edges, 0, True, slowest=Exchange(2.3, "heat crosses the gas"))) == ()
+    (said,) = of_window(Window(edges, 0, True, slowest=Exchange(10.0, "heat crosses the gas")))
+    assert "heat crosses the gas in t = 10, and the window is only 10 times as long" in said
+    assert f"from {INDEPENDENT:g} times on" in said
+    assert f"{INDEPENDENT:g} times as long" in (ROOT / "idealgas" / "analysis" / "README.md").read_text()

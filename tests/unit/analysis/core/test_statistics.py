@@ -160,3 +160,27 @@ def test_an_estimate_as_text_has_its_error_theory_and_deviation():
     assert str(Estimate(1.10919, 0.00077, 100.0)) == "1.1092(8)"
     assert str(Estimate(1.10919, 0.00077, 100.0, theory=1.109537)) == "1.1092(8), theory 1.10954, −0.5σ"
     assert str(Estimate(0.5, 0.0, math.inf, theory=0.5)) == "0.5, theory 0.5"
+
+
+def test_few_events_have_no_error_and_no_more_samples_than_events():
+    """Two lengths in 400 blocks are two samples: their scatter shows no error; nine show one with 8 degrees at most."""
+    for number, known in ((2, False), (7, False), (9, True)):
+        events, lengths = np.zeros(400), np.zeros(400)
+        events[:number], lengths[:number] = 1, 230 + np.arange(number)
+        found = statistics.of_events(statistics.ratio(lengths, events), number)
+        assert found.value == pytest.approx(lengths.sum() / number)
+        assert bool(found.standard_error > 0) == known
+        assert found.independent_samples <= number
+
+
+def test_known_memory_makes_the_error_of_a_faint_slow_process_right():
+    """A slow process beside fast noise: blocks of a quarter of its inefficiency show it, single samples less."""
+    rng, deviations = np.random.default_rng(5), {0.0: [], 30.0: []}
+    slow = autoregressive(rng, 600, 29 / 31, runs=200) - 5.0  # inefficiency 30
+    for series in (slow + 2 * rng.normal(size=slow.shape)).T:
+        for memory, found in deviations.items():
+            estimate = statistics.mean(series, memory=memory)
+            found.append(estimate.value / estimate.standard_error)
+    rms = {memory: np.sqrt(np.mean(np.square(found))) for memory, found in deviations.items()}
+    assert rms[30.0] < rms[0.0]
+    assert rms[30.0] < 1.3

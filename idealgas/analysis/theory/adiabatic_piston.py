@@ -9,12 +9,47 @@ import math
 import numpy as np
 
 
+def conductance(
+    temperature: float | np.ndarray, of_piston: float, force: float | np.ndarray, m: float | np.ndarray, mass: float
+) -> np.ndarray:
+    """Energy that gases give to a piston per time and difference of their temperature from its own, 1/time.
+
+    For Maxwellian velocities of discs and piston and uncorrelated hits it is 4 m M/(m + M)² F σ/(T √(2π)) with the
+    force F of a gas of temperature T on the piston of temperature T_P, and σ² = T/m + T_P/M.
+
+    Args:
+        temperature: of the gases, energy.
+        of_piston: temperature of the motion of the piston, energy.
+        force: of each gas on the piston, energy/length.
+        m: mass of a disc of each gas.
+        mass: of the piston, M.
+    """
+    share = 4 * m * mass / (m + mass) ** 2 / math.sqrt(2 * math.pi)
+    return np.asarray(share * force * np.sqrt(temperature / m + of_piston / mass) / temperature)
+
+
+def slowest_rate(conductance: np.ndarray, capacity: np.ndarray) -> float:
+    """Slowest rate at which the temperatures of gases in a row become equal, 1/time; 0 if no energy passes.
+
+    Args:
+        conductance: (K,), of the pistons between the gases, from one gas to the next, 1/time.
+        capacity: (K + 1,), heat capacities of the gases at constant pressure, no unit; 0 for a vacuum.
+    """
+    rates = np.zeros((len(capacity), len(capacity)))
+    scale = 1 / np.sqrt(np.maximum(capacity, 1.0))
+    for k, each in enumerate(conductance):
+        both = np.zeros(len(capacity))
+        both[k], both[k + 1] = scale[k], -scale[k + 1]
+        rates += each * np.outer(both, both)
+    found = np.linalg.eigvalsh(rates)
+    slow = found[found > 1e-9 * max(float(found[-1]), np.finfo(float).tiny)]  # less is rounding: equal temperatures
+    return float(slow.min(initial=math.inf)) if len(slow) else 0.0
+
+
 def heat_flow(temperature: np.ndarray, force: float, m: float, mass: float) -> np.ndarray:
     """Energy (2,) that each of two gases takes from a piston with no mean velocity, energy/time.
 
-    For Maxwellian velocities of discs and piston and uncorrelated hits, a gas of temperature T gives the energy n H 4 m
-    M/(m + M)² (T - T_P) σ/√(2π), with n T H the force and σ² = T/m + T_P/M; at its temperature T_P the piston takes as
-    much from one gas as it gives to the other.
+    At its temperature T_P the piston takes as much from one gas as it gives to the other, by `conductance`.
 
     Args:
         temperature: (2,), of the gases, energy.
@@ -24,10 +59,9 @@ def heat_flow(temperature: np.ndarray, force: float, m: float, mass: float) -> n
     """
     of_piston = math.sqrt(temperature[0] * temperature[1])
     for _ in range(8):
-        weight = np.sqrt(temperature / m + of_piston / mass) / temperature
+        weight = conductance(temperature, of_piston, force, m, mass)
         of_piston = float(weight @ temperature / weight.sum())
-    weight = np.sqrt(temperature / m + of_piston / mass) / temperature
-    return 4 * m * mass / (m + mass) ** 2 / math.sqrt(2 * math.pi) * force * weight * (of_piston - temperature)
+    return conductance(temperature, of_piston, force, m, mass) * (of_piston - temperature)
 
 
 def relaxation(

@@ -1,0 +1,142 @@
+"""Times in which heat, discs and energy are exchanged across a gas or through its inner pistons, by kinetic theory.
+
+What differs from place to place decays in its slowest wave, and the states of a gas are independent only after twice
+its correlation time. A log that contains few such times does not show how far a profile or a temperature fluctuates.
+"""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.analysis.core.ensemble import centre_of_mass_energy
+from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.theory import adiabatic_piston, hard_discs, waves
+from idealgas.analysis.theory.conserved import are_fixed
+from idealgas.analysis.theory.ensemble import classes
+from idealgas.log import Log
+
+INDEPENDENT = 42.0
+"""Number of independent states in a window, by its slowest exchange, from which on errors are right (to 10 %)."""
+
+
+class Exchange(NamedTuple):
+    """An exchange within a gas.
+
+    time: between independent states, twice the correlation time; 0 if nothing is exchanged. process: what happens in
+    it, in words.
+    """
+
+    time: float
+    process: str
+
+
+NOTHING = Exchange(0.0, "")
+"""No exchange that is slow."""
+
+
+def across(log: Log, axis: int) -> Exchange:
+    """Slowest exchange across the box along an axis: of heat and, in a mixture, of discs.
+
+    A wave of length λ decays like exp(-4π² D t/λ²) with the thermal diffusivity or the diffusion coefficient D by
+    Enskog's theory. The longest wave is that of twice the length between walls, or of the length if it is periodic. A
+    mixture conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
+    """
+    gas, temperature = log.discs, _temperature(log)
+    moving = ~are_fixed(gas.mass)
+    if not temperature > 0 or not gas.packing_fraction > 0 or not gas.radius[moving].any():
+        return NOTHING
+    fraction = min(gas.packing_fraction, hard_discs.HIGHEST)
+    diameter = 2 * math.sqrt(fraction * gas.area / (math.pi * float(moving.sum())))
+    fluid = waves.sound_of_discs(fraction, temperature, float(gas.mass[moving].mean()), diameter)
+    slowest, carried = fluid.spreading, "heat crosses"
+    discs = classes(gas)
+    if len(discs.name) > 1:
+        rate = hard_discs.mixture_collision_rate(discs.radius, discs.mass, discs.number, gas.area, temperature)
+        friction = (2 * discs.mass / (discs.mass[:, None] + discs.mass) * rate).sum(axis=1)
+        diffusion = (temperature / (discs.mass * friction))[~are_fixed(discs.mass)].min()
+        if diffusion < slowest:
+            slowest, carried = float(diffusion), "discs diffuse across"
+    wavelength = log.box[axis] * (1 if log.periodic[axis] else 2)
+    return Exchange(2 * wavelength**2 / (4 * math.pi**2 * slowest), f"{carried} the box along {'xy'[axis]}")
+
+
+def through_pistons(log: Log) -> Exchange:
+    """Slowest exchange of energy between gases through inner pistons that have a mass."""
+    if (gases := _gases_in_a_row(log)) is None:
+        return NOTHING
+    rate = adiabatic_piston.slowest_rate(gases.conductance, gases.capacity)
+    return Exchange(2 / rate, "energy crosses the inner pistons") if rate > 0 else NOTHING
+
+
+def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: float) -> Estimate:
+    """Return the mean temperature of a part of a gas with an error that contains the exchange through pistons.
+
+    In a window of less than INDEPENDENT times the exchange its error is at least that by theory. Gases with one
+    pressure and one energy have temperatures of variances T² (1/C - 1/ΣC), with their heat capacities C at constant
+    pressure, which are correlated over the time of the exchange.
+
+    Args:
+        estimate: mean over a window, with its error by the fluctuations in the window, energy.
+        log: log of the gas.
+        discs: (N,), whether a disc belongs to the part.
+        duration: of the window, time.
+    """
+    time, gases = through_pistons(log).time, _gases_in_a_row(log)
+    if gases is None or not log.scene.properties.isolated or duration >= INDEPENDENT * time:
+        return estimate
+    held = gases.capacity > 0
+    share = np.bincount(gases.chamber[discs], minlength=len(held))[held] / np.count_nonzero(discs)
+    capacity, memory = gases.capacity[held], time / 2 / duration
+    variance = max(float((share**2 / capacity).sum() - 1 / capacity.sum()), 0.0) * gases.temperature**2
+    error = math.sqrt(variance * 2 * memory * (1 + memory * math.expm1(-1 / memory)))
+    if error <= estimate.standard_error:
+        return estimate
+    return replace(estimate, standard_error=error, independent_samples=math.inf, blocks=())
+
+
+class _Gases(NamedTuple):
+    """Gases in a row with pistons between them.
+
+    chamber: (N,), number of the gas of each disc. conductance: (K,), of the pistons, 1/time. capacity: (K + 1,), heat
+    capacities of the gases at constant pressure. temperature: mean over all discs, energy.
+    """
+
+    chamber: np.ndarray
+    conductance: np.ndarray
+    capacity: np.ndarray
+    temperature: float
+
+
+def _gases_in_a_row(log: Log) -> _Gases | None:
+    """Gases beside the inner pistons that have a mass; None without such pistons, and for discs at rest."""
+    pistons, temperature = log.scene.piston, _temperature(log)
+    inner = [k for k, piston in enumerate(pistons) if piston.inner and piston.mass]
+    if not inner or not temperature > 0:
+        return None
+    gas, axis = log.discs, pistons[inner[0]].axis
+    places = log.observables["piston_position"][1].mean(axis=0)
+    ends = [0.0, log.box[axis]]
+    for piston, place in zip(pistons, places.tolist(), strict=True):
+        if not piston.inner and piston.axis == axis:
+            ends[int(piston.outward > 0)] = place
+    cuts = np.array([ends[0], *places[inner], ends[1]])
+    chamber = np.searchsorted([pistons[k].start(log.box) for k in inner], gas.position[:, axis])
+    number, solid = (np.bincount(chamber, weight, len(cuts) - 1) for weight in (None, math.pi * gas.radius**2))
+    fraction = np.clip(solid / (np.diff(cuts) * log.box[1 - axis]), 0.0, hard_discs.HIGHEST)
+    z = hard_discs.compressibility_factor(fraction)
+    force = (z * temperature / np.diff(cuts))[chamber]  # of each disc
+    conductance = np.zeros(len(inner))
+    for k, piston in enumerate(inner):
+        each = adiabatic_piston.conductance(temperature, temperature, force, gas.mass, pistons[piston].mass or 0.0)
+        low, high = np.bincount(chamber, each, len(cuts) - 1)[k : k + 2]
+        conductance[k] = low * high / (low + high)
+    return _Gases(chamber, conductance, number * (1 + z), temperature)
+
+
+def _temperature(log: Log) -> float:
+    """Mean kinetic energy of a moving disc over the whole log, energy."""
+    moving = int((~are_fixed(log.discs.mass)).sum())
+    energies = log.observables["kinetic_energy"][1]
+    return float(energies.mean() - centre_of_mass_energy(log)) / moving if len(energies) else 0.0
