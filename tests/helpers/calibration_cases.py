@@ -226,14 +226,6 @@ CASES = {
     "inner piston": Case(in_a_row((40, 8, 20), (60, 12, 0)), ("until = 700", "until = 6000"), estimates.of_parts),
     # chosen before any result was known
     "long box": Case(equal(80, 0.05).replace("[1, 1]", "[4, 1]"), EXCHANGE, estimates.along_x, caveats=slow_along("x")),
-    "column of two masses": Case(
-        "[box]\nsize = [10, 10]\n[gravity]\nacceleration = [0, -0.3]\n"
-        "[[species]]\nname = 'light'\ncount = 40\nradius = 0.2\ntemperature = 1\n"
-        "[[species]]\nname = 'heavy'\ncount = 20\nradius = 0.2\nmass = 3\ntemperature = 1\n",
-        EXCHANGE,
-        estimates.along_y,
-        caveats=slow_along("y"),
-    ),
     "three gases": Case(
         in_a_row((30, 8, 5), (40, 10, 20), (50, 12, 0)), ("until = 700", "until = 6000"), estimates.of_parts
     ),
