@@ -204,6 +204,8 @@ CLAIMS = [
           between("relaxation.logs.*.relaxation_collisions_per_disc", 1.0, 6.0)),
     Claim("osmosis", "the pressure on the right is higher by the osmotic pressure Π", "pressure",
           near("pressure.walls.membrane_right.pressure", 1.0, 0.05, 0.05)),
+    Claim("osmosis", "the pressure on the right is higher", "pressure",
+          prints(r"^P = 2\.1\d*\(\d+\) on the left wall, 3\.1\d*\(\d+\) on the right wall,")),
     Claim("otto", "the account of energy shows the work of the piston", "evolution",
           between("evolution.given.piston", -2500, -800)),
     Claim("otto", "and the heat of the left side", "evolution", between("evolution.given.left", 800, 2500)),

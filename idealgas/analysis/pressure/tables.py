@@ -1,5 +1,8 @@
 """Tables of the pressure and of the equation of state."""
 
+import math
+from collections.abc import Sequence
+
 from idealgas.analysis.core.check import agreement
 from idealgas.analysis.core.tables import (
     Cell,
@@ -14,8 +17,11 @@ from idealgas.analysis.core.tables import (
 )
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
-from idealgas.analysis.pressure.mechanical import Mechanical
+from idealgas.analysis.pressure.mechanical import Mechanical, WallPressure
 from idealgas.analysis.pressure.routes import PAIRS
+
+CLEAR = 5.0
+"""Difference of two pressures, in units of both errors together, from which on the headline has both."""
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
@@ -116,6 +122,17 @@ def _of_states(result: EquationOfState) -> list[Table]:
     return [states, estimates("Virial coefficients, fitted", fitted)]
 
 
+def _unlike(walls: Sequence[WallPressure]) -> list[WallPressure]:
+    """Return the first wall, and each further one whose pressure clearly differs from those before it."""
+    unlike: list[WallPressure] = []
+    for wall in walls:
+        p = wall.pressure
+        others = [other.pressure for other in unlike]
+        if all(abs(p.value - q.value) > CLEAR * math.hypot(p.standard_error, q.standard_error) for q in others):
+            unlike.append(wall)
+    return unlike
+
+
 def pressure_summary(result: Pressure | EquationOfState) -> str:
     """Z beside the ideal gas and hard discs; of walls the pressure, where one presses from outside its own."""
     if isinstance(result, EquationOfState):
@@ -123,7 +140,7 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
     ideal = result.number * result.temperature / result.area
     if result.mechanical:
         walls = result.mechanical.walls
-        shown = [wall for wall in walls if wall.pressure.theory is not None] or walls[:1]
+        shown = [wall for wall in walls if wall.pressure.theory is not None] or _unlike(walls)
         beside = f"N T/A of an ideal gas is {ideal:.4g}; "
         said = agreement([(wall.name, wall.pressure) for wall in shown], "the external pressure", result.no_theory)
         found = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
