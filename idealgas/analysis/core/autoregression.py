@@ -115,6 +115,8 @@ def error_of_mean(series: np.ndarray, number: int | None = None, memory: float =
         return Spread(math.nan if changes(series) else 0.0, float(n))
     block, unit = max(n // BLOCKS, min(int(memory / 4), n // FEWEST), 1), unit_of(series)
     coarse = (series[n % block :] / unit).reshape(-1, block).mean(axis=1)
+    if is_constant(coarse):  # all that changes is in the samples that fill no block
+        block, coarse = 1, series / unit
     found = process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
     return Spread(found.error * unit, found.samples)
 

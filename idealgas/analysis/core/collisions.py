@@ -126,11 +126,11 @@ def free_paths(
 
     expected: collision rates by theory, from `expected_rates`.
     """
-    counts, mean_speeds = window.of(impacts.collisions), equilibrium.mean_speed
+    counts, flights, mean_speeds = window.of(impacts.collisions), window.of(moments.flights), equilibrium.mean_speed
     paths = []
     for i, (name, number) in enumerate(zip(discs.name, discs.number, strict=True)):
         own = counts[:, i].sum(axis=1) / number
-        speeds = window.of(moments.flights)[:, i, 0] / number
+        speeds = flights[:, i, 0] / number
         speed, collided = float(mean_speeds[i]), float(own.sum()) * window.width * number
         rate = expected.of(i)
         free_time = rate.inverse() if rate and rate.value else None

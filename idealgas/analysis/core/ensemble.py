@@ -14,12 +14,13 @@ from idealgas.errors import NotApplicableError
 from idealgas.log import Log
 
 UNLIKELY = 1e-5
-"""Probability that a gas in equilibrium is refused because of its mean temperatures."""
+"""Probability that a gas in equilibrium is refused because of its mean temperatures, whatever their number."""
 
-FAR = 2.0
-"""Largest deviation of a mean temperature from its theory, in standard deviations of the temperature at an instant.
+FAR = 0.0455
+"""Probability that any temperature in equilibrium is at an instant above what its mean may be, or any below.
 
-Beyond it, energy is exchanged more slowly than the log is long, and error bars from the log are too small.
+Beyond it, energy is exchanged more slowly than the log is long, and error bars from the log are too small. Of the two
+temperatures of one species of many discs these are 2 standard deviations at an instant.
 """
 
 ROUNDING = 1e-9
@@ -143,6 +144,9 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     expected, names = number * ensemble.of_axes, [f" of {name}" for name in gas.name]
     if energies.shape[1] == 1:
         expected, number, names = expected.sum(axis=0, keepdims=True), number.sum(keepdims=True), [""]
+    rows = max(int(np.count_nonzero(expected)), 1)
+    chances = np.array([[1 - FAR / rows], [FAR / rows]])
+    lowest, highest = np.asarray(special.chdtri(number[:, 0], chances)) / number[:, 0]
     for s, name in enumerate(names):
         for axis, letter in enumerate("xy"):
             theory = float(expected[s, axis] / number[s, 0])
@@ -150,8 +154,9 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
                 continue
             found = mean(energies[:, s, axis] / number[s], theory)
             dof, deviation = max(found.independent_samples - 1, 1.0), abs(found.deviation or 0.0)
-            far = FAR * theory * math.sqrt(2.0 / number[s, 0]) + ROUNDING * ensemble.temperature
-            if abs(found.value - theory) > far or special.stdtr(dof, -deviation) < UNLIKELY / 2:
+            far = not lowest[s] <= found.value / theory <= highest[s]
+            far &= abs(found.value - theory) > ROUNDING * ensemble.temperature
+            if far or special.stdtr(dof, -deviation) < UNLIKELY / rows / 2:
                 return f"m v{letter}²{name} is {found.value:.4g} on average, and {theory:.4g} in equilibrium"
     return ""
 

@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import curve_fit
 
 from idealgas.analysis.theory import hard_discs
 
@@ -67,6 +66,7 @@ def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> De
     thermal: T/m, length²/time². The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ
     is not free.
     """
+    from scipy.optimize import curve_fit  # which takes long to import, and only sound needs it
 
     def fluid(size: float, speed: float, damping: float, spreading: float) -> Fluid:
         return Fluid(speed, damping, spreading, max(size * speed**2 / thermal, 1 + 1e-9))

@@ -168,7 +168,7 @@ def test_every_overlap_with_an_earlier_disc_is_reported():
 
 def test_a_dump_shows_the_defaults():
     assert dump_document(parse_scene(MINIMAL)).splitlines() == [
-        "[scene]", 'title = ""', 'description = ""', "seed = 0", "",
+        "[scene]", 'title = ""', 'description = ""', "shows = []", "seed = 0", "",
         "[box]", "size = [4.0, 2.0]", *(f'{side} = "reflecting"' for side in ("left", "right", "bottom", "top")), "",
         "[[disc]]", "position = [1.0, 1.0]", "velocity = [0.0, 0.0]", "radius = 0.5", "mass = 1.0", "",
         "[run]", 'method = "event_driven"', "until = 1.0", "",

@@ -130,3 +130,12 @@ def test_errors_of_series_of_any_size(scale):
     assert scaled.error / scale == pytest.approx(plain.error, rel=1e-10)
     assert scaled.samples == pytest.approx(plain.samples, rel=1e-10)
     assert autoregression.inefficiency(series * scale) == pytest.approx(autoregression.inefficiency(series), rel=1e-10)
+
+
+@pytest.mark.parametrize(("n", "memory"), [(1001, 0.0), (101, 12.0)])
+def test_a_change_in_the_samples_that_fill_no_block_is_not_lost(n, memory):
+    """Blocks of 3 samples leave out the first two; the mean is 1/n, and its error that of a single event, 1/n."""
+    series = np.zeros(n)
+    series[1] = 1.0
+    error, _ = autoregression.error_of_mean(series, memory=memory)
+    assert error == pytest.approx(1 / n, rel=0.05)

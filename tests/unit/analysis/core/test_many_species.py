@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from idealgas import open_log, parse_scene, simulate
+from idealgas.analysis.core.ensemble import equipartition_violation, known_ensemble
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.state import Gas
 
@@ -16,3 +18,27 @@ def test_many_species_are_counted_with_all_discs(species, groups):
     tally.begin(gas, np.linspace(0.0, 1.0, 513))
     assert tally.collisions.shape == (512, species, groups)
     assert gas.partners == (names if groups > 1 else ("all",))
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """A thousand species of two discs each, and five events."""
+    species = (
+        f'[[species]]\nname = "s{k}"\ncount = 2\nradius = {0.3 + 3e-4 * k}\nmass = {1 + 1e-3 * k}\ntemperature = 1\n'
+        for k in range(1000)
+    )
+    path = tmp_path_factory.mktemp("many") / "many.h5"
+    simulate(parse_scene("[box]\nsize = [100, 100]\n[run]\nevents = 5\n" + "".join(species)), path)
+    with open_log(path) as log:
+        yield log
+
+
+def test_bounds_of_temperatures_contain_the_number_of_species(log):
+    """Temperatures at an instant, those of two discs exponential: of 2000, 5 % are above 3 T, and none is far off."""
+    of_axes = np.random.default_rng(1).exponential(known_ensemble(log).of_axes * 2)
+    energies = np.broadcast_to(of_axes, (64, 1000, 2))
+    assert np.count_nonzero(of_axes > 6) > 60
+    assert equipartition_violation(log, energies) == ""
+    hot = energies.copy()
+    hot[:, 700, 1] = 2 * 15.0
+    assert equipartition_violation(log, hot) == "m vy² of s700 is 15 on average, and 1 in equilibrium"
