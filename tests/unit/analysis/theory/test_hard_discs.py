@@ -145,7 +145,10 @@ def test_confinement_is_the_part_of_the_contact_circle_in_the_box(radius):
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)], ids=str)
 @pytest.mark.parametrize("axis", [None, 0, 1])
 def test_confinement_is_a_mean_over_the_contact_circle(box, periodic, axis):
-    """The closed form against the sum over a million angles, also where the box is hardly wider than two discs."""
+    """The closed form against the sum over a million angles, also where the box is hardly wider than two discs.
+
+    The sum misses up to h² s/16π at a kink where the slope changes by s: 7e-11 for h = 2π/10⁶ and s of 90.
+    """
     radius, angle = np.array([0.1, 0.3, 0.9]), (np.arange(10**6) + 0.5) * 2e-6 * math.pi
     found = hard_discs.confinement(radius, box, periodic, axis)
     for i, j in np.ndindex(3, 3):
@@ -154,7 +157,7 @@ def test_confinement_is_a_mean_over_the_contact_circle(box, periodic, axis):
             a, b = side - 2 * radius[i], side - 2 * radius[j]
             inside = np.clip((a + b) / 2 - (radius[i] + radius[j]) * np.abs(along), 0, min(a, b))
             share = share if wraps else share * inside * side / (a * b)
-        assert found[i, j] == pytest.approx(share.mean(), rel=1e-9)
+        assert found[i, j] == pytest.approx(share.mean(), rel=1e-9, abs=7e-11)
 
 
 def test_confinement_of_a_thousand_species_takes_little_memory():
