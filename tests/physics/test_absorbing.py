@@ -58,7 +58,7 @@ def test_the_last_event_of_a_disc(two):
     assert (rows.time[own].tolist(), rows.kind[own].tolist(), rows.partner[own].tolist()) == ([2.5], [6], [-5])
     assert (rows.position[own].tolist(), rows.velocity[own].tolist()) == ([[4.5, 5.0]], [[1.0, 0.0]])
     assert two.summary["escaped"] == 1
-    (flights,) = two.flights(discs=[0])
+    flights = next(two.flights(discs=[0]))
     assert (flights.start.tolist(), flights.end.tolist()) == ([0.0], [2.5])
 
 
