@@ -1,9 +1,6 @@
 """`idealgas watch` and `run --watch`: the page of a log that is being written, in headless Chromium."""
 
-import re
-import signal
 import socket
-import subprocess
 import threading
 import urllib.error
 import urllib.request
@@ -12,7 +9,7 @@ from contextlib import contextmanager
 import psutil
 import pytest
 from helpers.report_pages import assert_positions, picture
-from helpers.support import IDEALGAS, error_of, posix
+from helpers.support import ended, error_of, posix, started
 from selenium.webdriver.support.ui import WebDriverWait
 
 from idealgas.log import open_log
@@ -46,20 +43,6 @@ def finished(tmp_path_factory):
 
 
 @contextmanager
-def started(*arguments, **options):
-    """A command that prints the address of its page, and the address."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and their children
-    child = subprocess.Popen([IDEALGAS, *map(str, arguments)], stderr=subprocess.PIPE, text=True, **options)
-    try:
-        lines = iter(child.stderr.readline, "")
-        yield child, next(found[0] for line in lines if (found := re.search(r"http://127\.0\.0\.1:\d+/", line)))
-    finally:
-        child.kill()
-        child.wait()
-        child.stderr.close()
-
-
-@contextmanager
 def opened(browser, address):
     """A tab of its own with a page, whose requests are logged; nothing may be complained about."""
     first = browser.current_window_handle
@@ -73,13 +56,6 @@ def opened(browser, address):
     assert browser.get_log("browser") == []
     browser.close()
     browser.switch_to.window(first)
-
-
-def ended(child):
-    """Exit code and messages after Ctrl-C."""
-    child.send_signal(signal.SIGINT)
-    _, messages = child.communicate(timeout=60)
-    return child.returncode, messages
 
 
 def points(browser):

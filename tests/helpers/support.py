@@ -2,11 +2,14 @@
 
 import contextlib
 import os
+import re
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -126,3 +129,25 @@ def error_of(*arguments: object, folder: Path | None = None, code: int = 2) -> s
     done = called(*arguments, folder=folder)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (code, "", 1)
     return done.stderr
+
+
+@contextlib.contextmanager
+def started(*arguments: object, **options: Any) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Yield a command that serves a page, as a process, and the address that it prints; kill it afterwards."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and their children
+    child = subprocess.Popen([IDEALGAS, *map(str, arguments)], stderr=subprocess.PIPE, text=True, **options)
+    assert child.stderr is not None
+    try:
+        addresses = (re.search(r"http://127\.0\.0\.1:\d+/", line) for line in child.stderr)
+        yield child, next(address[0] for address in addresses if address)
+    finally:
+        child.kill()
+        child.wait()
+        child.stderr.close()
+
+
+def ended(child: subprocess.Popen[str]) -> tuple[int, str]:
+    """End a process by Ctrl-C, and return its exit code and its further error messages."""
+    child.send_signal(signal.SIGINT)
+    _, messages = child.communicate(timeout=60)
+    return child.returncode, messages

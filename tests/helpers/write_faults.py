@@ -1,4 +1,4 @@
-"""Commands whose writes to a log fail: every single one, with ENOSPC, with EIO, and after half of its bytes.
+"""Commands whose writes to a file fail: every single one, with ENOSPC, with EIO, and after half of its bytes.
 
 As a program, in a process into which `write_faults.c` is preloaded, it runs each of COMMANDS again and again, in forks
 of itself that have everything loaded, and each time another write fails. It prints what was wrong afterwards.
@@ -45,7 +45,7 @@ class Command(NamedTuple):
 
 
 def commands(events: int) -> dict[str, Command]:
-    """Commands that write HDF5 files, by name. events: number at the later end of a run."""
+    """Commands that write logs and other files, by name. events: number at the later end of a run."""
     resume = ("resume", LOG, "--events", str(events))
     return {
         "run": Command(("run", "gas.toml", "-o", LOG)),
@@ -54,6 +54,8 @@ def commands(events: int) -> dict[str, Command]:
         "recover": Command(("recover", LOG), "killed.h5"),
         "recover a copy": Command(("recover", LOG, "-o", "copy.h5"), "killed.h5", "copy.h5"),
         "export": Command(("export", LOG, "-o", "gas.h5md", "--frames", "20"), "first.h5", "gas.h5md"),
+        "export a table": Command(("export", LOG, "-o", "gas.csv", "--frames", "20"), "first.h5", "gas.csv"),
+        "export events": Command(("export", LOG, "-o", "gas.parquet", "--events"), "first.h5", "gas.parquet"),
     }
 
 
@@ -74,10 +76,11 @@ class Faults:
         self.commands = commands(events)
         writer.FLUSH_SECONDS = 0.0  # each checkpoint is committed at once
         Path("gas.toml").write_text(SCENE.format(discs=discs, events=3 * events // 8))
-        for name, kept in (("run", "first.h5"), ("resume to a later end", "whole.h5"), ("export", None)):
+        for name, kept in (("run", "first.h5"), ("resume to a later end", "whole.h5")):
             output_of(*self.commands[name].arguments)
-            if kept:
-                shutil.copyfile(LOG, kept)
+            shutil.copyfile(LOG, kept)
+        for name in ("export", "export a table", "export events"):
+            output_of(*self.commands[name].arguments)
         self._digest = output_of("digest", "whole.h5")
         Path(LOG).unlink()
         self._call(self.commands["run"], 80, KILL)

@@ -1,19 +1,23 @@
 """`idealgas run` killed at a random moment and gone on with: the log is that of a run that nobody disturbed."""
 
+import json
 import signal
 import subprocess
 import time
+import urllib.request
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
-from helpers.log_compare import NO_END, differences
-from helpers.support import IDEALGAS, ROOT, idealgas
+from helpers.log_compare import NO_END, differences, scene_of
+from helpers.support import IDEALGAS, ROOT, ended, idealgas, started
 
 from idealgas.log import open_log
 from idealgas.report.live import Live
+from idealgas.run.resume import resume
+from idealgas.run.simulate import simulate
 
 pytestmark = pytest.mark.slow
 
@@ -35,6 +39,7 @@ SCENES = {
 IN_CI = [(0, "fast")]
 BY_HAND = [(case, list(SCENES)[case % len(SCENES)]) for case in range(1, 83)]
 TEN = 10
+WATCHED = 20
 
 
 def command(kind: str, *more: str) -> list[str]:
@@ -67,6 +72,14 @@ def rows_in(path: Path) -> int:
         return 0
     with open_log(path) as log:
         return len(log)
+
+
+def state_of(path: Path) -> str:
+    """State of a run, none before its log is there."""
+    if not path.exists():
+        return ""
+    with open_log(path) as log:
+        return log.run_state
 
 
 def kill(arguments: list[str], path: Path, seconds: float) -> int:
@@ -149,4 +162,48 @@ def test_a_killed_run_that_is_watched(case, undisturbed, tmp_path):
         assert not shown.running
         assert shown.curves(0)["state"].startswith(("not closed (crash?): ", "complete: "))
     resumed(path)
+    assert differences(path, expected) == []
+
+
+def page_of(address: str) -> tuple[str, bool]:
+    """State of a run by the page at an address, and whether it shows a part of the motion."""
+
+    def get(query: str) -> bytes:
+        with urllib.request.urlopen(address + query, timeout=60) as answer:
+            return answer.read()
+
+    assert b"<title>" in get("")
+    motion = json.loads(get("part?after=0&newest=1"))["motion"]
+    return json.loads(get("curves?points=0"))["state"], motion is not None
+
+
+@pytest.mark.parametrize("case", range(WATCHED))
+def test_a_run_killed_while_another_process_shows_it(case, tmp_path):
+    """The page of `idealgas watch` answers while the run goes on, after it was killed, and after it was resumed."""
+    path, expected = tmp_path / "run.h5", tmp_path / "expected.h5"
+    arguments = [*command("fast", "run.events=100_000_000"), "-o", str(path)]
+    run = subprocess.Popen([IDEALGAS, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        while state_of(path) != "running":
+            assert run.poll() is None
+            time.sleep(0.01)
+        run.send_signal(signal.SIGSTOP)  # until there is a page
+        with started("watch", path, "--no-browser") as (page, address):
+            assert page_of(address)[0].startswith("running: ")
+            run.send_signal(signal.SIGCONT)
+            end = time.monotonic() + np.random.default_rng(case).uniform(0, 1)
+            while time.monotonic() < end:
+                assert page_of(address)[0].startswith("running: ")
+            run.kill()
+            run.wait()
+            assert page_of(address)[0].startswith("not closed (crash?): ")
+            later = f"run.events={rows_in(path) + 10_000}"
+            resume(path, [later])
+            state, moves = page_of(address)
+            assert (state.startswith("complete: "), moves) == (True, True)
+            assert ended(page) == (0, "")
+    finally:
+        run.kill()
+        run.wait()
+    simulate(scene_of("quickstart", *SCENES["fast"][1:], later), expected)
     assert differences(path, expected) == []
