@@ -8,7 +8,8 @@ from idealgas.errors import plain
 from ._terminal import UNBOUNDED, echo, terminal
 
 if TYPE_CHECKING:
-    from rich.table import Table as RichTable
+    from rich.console import Console, ConsoleOptions
+    from rich.segment import Segment
     from rich.text import Text
 
     from idealgas.analysis.core.tables import Number, Table
@@ -55,7 +56,7 @@ class _Column(NamedTuple):
     least: int
 
 
-def as_rich(table: "Table", width: int) -> "Iterator[Text | RichTable]":
+def as_rich(table: "Table", width: int) -> "Iterator[Text | _Drawing]":
     """Yield the title and the table for a terminal of a width; if that is too narrow in parts, with the first column.
 
     Text is broken between its words, and numbers never.
@@ -73,7 +74,7 @@ def as_rich(table: "Table", width: int) -> "Iterator[Text | RichTable]":
         fitting = _fitting(first, others, width - around, between)
         taken, others = [first, *others[:fitting]], others[fitting:]
         widths = _widths(taken, width - around - between * len(taken))
-        yield _rich(taken, widths, dense)
+        yield _Drawing(taken, widths, dense)
 
 
 def _columns(table: "Table") -> list[_Column]:
@@ -112,15 +113,58 @@ def _widths(columns: Sequence[_Column], width: int) -> list[int]:
     return widths
 
 
-def _rich(columns: Sequence[_Column], widths: Sequence[int], dense: bool) -> "RichTable":
-    from rich import box
-    from rich.table import Table as RichTable
+class _Drawing(NamedTuple):
+    """A table with lines between its columns, as Rich draws it, in a fraction of the time that Rich takes for it."""
 
-    table = RichTable(show_header=any(column.head for column in columns))
-    if dense:
-        table.box, table.padding = box.SIMPLE, (0, 1, 0, 0)
-    for column, width in zip(columns, widths, strict=True):
-        table.add_column(column.head, justify="left" if column.text else "right", width=width, overflow="fold")
-    for row in zip(*(column.cells for column in columns), strict=True):
-        table.add_row(*row)
-    return table
+    columns: Sequence[_Column]
+    widths: Sequence[int]
+    dense: bool
+
+    def __rich_console__(self, console: "Console", options: "ConsoleOptions") -> "Iterator[Segment]":
+        """Yield the lines of the table, with bold headings."""
+        from rich import box
+        from rich.segment import Segment
+        from rich.style import Style
+
+        heads = [column.head for column in self.columns]
+        frame = (box.SIMPLE if self.dense else box.HEAVY_HEAD).substitute(options, safe=console.safe_box)
+        padded, bold = [width + (1 if self.dense else 2) for width in self.widths], Style(bold=True)
+        if not any(heads):
+            frame = frame.get_plain_headed_box()
+        yield Segment(f"{frame.get_top(padded)}\n")
+        if any(heads):
+            for line in self._lines(console, heads, at_bottom=True):
+                ends = [*[frame.head_vertical] * (len(line) - 1), f"{frame.head_right}\n"]
+                yield Segment(frame.head_left)
+                for cell, end in zip(line, ends, strict=True):
+                    yield from (Segment(cell, bold), Segment(end))
+            yield Segment(f"{frame.get_row(padded, 'head')}\n")
+        for row in zip(*(column.cells for column in self.columns), strict=True):
+            for line in self._lines(console, row):
+                yield Segment(f"{frame.mid_left}{frame.mid_vertical.join(line)}{frame.mid_right}\n")
+        yield Segment(f"{frame.get_bottom(padded)}\n")
+
+    def _lines(self, console: "Console", row: Sequence[str], at_bottom: bool = False) -> "Iterator[tuple[str, ...]]":
+        """Yield the lines of a row, each as the padded parts of its cells, at the bottom or the top of the row."""
+        from rich.cells import cell_len
+        from rich.text import Text
+
+        parts = []
+        for cell, width, column in zip(row, self.widths, self.columns, strict=True):
+            fits = cell_len(cell) <= width and "\n" not in cell
+            lines = (
+                [cell] if fits else [text.plain.rstrip() for text in Text(cell).wrap(console, width, overflow="fold")]
+            )
+            spaces = [" " * (width - cell_len(line)) for line in lines]
+            margin = "" if self.dense else " "
+            parts.append(
+                [
+                    f"{margin}{line}{space} " if column.text else f"{margin}{space}{line} "
+                    for line, space in zip(lines, spaces, strict=True)
+                ]
+            )
+        height = max(map(len, parts))
+        for part, width in zip(parts, self.widths, strict=True):
+            empty = [" " * (width + (1 if self.dense else 2))] * (height - len(part))
+            part[:] = [*empty, *part] if at_bottom else [*part, *empty]
+        yield from zip(*parts, strict=True)

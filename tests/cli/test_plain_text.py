@@ -13,7 +13,7 @@ from idealgas_cli._tables import print_tables
 from idealgas_cli._terminal import echo, terminal
 
 from idealgas.analysis.core.style import disable_mathtext, name_rows, panels, save
-from idealgas.analysis.core.tables import Table
+from idealgas.analysis.core.tables import Number, Table
 from idealgas.errors import plain
 from idealgas.report.page import escape
 
@@ -38,6 +38,26 @@ def test_tables_and_lines_on_a_terminal(capsys, monkeypatch):
     assert said.count(SHOWN) == 6
     assert "[bold]1" in said
     assert not CONTROL.search(said)
+
+
+def test_lines_of_a_table(capsys, monkeypatch):
+    """Numbers at the right of their column; in a narrow terminal text is broken between words."""
+    monkeypatch.setenv("COLUMNS", "34")
+    print_tables(
+        [Table("Mixture", ("", "φ"), [("one", Number(0.5, "g")), ("many long words of text", Number(12, "g"))])]
+    )
+    assert capsys.readouterr().out.splitlines() == [
+        "Mixture",
+        "┏━━━━━━━━━━━━━━━━━━━━━━━━━┳━━━━━┓",
+        "┃                         ┃   φ ┃",
+        "┡━━━━━━━━━━━━━━━━━━━━━━━━━╇━━━━━┩",
+        "│ one                     │ 0.5 │",
+        "│ many long words of text │  12 │",
+        "└─────────────────────────┴─────┘",
+    ]
+    monkeypatch.setenv("COLUMNS", "30")
+    print_tables([Table("", ("", "φ"), [("many long words of text", Number(12, "g"))])])
+    assert "│ many long words of    │ 12 │\n│ text                  │    │" in capsys.readouterr().out
 
 
 def test_names_in_a_picture(tmp_path):
