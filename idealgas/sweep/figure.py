@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.interpolate import PchipInterpolator
 
 from idealgas.analysis import registry
-from idealgas.analysis.core.style import LINES, add_title, curve_style, panels
+from idealgas.analysis.core.quantities import identifier
+from idealgas.analysis.core.style import add_title, curve_style, panels
 from idealgas.errors import UserError, unknown
 from idealgas.sweep.results import RESULT, average, missing_runs, result_rows
 from idealgas.sweep.tables import PHI
@@ -37,12 +37,39 @@ UNITS = {
 }
 """Units of keys of a scene, by the last part of their names."""
 
+QUANTITY_UNITS = {
+    "*.area": "length²",
+    "*.end_time": "time",
+    "*.free_energy": "energy",
+    "*.free_paths.*.path": "length",
+    "*.free_paths.*.speed": "length/time",
+    "*.free_paths.*.time": "time",
+    "*.mean_temperature": "energy",
+    "*.pressure": "energy/length²",
+    "*.rate": "1/time",
+    "*.relaxation_time": "time",
+    "*.temperature": "energy",
+    "*.window.end": "time",
+    "*.window.start": "time",
+    "evolution.rest": "length",
+    "temperature.species.*.[xy]": "energy",
+    "temperature.species.*.both": "energy",
+    "transport.diffusion.*.coefficient": "length²/time",
+}
+"""Units of quantities of results.csv, by patterns of their names; the other quantities that are drawn have none."""
+
 
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
-    """Figure of a quantity against an axis: averages over the replicates, theory, one curve per set of other values.
+    """Return the figure of a quantity against an axis, with one curve for each combination of the other axes' values.
 
-    quantity: its name in results.csv; None for the headline of the first analysis that has one, or else the first
-    number with an error bar. axis: key of an axis with numbers; None for the first one.
+    Measured values and theory are averages over the replicates. The theory is evaluated for the runs only, so it has
+    markers at the points of the sweep; the straight lines that join them are there to guide the eye.
+
+    Args:
+        folder: folder of the sweep.
+        quantity: its name in results.csv; None for the headline of the first analysis that has one, or else the first
+            number with an error bar.
+        axis: key of an axis with numbers; None for the first one.
 
     Raises:
         UserError: if the sweep has no such quantity or axis, or no results.
@@ -50,28 +77,26 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     rows = result_rows(folder)
     axis = _choice("axis", axis, [key for key in _axes(rows) if _all_numbers(row[key] for row in rows)])
     headlines = [f"{analysis.name}.{analysis.headline}" for analysis in registry.analyses()]
-    found = [row["quantity"] for row in rows]
+    quantities = [row["quantity"] for row in rows]
     estimates = [row["quantity"] for row in rows if row.get("standard_error") is not None]
-    first = [name for name in found if any(fnmatchcase(name, headline) for headline in headlines)]
-    quantity = _choice("quantity", quantity, list(dict.fromkeys([*first, *estimates, *found])))
+    first = [name for name in quantities if any(fnmatchcase(name, headline) for headline in headlines)]
+    quantity = _choice("quantity", quantity, list(dict.fromkeys([*first, *estimates, *quantities])))
     curves: dict[str, dict[float, list[Row]]] = {}
     for row in rows:
         if row["quantity"] == quantity:
-            others = ", ".join(f"{key} = {row[key]}" for key in _axes(rows) if key != axis)
+            others = ", ".join(f"{key} = {_value(row[key])}" for key in _axes(rows) if key != axis)
             curves.setdefault(others, {}).setdefault(float(row[axis]), []).append(row)
+            group = row["group"]
     figure, (ax,) = panels(1)
     for k, (label, points) in enumerate(curves.items()):
         places = sorted(points)
         values, errors = zip(*(average(points[place]) for place in places), strict=True)
         colour, _, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
-        known = [
-            (x, row["theory"], row["theory_error"]) for x in places if (row := points[x][0]).get("theory") is not None
-        ]
-        if known:
-            style, name = LINES[1:][k % (len(LINES) - 1)], f"{label}: theory" if label else "theory"
-            ax.theory(*_smooth(*np.array(known).T), label=name, linestyle=style)
-    ax.set(xlabel=_axis_name(axis), ylabel=_words(quantity))
+        known = [(place, *theory) for place in places if (theory := _theory(points[place]))]
+        if known:  # one entry of the legend for all curves: a line goes through the points that it belongs to
+            ax.theory(*np.array(known).T, label="theory, at the points", marker="x")
+    ax.set(xlabel=_axis_name(axis), ylabel=_quantity_name(quantity, group))
     ax.legend()
     return say_missing(figure, folder)
 
@@ -82,25 +107,41 @@ def say_missing(figure: Figure, folder: str | os.PathLike[str]) -> Figure:
     return add_title(figure, f"{missing:,} of {total:,} runs are missing") if missing else figure
 
 
-def _smooth(places: np.ndarray, values: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places, values and errors of a theory on a smooth curve through its points, without new maxima between them."""
-    if len(places) < 3:
-        return places, values, errors
-    fine = np.union1d(np.linspace(places[0], places[-1], 200), places)
-    return fine, PchipInterpolator(places, values)(fine), PchipInterpolator(places, errors)(fine)
+def _theory(rows: list[Row]) -> tuple[float, float] | None:
+    """Average over replicates of a theory and of its error, which its replicates share; None if it is not known."""
+    known = [(row["theory"], row["theory_error"]) for row in rows if row.get("theory") is not None]
+    return tuple(np.mean(known, axis=0)) if known else None
+
+
+def _value(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _axis_name(key: str) -> str:
-    """Name of an axis in words, with its unit, where it has one."""
+    """Name of an axis in words, with its unit if it has one, such as "temperature of 'gas' (energy)"."""
     if key == PHI:
         return "packing fraction φ"
-    owner, _, name = key.rpartition(".")
-    unit = f" ({UNITS[name]})" if name in UNITS else ""
-    return f"{_words(name)}{f' of {_words(owner)}' if owner else ''}{unit}"
+    *owner, name = key.split(".")
+    if owner[:1] == ["species"] and len(owner) > 1:
+        words = f"{_words(name)} of '{'.'.join(owner[1:])}'"
+    else:
+        words = _words(key.replace(".", " "))
+    return words + _unit(UNITS.get(name))
+
+
+def _quantity_name(quantity: str, group: str) -> str:
+    """Name of a quantity in words, with its unit, such as "temperature: species: 'gas': both (energy)"."""
+    unit = next((unit for pattern, unit in QUANTITY_UNITS.items() if fnmatchcase(quantity, pattern)), None)
+    groups = {identifier(word): f"'{word}'" for word in (*group.split(", "), group)}
+    return ": ".join(groups.get(part) or _words(part) for part in quantity.split(".")) + _unit(unit)
+
+
+def _unit(unit: str | None) -> str:
+    return f" ({unit})" if unit else ""
 
 
 def _words(name: str) -> str:
-    return ": ".join(name.split(".")).replace("_", " ")
+    return name.replace("_", " ")
 
 
 def _axes(rows: list[Row]) -> list[str]:

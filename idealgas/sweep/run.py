@@ -216,7 +216,8 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             )
             client = stack.enter_context(Client(stack.enter_context(cluster), set_as_default=False))
         except (OSError, RuntimeError) as error:
-            raise OutputError(f"no worker can be started on this machine: {error}", exit_code=1) from error
+            reason = str(error).rstrip(".")
+            raise OutputError(f"no worker starts on this machine ({reason}){CONTINUE}", exit_code=1) from error
         yield client
 
 

@@ -7,14 +7,11 @@ import os
 import resource
 import shutil
 import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
-import psutil
 import pytest
-from helpers.support import IDEALGAS, called, error_of, idealgas, output_of
+from helpers.support import called, error_of, idealgas, output_of
+from helpers.sweeps import start, wait_for
 
 from idealgas.analysis import registry
 from idealgas.sweep.run import Outcome, Progress
@@ -181,60 +178,23 @@ LONGER = SWEEP.replace("run.events = 2000", "run.events = 200_000").replace("rep
 """Eight points of some tenths of a second each: whatever is waited for at one of them, others are still to come."""
 
 
-def start(plan: Path, folder: Path, *options: str) -> subprocess.Popen:
-    command = [IDEALGAS, "sweep", str(plan), "-o", str(folder), *(options or ("--workers", "1"))]
-    return subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL,
-        start_new_session=True,
-    )  # fmt: skip
-
-
-def wait_for(ready, running: subprocess.Popen) -> None:
-    while not ready():
-        assert running.poll() is None, running.communicate()
-        time.sleep(0.002)
-
-
-def workers_of(running: subprocess.Popen) -> list[psutil.Process]:
-    """The processes of a sweep that simulate: those of its children that the nannies spawned."""
-    children = psutil.Process(running.pid).children()
-    return [child for child in children if any("spawn_main" in word for word in child.cmdline())]
-
-
-@pytest.mark.long
-def test_a_killed_worker_loses_nothing(plan, tmp_path):
-    plan.write_text(LONGER)
-    running = start(plan, tmp_path / "out")
-    points = tmp_path / "out" / "points"
-    wait_for(lambda: (points / "0001.h5.part").exists(), running)
-    (worker,) = workers_of(running)
-    worker.kill()
-    stdout, _ = running.communicate(timeout=120)
-    assert running.returncode == 0
-    assert stdout.startswith("8 points run, 0 done before, 0 failed")
-    undisturbed = idealgas("sweep", plan, "-o", tmp_path / "undisturbed")
-    assert undisturbed.returncode == 0
-    assert results(tmp_path / "out") == results(tmp_path / "undisturbed")
-
-
-@pytest.mark.parametrize(
-    "how", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.long)], ids=lambda how: how.name
-)
+@pytest.mark.parametrize("group", [True, False], ids=["group", "process"])
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM], ids=lambda how: how.name)
 @pytest.mark.slow
-def test_a_killed_sweep_goes_on_where_it_stopped(plan, tmp_path, how):
+def test_a_sweep_that_was_stopped_goes_on_where_it_stopped(plan, tmp_path, how, group):
+    """Terminals and batch systems send a signal to the whole group of processes, `kill` and `timeout` to one."""
     plan.write_text(LONGER)
     running = start(plan, tmp_path / "out")
     points = tmp_path / "out" / "points"
-    wait_for(lambda: (points / "0002.json").exists(), running)
-    os.killpg(running.pid, how)  # as a terminal does
-    _, stderr = running.communicate(timeout=60)
-    if how == signal.SIGINT:
-        assert running.returncode == 130
-        assert stderr == INTERRUPTED
+    wait_for((points / "0002.json").exists, running)
+    (os.killpg if group else os.kill)(running.pid, how)
+    stdout, stderr = running.communicate(timeout=60)
+    if how != signal.SIGKILL:
+        assert (running.returncode, stdout, stderr) == (128 + how, "", INTERRUPTED)  # none of leaked semaphores either
     before = {path.name: path.stat().st_mtime_ns for path in points.glob("*.json")}
     assert 0 < len(before) < 8
     again = idealgas("sweep", plan, "-o", tmp_path / "out")
-    assert again.returncode == 0, again.stderr
+    assert (again.returncode, again.stderr) == (0, "")
     assert again.stdout.startswith(f"{8 - len(before)} points run, {len(before)} done before, 0 failed")
     assert all((points / name).stat().st_mtime_ns == at for name, at in before.items())
 
@@ -252,7 +212,7 @@ def test_a_folder_that_goes_while_a_sweep_is_running_in_it(plan, tmp_path):
     assert (stderr.count("\n"), str(folder) in stderr) == (1, True)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
     """A limit of the size of a file stands for it: the larger points do not fit."""
     plan.write_text(SWEEP.replace('"phi"\nvalues = [0.02, 0.1]', '"run.events"\nvalues = [2000, 200_000]'))
@@ -267,27 +227,3 @@ def test_a_full_disk_ends_a_sweep_which_goes_on_later(plan, tmp_path):
     assert done.stderr.count("\n") == 1
     again = idealgas("sweep", plan, "-o", tmp_path / "out")
     assert again.stdout.startswith("3 points run, 3 done before, 0 failed")
-
-
-@pytest.mark.slow
-def test_a_scheduler_that_dies_is_one_line(plan, tmp_path):
-    plan.write_text(LONGER)
-    file, folder = tmp_path / "scheduler.json", tmp_path / "out"
-    programs = ("scheduler --no-dashboard --port 0 --host 127.0.0.1", "worker --no-dashboard --no-nanny --nthreads 1")
-    with contextlib.ExitStack() as stack:
-        started = []
-        for program in programs:
-            command = [sys.executable, "-m", "dask", *program.split(), "--scheduler-file", str(file)]
-            started.append(stack.enter_context(subprocess.Popen(command, stdout=-3, stderr=-3, cwd=tmp_path)))
-            stack.callback(started[-1].kill)
-            wait_for(lambda: file.exists() and file.stat().st_size, started[0])
-        address = json.loads(file.read_text())["address"]
-        running = start(plan, folder, "--scheduler", address)
-        wait_for((folder / "points" / "0000.json").exists, running)
-        started[0].kill()
-        stdout, stderr = running.communicate(timeout=120)
-    assert (running.returncode, stdout) == (2, "")
-    assert stderr == "lost the connection to the scheduler; run the same command again to continue\n"
-    again = idealgas("sweep", plan, "-o", folder)
-    assert again.returncode == 0, again.stderr
-    assert ", 0 failed" in again.stdout

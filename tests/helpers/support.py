@@ -7,7 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 
+linux = pytest.mark.skipif(sys.platform != "linux", reason="replaces functions of Linux's C library, or mounts a tmpfs")
 posix = pytest.mark.skipif(os.name != "posix", reason="needs files, links, users or processes of POSIX systems")
 
 ROOT = Path(__file__).parents[2]
@@ -151,3 +152,19 @@ def ended(child: subprocess.Popen[str]) -> tuple[int, str]:
     child.send_signal(signal.SIGINT)
     _, messages = child.communicate(timeout=60)
     return child.returncode, messages
+
+
+@contextlib.contextmanager
+def small_disk(folder: Path, kilobytes: int) -> Iterator[Callable[[int], None]]:
+    """Mount a small disk at a new folder, and yield a function that resizes it; skip where only root may mount."""
+
+    def mount(options: str) -> subprocess.CompletedProcess[bytes]:
+        return subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", folder], capture_output=True)
+
+    folder.mkdir()
+    if mount(f"size={kilobytes}k").returncode:
+        pytest.skip("only root may mount a disk")
+    try:
+        yield lambda size: mount(f"remount,size={size}k").check_returncode()
+    finally:
+        subprocess.run(["umount", folder], check=True)

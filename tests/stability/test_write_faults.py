@@ -10,13 +10,11 @@ from pathlib import Path
 
 import pytest
 from helpers.log_compare import differences
-from helpers.support import IDEALGAS, ROOT, idealgas, program
+from helpers.support import IDEALGAS, ROOT, idealgas, linux, program, small_disk
 
 from idealgas.run.resume import resume
 
 CORNER = ROOT / "configs" / "corner.toml"
-
-linux = pytest.mark.skipif(sys.platform != "linux", reason="replaces functions of Linux's C library, or mounts a tmpfs")
 
 
 @pytest.fixture(scope="module")
@@ -111,16 +109,9 @@ def test_a_file_that_may_not_grow(kilobytes, undisturbed, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("kilobytes", [1, 4, 8, 12, 16, 20, 24, 32, 40, 48, 56, 64, 96, 128, 192, 256])
 def test_a_small_disk(kilobytes, undisturbed, tmp_path):
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", disk], capture_output=True)
-    if mounted.returncode:
-        pytest.skip("only root may mount a disk")
-    try:
-        assert full_at(disk, 1024) == []
-        left = [shutil.copy(path, tmp_path) for path in disk.iterdir()]
-    finally:
-        subprocess.run(["umount", disk], check=True)
+    with small_disk(tmp_path / "disk", kilobytes):
+        assert full_at(tmp_path / "disk", 1024) == []
+        left = [shutil.copy(path, tmp_path) for path in (tmp_path / "disk").iterdir()]
     for path in left:
         resume(path)
         assert differences(path, undisturbed) == []

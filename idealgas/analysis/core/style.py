@@ -112,15 +112,18 @@ class Panel(Axes):
 
     def theory(
         self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK,
-        linestyle: str = "--",
+        linestyle: str = "--", marker: str = "",
     ) -> None:  # fmt: skip
-        """Draw a theory at places, None for all, as a line in a band of its error (one standard deviation)."""
+        """Draw a theory at places, None for all, as a line in a band of its error (one standard deviation).
+
+        marker: of the places, if the line between them is not the theory.
+        """
         if x is None:
             self.axhline(value, color=color, linestyle="--", linewidth=0.9, label=label, zorder=3)
             if error > 0:
                 self.axhspan(value - error, value + error, color=color, alpha=BAND, linewidth=0)
             return
-        self.plot(x, value, linestyle, color=color, linewidth=0.9, label=label, zorder=3)
+        self.plot(x, value, linestyle, marker=marker, ms=4, color=color, linewidth=0.9, label=label, zorder=3)
         if np.any(np.asarray(error) > 0):
             self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
 

@@ -11,7 +11,7 @@ from idealgas.scene import parse_scene
 from idealgas.sweep.figure import sweep_figure
 from idealgas.sweep.plan import Point, with_seed
 from idealgas.sweep.point import log_path, points_folder, result_path, run_point
-from idealgas.sweep.results import read_points, stored_results, write_tables
+from idealgas.sweep.results import read_points, result_rows, stored_results, write_tables
 
 SCENE = """
 scene.seed = 4
@@ -85,33 +85,54 @@ def test_the_figure_shows_the_headline_with_its_theory(point, tmp_path):
     run_point(point, tmp_path, ANALYSES, False)
     run_point(replace(point, index=4, values={"phi": 0.2, "species.x": [1, 2]}), tmp_path, ANALYSES, False)
     (panel,) = sweep_figure(tmp_path).axes
-    assert panel.get_ylabel() == "pressure: routes: pairs virial: compressibility factor"
+    assert panel.get_ylabel() == "pressure: routes: 'pairs, virial': compressibility factor"
     assert panel.get_xlabel() == "packing fraction φ"
     assert [text.get_text() for text in panel.get_legend().get_texts()] == [
-        "species.x = [1, 2]: theory", "species.x = [1, 2]",
+        "theory, at the points", "species.x = [1, 2]",
     ]  # fmt: skip
     (panel,) = sweep_figure(tmp_path, "temperature.species.gas.both").axes
-    assert panel.get_ylabel() == "temperature: species: gas: both"
+    assert panel.get_ylabel() == "temperature: species: 'gas': both (energy)"
     with pytest.raises(UserError, match=r'did you mean "pressure\.area"'):
         sweep_figure(tmp_path, "pressure.aria")
 
 
-def test_theory_is_a_smooth_curve_of_its_own_colour_and_missing_runs_are_said(point, tmp_path):
+def test_theory_has_markers_at_the_points_of_a_sweep_and_missing_runs_are_said(point, tmp_path):
     for k in range(4):
-        values, scene = {"species.gas.temperature": 1 + k}, with_seed(point.scene, k)
-        run_point(replace(point, index=k, values=values, scene=scene), tmp_path, ("pressure",), False)
-    figure = sweep_figure(tmp_path)
+        values, scene = {"species.gas.temperature": 1 + k // 2}, with_seed(point.scene, k)
+        run_point(replace(point, index=k, replicate=k % 2, values=values, scene=scene), tmp_path, ("pressure",), False)
+    figure = sweep_figure(tmp_path, "pressure.routes.pairs_virial.pressure")
     (panel,) = figure.axes
-    (theory,) = [line for line in panel.lines if line.get_label() == "theory"]
-    assert len(theory.get_xdata()) > 100
+    assert panel.get_xlabel() == "temperature of 'gas' (energy)"
+    assert panel.get_ylabel() == "pressure: routes: 'pairs, virial': pressure (energy/length²)"
+    (theory,) = [line for line in panel.lines if line.get_label() == "theory, at the points"]
+    rows = [row for row in result_rows(tmp_path) if row["quantity"] == "pressure.routes.pairs_virial.pressure"]
+    averages = [(rows[k]["theory"] + rows[k + 1]["theory"]) / 2 for k in (0, 2)]
+    assert (theory.get_xdata().tolist(), theory.get_marker()) == ([1, 2], "x")
+    assert theory.get_ydata().tolist() == pytest.approx(averages, rel=1e-12)
     assert theory.get_color() not in {line.get_color() for line in panel.lines if line is not theory}
-    assert panel.get_xlabel() == "temperature of species: gas (energy)"
     assert figure.get_suptitle() == ""
     (tmp_path / "sweep.toml").write_text("# sweep of 1189 points by idealgas\n[sweep]\n")
     assert sweep_figure(tmp_path).get_suptitle() == "1,185 of 1,189 runs are missing"
     done = called("pressure", tmp_path, "--plot", tmp_path / "z.svg")
     assert done.stderr == f"{tmp_path}: 1,185 of 1,189 runs are missing\n"
     assert "1,185 of 1,189 runs" in " ".join((tmp_path / "z.svg").read_text().split())
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("phi", "packing fraction φ"),
+        ("species.gas.count", "count of 'gas'"),
+        ("species.temperature", "species temperature (energy)"),
+        ("box.left.temperature", "box left temperature (energy)"),
+        ("run.until", "run until (time)"),
+    ],
+)
+def test_axes_have_names_and_units(point, tmp_path, key, name):
+    result = {"point": 0, "seed": 1, "combination": 0, "replicate": 0, "values": {key: 0.5}, "scene": SCENE}
+    result_path(tmp_path, 0).write_text(json.dumps(result | {"summary": {"events": 7}, "analyses": {}}))
+    (panel,) = sweep_figure(tmp_path).axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == (name, "run: events")
 
 
 def test_folders_without_results_are_refused(point, tmp_path):
