@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable
 from fnmatch import fnmatchcase
+from statistics import fmean
 from typing import Any
 
 import numpy as np
@@ -109,8 +110,10 @@ def say_missing(figure: Figure, folder: str | os.PathLike[str]) -> Figure:
 
 def _theory(rows: list[Row]) -> tuple[float, float] | None:
     """Average over replicates of a theory and of its error, which its replicates share; None if it is not known."""
-    known = [(row["theory"], row["theory_error"]) for row in rows if row.get("theory") is not None]
-    return tuple(np.mean(known, axis=0)) if known else None
+    known = [row for row in rows if row.get("theory") is not None]
+    if not known:
+        return None
+    return fmean(row["theory"] for row in known), fmean(row["theory_error"] for row in known)
 
 
 def _value(value: Any) -> str:
