@@ -96,7 +96,8 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         known = [(place, *theory) for place in places if (theory := _theory(points[place]))]
         if known:  # one entry of the legend for all curves: a line goes through the points that it belongs to
-            ax.theory(*np.array(known).T, label="theory, at the points", marker="x")
+            x, theories, theory_errors = np.array(known).T
+            ax.theory(x, theories, theory_errors, label="theory, at the points", marker="x")
     ax.set(xlabel=_axis_name(axis), ylabel=_quantity_name(quantity, group))
     ax.legend()
     return say_missing(figure, folder)
