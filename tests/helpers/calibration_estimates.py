@@ -69,6 +69,11 @@ def along_x(log: Log) -> Named:
     return _profiles(log, "x", 10, (0, 1, 4))
 
 
+def along_y(log: Log) -> Named:
+    """Profiles in five strips along y, the lowest ones."""
+    return _profiles(log, "y", 5, (0, 1, 2))
+
+
 def _profiles(log: Log, axis: Literal["x", "y"], bins: int, strips: tuple[int, ...]) -> Named:
     """Densities and temperatures of each species, temperature gradients, and the pressure tensor in some strips."""
     found = profile(log, axis, bins)
