@@ -105,7 +105,7 @@ def error_of_mean(series: np.ndarray, number: int | None = None, memory: float =
     memory: number of samples per independent one by the slowest fluctuations, if it is known, else 0.
 
     A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
-    beside the fast ones. Where the slowest ones are known, blocks are a quarter of `memory`, half of their correlation
+    beside the fast ones. Where the slowest ones are known, blocks are a quarter of `memory`, about their correlation
     time, if FEWEST of them remain: the error has then no more degrees of freedom than slow fluctuations allow.
     """
     n = len(series)

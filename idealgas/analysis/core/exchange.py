@@ -1,7 +1,7 @@
 """Times in which heat, discs and energy are exchanged across a gas or through its inner pistons, by kinetic theory.
 
-What differs from place to place decays in its slowest wave, and the states of a gas are independent only after twice
-its correlation time. A log that contains few such times does not show how far a profile or a temperature fluctuates.
+What differs from place to place decays in its slowest wave, and the states of a gas are independent only when it has.
+A log that contains few such times does not show how far a profile or a temperature fluctuates.
 """
 
 import math
@@ -18,14 +18,14 @@ from idealgas.analysis.theory.ensemble import classes
 from idealgas.log import Log
 
 INDEPENDENT = 42.0
-"""Number of independent states in a window, by its slowest exchange, from which on errors are right (to 10 %)."""
+"""Times of the slowest exchange that a window must contain for errors to be right (to 10 %)."""
 
 
 class Exchange(NamedTuple):
     """An exchange within a gas.
 
-    time: between independent states, twice the correlation time; 0 if nothing is exchanged. process: what happens in
-    it, in words.
+    time: after which states are independent, at least twice the correlation time; 0 if nothing is exchanged. process:
+    what happens in it, in words.
     """
 
     time: float
@@ -39,9 +39,10 @@ NOTHING = Exchange(0.0, "")
 def across(log: Log, axis: int) -> Exchange:
     """Slowest exchange across the box along an axis: of heat and, in a mixture, of discs.
 
-    A wave of length λ decays like exp(-4π² D t/λ²) with the thermal diffusivity or the diffusion coefficient D by
-    Enskog's theory. The longest wave is that of twice the length between walls, or of the length if it is periodic. A
-    mixture conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
+    In the time L²/2D diffusion spreads by the length L (rms), with the thermal diffusivity or the diffusion coefficient
+    D by Enskog's theory: L is that between walls, half of the longest wave, and half of the length if it is periodic.
+    That wave has a correlation time L²/π²D, and densities and temperatures of strips contain all of it. A mixture
+    conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
     """
     gas, temperature = log.discs, _temperature(log)
     moving = ~are_fixed(gas.mass)
@@ -58,8 +59,8 @@ def across(log: Log, axis: int) -> Exchange:
         diffusion = (temperature / (discs.mass * friction))[~are_fixed(discs.mass)].min()
         if diffusion < slowest:
             slowest, carried = float(diffusion), "discs diffuse across"
-    wavelength = log.box[axis] * (1 if log.periodic[axis] else 2)
-    return Exchange(2 * wavelength**2 / (4 * math.pi**2 * slowest), f"{carried} the box along {'xy'[axis]}")
+    length = log.box[axis] / (2 if log.periodic[axis] else 1)
+    return Exchange(length**2 / (2 * slowest), f"{carried} the box along {'xy'[axis]}")
 
 
 def through_pistons(log: Log) -> Exchange:
