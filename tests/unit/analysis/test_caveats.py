@@ -290,7 +290,7 @@ def test_strips_take_frames(made):
     found = registry.analyse(made(*column), "profile", start=0.0)
     only(found, "strips hold a disc of gas in fewer than 32 frames")
     assert any(np.isnan(entry.value) for entry in found.species[0].temperature)
-    assert registry.analyse(made(), "profile", start=0.0).caveats == ()
+    assert silent(registry.analyse(made(), "profile", start=0.0), "strips hold")
 
 
 def test_laws_of_dilute_gases_take_one(made):
