@@ -7,6 +7,7 @@ import os
 import queue
 import threading
 import time
+import uuid
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -332,7 +333,8 @@ class LogWriter:
 
 def _file_in_memory() -> h5py.File:
     """A new HDF5 file in memory: HDF5 may crash when it creates a file on a disk that is full or fails."""
-    return h5py.File("log", "w", driver="core", backing_store=False, **OPTIONS, **schema.PAGES)
+    name = uuid.uuid4().hex  # HDF5 refuses a second file of one name, also in memory
+    return h5py.File(name, "w", driver="core", backing_store=False, **OPTIONS, **schema.PAGES)
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:

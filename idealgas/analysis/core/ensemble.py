@@ -23,6 +23,9 @@ Beyond it, energy is exchanged more slowly than the log is long, and error bars 
 temperatures of one species of many discs these are 2 standard deviations at an instant.
 """
 
+ON_A_LINE = 8
+"""Number of discs of a species from which on a temperature may be too low; fewer may move along a line all the time."""
+
 ROUNDING = 1e-9
 """Relative change below which a quantity is constant."""
 
@@ -147,6 +150,7 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     rows = max(int(np.count_nonzero(expected)), 1)
     chances = np.array([[1 - FAR / rows], [FAR / rows]])
     lowest, highest = np.asarray(special.chdtri(number[:, 0], chances)) / number[:, 0]
+    lowest[number[:, 0] < ON_A_LINE] = 0.0
     for s, name in enumerate(names):
         for axis, letter in enumerate("xy"):
             theory = float(expected[s, axis] / number[s, 0])
