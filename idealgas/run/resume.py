@@ -10,6 +10,7 @@ from idealgas.engine.simulation import TRAJECTORY, Simulation, Stop, Totals
 from idealgas.files import IN_USE
 from idealgas.jit import compile_seconds
 from idealgas.log import Checkpoint, DamageError, Log, LogError, LogLayout, LogWriter, open_log
+from idealgas.log.recovery import recover
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.log.summary import Summary
 from idealgas.physics.exact_sum import SumRangeError
@@ -38,8 +39,8 @@ def resume(
 ) -> Summary:
     """Continue a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
 
-    The events in the log become bit for bit those of an uninterrupted run. A complete log is left unchanged, and its
-    summary is returned.
+    The events in the log become bit for bit those of an uninterrupted run. The events of a complete log stay as they
+    are, and its summary is returned.
 
     Args:
         path: path of the log, to which events are appended.
@@ -59,14 +60,20 @@ def resume(
         if log.live:
             raise LogError(f"{log.path}: {IN_USE}")
         text, scene = _scene_to_resume(log, overrides)
-        if dump_document(scene) != dump_document(log.scene):
+        new_end = dump_document(scene) != dump_document(log.scene)
+        if new_end:
             _check_end(log, scene)
-        elif log.complete:
-            return Summary.of(log.summary)
-        last = log.checkpoints[-1] if len(log.checkpoints) else None
-        _check_reproduces(log, last, _simulation_at(log, last, scene))
-        simulation = _simulation_at(log, last, scene)
-        past = _history_of(log, last, scene)
+        done = Summary.of(log.summary) if log.complete and not new_end else None
+        unclosed = log.unclosed
+        if done is None:
+            last = log.checkpoints[-1] if len(log.checkpoints) else None
+            _check_reproduces(log, last, _simulation_at(log, last, scene))
+            simulation = _simulation_at(log, last, scene)
+            past = _history_of(log, last, scene)
+    if done is not None:
+        if unclosed:  # the disk failed at the very last write
+            recover(path)
+        return done
     with LogWriter.resume(
         path, None if last is None else -1, fsync=scene.log.fsync, scene_text=text, command=command, commit=log.commit
     ) as writer:

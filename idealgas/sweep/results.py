@@ -198,10 +198,11 @@ def _set_aside(table: Path, text: str) -> Iterator[str]:
     new = set(text.encode().splitlines(keepends=True))
     for number, line in enumerate(lines, 1):
         if line not in new:
-            names = (table.with_name(f"{table.stem}.edited-{k}{table.suffix}") for k in count(1))
+            names = (table.with_name(f"{table.stem}.previous-{k}{table.suffix}") for k in count(1))
             kept = next(path for path in names if not os.path.lexists(path))
             table.rename(kept)
-            yield f"{table}:{number}: not as a sweep writes it; the file is kept as {kept.name}, and a new one written"
+            why = "edited, or of other points"
+            yield f"{table}:{number}: not a row of this sweep ({why}); the file is kept as {kept.name}, a new one written"
             return
 
 

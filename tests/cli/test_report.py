@@ -139,7 +139,8 @@ def test_the_contents_are_one_menu(sized, width):
     links[-1].click()
     last = browser.find_element(By.CSS_SELECTOR, links[-1].get_attribute("href").partition("html")[2])
     assert last.is_displayed(), "in the folded part of the page"
-    assert 0 <= browser.execute_script("return arguments[0].getBoundingClientRect().top", last) < 900
+    top = browser.execute_script("return arguments[0].getBoundingClientRect().top", last)
+    assert -1 < top < 900  # a browser scrolls by whole pixels
 
 
 def test_the_first_words(pages):

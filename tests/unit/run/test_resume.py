@@ -14,6 +14,8 @@ import idealgas.run.resume as going_on
 from idealgas.analysis.status import status
 from idealgas.engine.simulation import TRAJECTORY
 from idealgas.log import DamageError, LogError, LogWriter, open_log
+from idealgas.log.digest import digest
+from idealgas.log.hdf5.superblock import lookup3
 from idealgas.run.resume import resume
 from idealgas.run.simulate import open_run, simulate
 from idealgas.scene import SceneError, parse_scene
@@ -124,6 +126,19 @@ def test_a_log_at_its_end_stays_as_it_is(finished):
     summary = resume(finished)
     assert (summary.events, summary.completed) == (5000, True)
     assert finished.read_bytes() == before
+
+
+def test_a_complete_log_that_was_not_closed_is_closed(finished, tmp_path):
+    """As after a disk that failed at the last write of a run, which clears the flags of an open file."""
+    path, block = tmp_path / "run.h5", bytearray(finished.read_bytes())
+    block[11] = 5  # open for writing, and for reading meanwhile
+    block[44:48] = lookup3(bytes(block[:44])).to_bytes(4, "little")
+    path.write_bytes(block)
+    with open_log(path) as log:
+        assert (log.complete, log.unclosed) == (True, True)
+    assert resume(path).events == 5000
+    with open_log(path) as log, open_log(finished) as whole:
+        assert (log.unclosed, digest(log)) == (False, digest(whole))
 
 
 def test_a_summary_without_a_field(finished, tmp_path):

@@ -179,7 +179,7 @@ def test_a_table_that_was_changed_by_hand_is_kept(plan, folder, old, new, line):
     """A sweep goes on from the files of its points, and names the first line that is not of these."""
     sweep = plan()
     finish(sweep, folder, sweep.points, events=5)
-    table, kept = folder / "results.csv", folder / "results.edited-1.csv"
+    table, kept = folder / "results.csv", folder / "results.previous-1.csv"
     assert write_tables(folder)[1] == []
     assert write_tables(folder)[1] == []
     written = table.read_bytes()
@@ -190,12 +190,12 @@ def test_a_table_that_was_changed_by_hand_is_kept(plan, folder, old, new, line):
     table.write_bytes(edited.encode())
     (notice,) = write_tables(folder)[1]
     assert notice == (
-        f"{table}:{line}: not as a sweep writes it; the file is kept as results.edited-1.csv, and a new one written"
+        f"{table}:{line}: not a row of this sweep (edited, or of other points); the file is kept as results.previous-1.csv, a new one written"
     )
     assert (table.read_bytes(), kept.read_bytes()) == (written, edited.encode())
     table.write_text("precious")
     write_tables(folder)
-    assert (folder / "results.edited-2.csv").read_text() == "precious"
+    assert (folder / "results.previous-2.csv").read_text() == "precious"
     assert kept.read_bytes() == edited.encode()
 
 
