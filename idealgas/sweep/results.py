@@ -202,7 +202,7 @@ def _set_aside(table: Path, text: str) -> Iterator[str]:
             kept = next(path for path in names if not os.path.lexists(path))
             table.rename(kept)
             why = "edited, or of other points"
-            yield f"{table}:{number}: not a row of this sweep ({why}); the file is kept as {kept.name}, a new one written"
+            yield f"{table}:{number}: not a row of this sweep ({why}); the file is kept as {kept.name}"
             return
 
 

@@ -189,9 +189,8 @@ def test_a_table_that_was_changed_by_hand_is_kept(plan, folder, old, new, line):
     )
     table.write_bytes(edited.encode())
     (notice,) = write_tables(folder)[1]
-    assert notice == (
-        f"{table}:{line}: not a row of this sweep (edited, or of other points); the file is kept as results.previous-1.csv, a new one written"
-    )
+    why = "not a row of this sweep (edited, or of other points); the file is kept as results.previous-1.csv"
+    assert notice == f"{table}:{line}: {why}"
     assert (table.read_bytes(), kept.read_bytes()) == (written, edited.encode())
     table.write_text("precious")
     write_tables(folder)
