@@ -20,7 +20,13 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.stream import frames, span
 from idealgas.analysis.core.tables import Table, estimates, time_series
 from idealgas.analysis.evolution.account import Series, account
-from idealgas.analysis.evolution.means import adiabatic_exponent, isothermal_work, mean_position, mean_temperature
+from idealgas.analysis.evolution.means import (
+    adiabatic_exponent,
+    isothermal_work,
+    mean_position,
+    mean_temperature,
+    short_stroke,
+)
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.summary import evolution_summary
 from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
@@ -150,6 +156,7 @@ class EvolutionAnalysis(Analysis):
         track = pressure.track if pressure else None
         start_position = float(np.interp(first, track[0], next(iter(track[1].values())))) if track else 0.0
         law = expected_law(log, frames[0], frames[-1], start_position)
+        exponent = adiabatic_exponent(frames[1], law)
         return Evolution(
             *frames[:-1],
             equilibrium_spread(log, last) if frames[3] else {},
@@ -164,9 +171,9 @@ class EvolutionAnalysis(Analysis):
             *mean_position(log, pressure, law),
             frames[-1],
             mean_temperature(frames[1], law),
-            adiabatic_exponent(frames[1], law),
+            exponent,
             isothermal_work(log, pistons, given),
-            caveats=law.caveats if law else (),
+            caveats=(*(law.caveats if law else ()), *short_stroke(log, exponent, *frames[:2])),
         )
 
     @staticmethod

@@ -18,6 +18,13 @@ from idealgas.log import Log
 LEAST_CHANGE = 0.05
 """Smallest change of the logarithm of the area from which an adiabatic exponent follows."""
 
+ROUND_TRIPS = 8.0
+"""Least number of round trips of a disc within a stroke with which the error of γ is right.
+
+In 40 runs each, the rms of deviation over error is 1.03 with 8 of them, and 0.57 with 0.8: hits of few round trips are
+more regular than their differences from instant to instant show.
+"""
+
 PARTS = 256
 """Largest number of parts of the way of a piston whose work gives the error of all of it."""
 
@@ -64,6 +71,17 @@ def adiabatic_exponent(temperature: np.ndarray, law: Law | None) -> Estimate | N
     error, samples = error_of_mean(gains - expected)
     value, theory = (1 + float(changes.sum()) / compression for changes in (gains, expected))
     return Estimate(value, len(gains) * error / abs(compression), samples, theory)
+
+
+def short_stroke(log: Log, exponent: Estimate | None, time: np.ndarray, temperature: np.ndarray) -> tuple[str, ...]:
+    """Caveat of γ from a temperature (F,) at times (F,) between which discs hardly cross the gas."""
+    if exponent is None:
+        return ()
+    speed = math.sqrt(2 * float(temperature.mean()) / (math.pi * float(log.discs.mass.mean())))  # mean of |vx|
+    trips = float(time[-1] - time[0]) * speed / (2 * log.box[log.scene.piston[0].axis])
+    if trips >= ROUND_TRIPS:
+        return ()
+    return (f"Discs make only {trips:.2g} round trips within the stroke: the error of γ may be up to twice too large.",)
 
 
 def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None:
