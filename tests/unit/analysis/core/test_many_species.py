@@ -1,7 +1,13 @@
 """Gases of many species: memory grows with the number of species, not with its square."""
 
+import os
+import shutil
+import subprocess
+import sys
+
 import numpy as np
 import pytest
+from helpers.log_fuzz.commands import NAME, forms, reading_commands
 
 from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.core.ensemble import equipartition_violation, known_ensemble
@@ -42,3 +48,21 @@ def test_bounds_of_temperatures_contain_the_number_of_species(log):
     hot = energies.copy()
     hot[:, 700, 1] = 2 * 15.0
     assert equipartition_violation(log, hot) == "m vy² of s700 is 15 on average, and 1 in equilibrium"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", reading_commands())
+def test_a_command_takes_less_than_a_gigabyte(log, name, tmp_path):
+    """Of collisions of each pair of 1 000 species, in blocks of time, there would be 4 GB and more."""
+    shutil.copyfile(log.path, tmp_path / NAME)
+    for form in forms(name):
+        child = subprocess.Popen(
+            [sys.executable, "-m", "idealgas", *form], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
+        with child.stderr as stream:
+            errors = stream.read().decode()
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        assert child.returncode in (0, 2), errors
+        assert "Traceback" not in errors
+        assert usage.ru_maxrss * 1024 < 1e9, form
