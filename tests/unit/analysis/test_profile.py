@@ -1,6 +1,7 @@
 """Strips across an axis, against counting by hand, and the theories beside them."""
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -99,7 +100,7 @@ def test_all_strips_together_tell_a_slope_that_no_strip_shows():
 
 
 def test_the_strips_of_a_right_gas_agree_together(make):
-    found = profile(make("run.collisions_per_disc=400"), "y", bins=8, start=10.0)
+    found = profile(make("run.collisions_per_disc=900"), "y", bins=8, start=10.0)
     for entry in found.species:
         assert 1e-4 < entry.density_test.p_value <= 1
         assert 1e-4 < entry.temperature_test.p_value <= 1
@@ -214,11 +215,19 @@ def test_between_two_thermal_sides(make):
 
 
 def test_a_dense_gas_between_two_thermal_sides_has_one_pressure(make):
-    """At φ = 0.28 n T Z is the same everywhere (virial series of Clisby & McCoy 2006); n T misses by 5 s.e.; k = 4."""
+    """At φ = 0.28 n T Z is the same everywhere (series of Clisby & McCoy 2006), within 4 s.e. and theory's error.
+
+    n T alone is not: densities that are inverse to the temperature miss three of six strips by more than that.
+    """
     dense = "species=[{ name = 'gas', count = 300, radius = 0.17, temperature = 2 }]"
-    log = make("box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }", dense, "run.collisions_per_disc=300")
-    for one in profile(log, bins=8).species[0].density[1:-1]:  # layers at the sides are in the error of the outermost
-        assert abs(one.value - one.theory) < 4 * one.standard_error
+    log = make("box.bottom={ thermal = 4 }", "box.top={ thermal = 1 }", dense, "run.collisions_per_disc=900")
+    gas = profile(log, bins=8).species[0]
+    inner = gas.density[1:-1]  # layers at the sides are in the error of the outermost
+    theory, cold = np.array([one.theory for one in inner]), 1 / np.array([one.theory for one in gas.temperature[1:-1]])
+    allowed = np.array([math.hypot(4 * one.standard_error, one.theory_error) for one in inner])
+    off = [np.abs(np.array([one.value for one in inner]) - law) for law in (theory, cold * theory.mean() / cold.mean())]
+    assert (off[0] < allowed).all()
+    assert np.count_nonzero(off[1] > allowed) >= 3
 
 
 def test_layers_at_the_cold_side_are_larger(make):
