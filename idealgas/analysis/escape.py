@@ -138,7 +138,7 @@ class EscapeAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Escape) -> "Figure":
-        """Picture of the number of discs in the gas, logarithmic once a tenth of them is left, beside theory."""
+        """Draw the number of discs in the gas and its theory, on a logarithmic scale once only a tenth is left."""
         from idealgas.analysis.core.style import COLOURS, panels
 
         figure, (ax,) = panels(1)

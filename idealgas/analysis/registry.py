@@ -60,7 +60,7 @@ def find(name: str) -> "type[Analysis]":
 
 
 def shown(scene: "Scene") -> tuple[str, ...]:
-    """Return the names of the analyses that a scene leads with: those that it names, or that its effects call for."""
+    """Return the analyses that a report begins with: those in `scene.shows`, or else those that suit its effects."""
     if scene.scene.shows:
         return scene.scene.shows
     properties = scene.properties

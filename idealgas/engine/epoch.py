@@ -14,8 +14,8 @@ from idealgas.state import Gas
 EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
 EVENTS_OF_FEW = 1024  # most in an epoch of few discs; it has at least a quarter as many
 MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
-FEWEST_PER_DISC = 4  # events, however long the path: an epoch costs about as much as one event per disc,
-FEWEST_EVENTS = 512  # or as some hundred events of few discs
+FEWEST_PER_DISC = 4  # events, however long the path: starting an epoch costs about as much as one event per disc
+FEWEST_EVENTS = 512  # of all discs, however few: starting an epoch costs at least as much as some hundred events
 UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that
 
 

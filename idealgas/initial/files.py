@@ -139,7 +139,7 @@ def _lines(file: IO[str]) -> Iterator[str]:
 
 
 def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
-    """Cells (n, width) of the next rows, as text."""
+    """Text of the cells (n, width) of the next rows."""
     rows = iter(rows)
     while chunk := list(islice(rows, ROWS)):
         if any(len(row) != width for row in chunk):

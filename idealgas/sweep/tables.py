@@ -14,7 +14,7 @@ from idealgas.toml.issues import Issue
 from idealgas.toml.table import NotNegative, Number, Positive, Table
 
 PHI, BASE = "phi", "base"
-"""Keys of axes in addition to those of a scene: packing fraction, by scaling the box, and path of the base scene."""
+"""Further keys of an axis: the packing fraction, for which the box is scaled, and the path of the base scene."""
 
 
 MOST_POINTS = 100_000

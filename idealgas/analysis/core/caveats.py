@@ -83,7 +83,7 @@ def title_of(results: Sequence[Result]) -> str:
 
 
 def of_several(results: Sequence[Result]) -> tuple[str, ...]:
-    """Caveats of single logs, each once, with the paths of its logs if there are several logs; at most MOST of them."""
+    """Return the caveats of single logs, each once, with the paths of the logs that it concerns; at most MOST."""
     if len(results) == 1:
         return results[0].caveats
     whose: dict[str, list[str]] = {}

@@ -37,7 +37,7 @@ NOTHING = Exchange(0.0, "")
 
 
 def across(log: Log, axis: int) -> Exchange:
-    """Slowest exchange across the box along an axis: of heat and, in a mixture, of discs.
+    """Return the slowest exchange of heat or, in a mixture, of discs across the box along an axis.
 
     In the time L²/2D diffusion spreads by the length L (rms), with the thermal diffusivity or the diffusion coefficient
     D by Enskog's theory: L is that between walls, half of the longest wave, and half of the length if it is periodic.
