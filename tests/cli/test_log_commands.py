@@ -69,6 +69,7 @@ def test_resume_to_a_later_end(copy):
         (("--collisions-per-disc", 0.1), " collisions per disc; 0.1 lies before that"),
         (("--until", 0.001), " units of time; 0.001 lies before that"),
         (("--until", -1), "run.until: out of range"),
+        (("--events", "1.5"), "'1.5' is not a valid integer"),
     ],
 )
 def test_resume_refuses(copy, arguments, message):

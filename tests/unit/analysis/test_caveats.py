@@ -4,6 +4,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,6 +25,28 @@ from idealgas.scene import parse_scene
 
 def combined(name, *logs):
     return registry.combine([registry.analyse(log, name) for log in logs])
+
+
+# ── runs of one state ──
+
+
+def test_runs_are_grouped_by_state_in_order_of_density():
+    """By φ to nine digits, the number of discs and the kind of gas; runs of one state in the order given."""
+
+    def sample(phi, number, kind, seed):
+        return SimpleNamespace(packing_fraction=phi, number=number, origin=SimpleNamespace(kind=kind, seed=seed))
+
+    alone = SimpleNamespace(packing_fraction=0.2, number=9, origin=None)
+    runs = [sample(*run) for run in ((0.3, 9, "b", 4), (0.3, 9, "a", 7), (0.1, 9, "a", 1), (0.3 + 1e-10, 9, "a", 2))]
+    more = sample(0.3, 10, "a", None)
+    assert caveats.by_state([*runs, alone, more]) == [
+        ("a", [runs[2]]), ("", [alone]), ("a", [runs[1], runs[3]]), ("b", [runs[0]]), ("a", [more])
+    ]  # fmt: skip
+    assert caveats.seeds_of([*runs, more, runs[0], alone]) == (1, 2, 4, 7)
+    assert caveats.name_of_state(0.3, 9, "a", (1, 2, 4, 7)) == "φ = 0.3, N = 9, seeds 1 to 7, a"
+    assert caveats.name_of_state(0.3, 9, "", (1, 2)) == "φ = 0.3, N = 9, seeds 1, 2"
+    assert caveats.name_of_state(0.3, 9, "", (5,)) == "φ = 0.3, N = 9, seed 5"
+    assert caveats.name_of_state(0.3, 9, "", ()) == "φ = 0.3, N = 9"
 
 
 # ── where sentences are shown ──

@@ -8,7 +8,7 @@ import pytest
 
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
-from idealgas.analysis.theory.values import NoTheoryError, box_theory, fluid
+from idealgas.analysis.theory.values import NoTheoryError, Theory, box_theory, fluid
 
 
 @pytest.mark.parametrize("box", [(1.0, 1.0), (1.0, 1.7)])
@@ -76,12 +76,17 @@ def test_few_collisions_of_two_discs_are_those_of_the_dilute_gas():
     assert exact.pairs.error == 0
 
 
+def test_errors_of_theory_are_those_of_what_follows_from_it():
+    assert Theory(2.0, 0.1, "x").times(-3.0) == Theory(-6.0, pytest.approx(0.3), "x")
+    assert Theory(2.0, 0.1, "x").inverse() == Theory(0.5, pytest.approx(0.025), "x")  # e/x²
+
+
 def test_names_of_species_change_nothing():
     """Equal discs given as two species: the same Z, and all their collisions together."""
     one = box_theory([0.02], [100], (1.0, 1.0))
     two = box_theory([0.02, 0.02], [30, 70], (1.0, 1.0))
     assert two.pairs.value == pytest.approx(one.pairs.value, rel=1e-12)
-    assert two.contacts.sum(axis=1) == pytest.approx([one.contacts[0, 0]] * 2, rel=1e-12)
+    assert two.contacts == pytest.approx(np.array([[29, 70], [30, 69]]) / 99 * one.contacts, rel=1e-12)  # not itself
     pair = box_theory([0.2, 0.2], [1, 1], (1.0, 1.0))
     assert pair.contacts == pytest.approx(np.array([[0, 1], [1, 0]]) * box_theory([0.2], [2], (1.0, 1.0)).contacts)
 

@@ -7,7 +7,7 @@ import pytest
 
 from idealgas.jit import njit
 from idealgas.physics import double_double
-from idealgas.physics.arithmetic import Pair, load, number, parts, root, rounded, store
+from idealgas.physics.arithmetic import Pair, changed, correction, load, number, parts, root, rounded, store
 
 pytestmark = pytest.mark.interpreted
 
@@ -64,3 +64,18 @@ def test_plain_python_has_the_same_numbers():
     assert root(np.float32(2.0)) == np.float32(math.sqrt(2.0))
     assert type(root(np.float32(2.0))) is type(number(0.0, np.float32(1.0))) is np.float32
     assert (number(0.5, 1.0), parts(number(0.5, a)), rounded(a)) == (0.5, (0.5, 0.0), 2.0)
+
+
+@pytest.mark.parametrize(
+    ("excess", "work", "change"),
+    [(1e-13, 4.0, -2.5e-14), (-1e-13, 4.0, 2.5e-14), (5e-12, 4.0, 0.0), (-5e-12, 4.0, 0.0)],
+)
+def test_an_excess_of_energy_by_rounding_is_taken_back(excess, work, change):
+    """Less impulse for an excess; what is above 10⁻¹² of the work is not due to rounding."""
+    assert correction(excess, work) == change
+
+
+def test_a_corrected_change_is_rounded_once():
+    assert changed(1.0, 2.0**-53, 0.0) == 1.0
+    assert changed(1.0, 2.0**-53, 0.5) == 1.0 + 2.0**-52
+    assert parts(changed(Pair(1.0, 0.0), Pair(0.5, 0.0), Pair(0.25, 0.0))) == (1.625, 0.0)

@@ -41,6 +41,7 @@ def pair(a, b):
         pytest.param((-3, 0, 1, 0, 0, 0.5, 1), (5, 0, -1, 0, 3, 0.5, 1), 5.0, id="records of different times"),
         pytest.param((0, 0, -1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="receding"),
         pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 1.01, 0, 0, 0, 0.5, 1), NEVER, id="passing"),
+        pytest.param((-3, 1, 1, 0, 0, 0.5, 1), (0, 0, 0, 0, 0, 0.5, 1), NEVER, id="grazing, exactly"),
         pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="same velocity"),
         pytest.param((0, 0, 0, 0, 0, 0.5, 1), (1, 0, 1, 0, 0, 0.5, 1), NEVER, id="touching and receding"),
         pytest.param((0, 0, 1, 0, 7, 0.5, 1), (1, 0, 0, 0, 7, 0.5, 1), 7.0, id="touching and approaching"),
@@ -61,6 +62,9 @@ def test_touching_discs_whose_collision_changes_nothing_are_done():
     assert contact_of(pair((0, 0, 1, 1e-30, 0, 0.5, 1), (0, 1, 1, 0, 0, 0.5, 1))) == 0.0
     assert contact_of(pair((0, 0, 1, 1 + 1e-16, 0, 0.5, 1), (0, 1, 1, 1, 0, 0.5, 1))) == NEVER
     assert contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (1e-17, 1, 0, 1, 0, 0.5, 1))) == NEVER
+    slides = pair((0, 0, 1, 8, 7, 0.5, 1), (2.0**-52 - 2, -31, 0.5, 8, 3, 0.5, 1))  # b comes to (2⁻⁵², 1) when t = 7
+    assert contact_of(slides) == NEVER
+    assert slides.vx.tolist() == [1.0, 0.5]
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,17 @@ import numpy as np
 import pytest
 from helpers.rounding import body, exact, gamma
 
-from idealgas.physics.gravity import Gravity, acceleration_along
-from idealgas.physics.motion import advance, path_length, position_after, time_after, velocity_after
+from idealgas.physics.gravity import Gravity
+from idealgas.physics.motion import (
+    NEVER,
+    advance,
+    path_length,
+    position_after,
+    stays_above,
+    time_after,
+    time_to_plane,
+    velocity_after,
+)
 
 pytestmark = pytest.mark.interpreted
 
@@ -52,9 +61,32 @@ def test_a_disc_flies_along_both_axes(gravity):
     assert (disc.vx, disc.vy) == speeds
 
 
-def test_acceleration_along_an_axis():
-    assert [acceleration_along(Gravity(1.0, 2.0), along_y) for along_y in (False, True)] == [1.0, 2.0]
-    assert acceleration_along(None, True) == 0.0
+@pytest.mark.parametrize(
+    ("height", "velocity", "acceleration", "delay"),
+    [
+        (1.0, 0.0, -2.0, 1.0),  # at rest: √(2h/g)
+        (1.5, 1.0, -4.0, 1.1513878188659974),  # thrown up: (1 + √13)/4
+        (1.5, -1.0, -4.0, 0.6513878188659974),
+        (4.0, -2.0, 0.0, 2.0),
+        (4.0, -2.0, 0.5, 4.0),  # turns just as it touches
+        (4.0, -2.0, 0.6, NEVER),  # turns before
+        (0.0, -1.0, 3.0, 0.0),
+        (-0.5, -1.0, 3.0, 0.0),
+        (-0.5, 2.0, -1.0, 3.7320508075688773),  # rises out: 2 + √3
+        (-4.0, 2.0, -1.0, 2.0),  # never rises so far: when it begins to fall
+        (1.0, 0.0, 0.0, NEVER),
+        (1.0, 2.0, 0.0, NEVER),
+    ],
+)
+def test_falls_to_a_plane(height, velocity, acceleration, delay):
+    assert time_to_plane(height, velocity, acceleration) == pytest.approx(delay, rel=1e-15)
+
+
+def test_what_stays_above_a_plane_at_both_ends_of_a_flight():
+    assert stays_above(1.0, 0.0, -2.0, 0.99)
+    assert not stays_above(1.0, 0.0, -2.0, 1.01)
+    assert not stays_above(0.0, 1.0, 0.0, 1.0)
+    assert not stays_above(9.0, 0.0, 0.1, 1.0)  # it may have been below
 
 
 def test_length_of_a_path():

@@ -12,10 +12,20 @@ from idealgas.effects.wall import make_segments
 from idealgas.engine.records import DISC
 from idealgas.engine.resolve import resolve_pair, resolve_segment, resolve_side
 from idealgas.jit import aligned
-from idealgas.physics.exact_sum import BATCH, stored, values
+from idealgas.physics.exact_sum import BATCH, make_sums, stored, values
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.rotation import Rotation
-from idealgas.physics.stress import COLLISIONAL, KINETIC, complete_flights, copy_of, flush, kinetic_flow
+from idealgas.physics.stress import (
+    COLLISIONAL,
+    KINETIC,
+    complete_flights,
+    copy_of,
+    energy_gained,
+    flush,
+    kinetic_flow,
+)
+
+pytestmark = pytest.mark.interpreted
 
 
 def flow_of(faces=4, rough=False):
@@ -105,6 +115,28 @@ def test_flights_in_the_air():
     assert values(copy.tensor[KINETIC]).tolist() == [0.5 + 13.5, 1.0 - 4.5, 2.0 + 1.5]
     assert not values(flow.tensor).any()
     assert copy_of(None) is None
+
+
+@pytest.mark.parametrize(("frame", "passed_on"), [(0.5, 0.0), (0.0, 2.25), (1.0, -2.25)])
+def test_heat_flows_relative_to_a_frame(frame, passed_on):
+    """Masses 3 and 1 at the velocities 1 and -1 come out of a head-on collision with 0 and 2.
+
+    Flights carry m v²/2 · v t, with v as the frame sees it. In the collision the first disc, at -3/2 from the second,
+    gains 0, -3/2 or 3/2: seen from the centre of mass, at rest, and from a frame as fast as the first.
+    """
+    flow = flow_of()._replace(heat=make_sums([1.0] * 4), vx=frame, vy=0.0)
+    pair = discs((0, 0, 1, 0, 0.25, 1, 3), (2.25, 0, -1, 0, 0.5, 1, 1))
+    resolve_pair(*pair, 0, 1, 0.75, (0, 0), Effects(flow=flow))
+    complete_flights(pair, 1.25, None, flow, None)
+    flights = ((3, 1, 0.5), (1, -1, 0.25), (3, 0, 0.5), (1, 2, 0.5))
+    carried = sum(m / 2 * (v - frame) ** 3 * t for m, v, t in flights)
+    assert values(flow.heat) == pytest.approx([carried, 0, passed_on, 0], rel=1e-14, abs=1e-14)
+
+
+def test_energy_gained_in_a_moving_frame():
+    """From (1, 2) to (3, 1): ½ · 2 (9 + 1 - 1 - 4) at rest, and seen from (1, -1) ½ · 2 (4 + 4 - 0 - 9)."""
+    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 0.0, 0.0) == 5.0
+    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 1.0, -1.0) == -1.0
 
 
 @pytest.mark.parametrize(

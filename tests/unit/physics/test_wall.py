@@ -99,6 +99,8 @@ def test_a_parabola_from_the_face():
     assert accelerated_body_delay(0.5, 1.0, 2.0, 0.0, -1.0, 0.0, 0.5, 2.0) == 4.0  # thrown up from it
     assert accelerated_body_delay(0.5, 1.0, 2.0, 1.0, -1.0, 0.0, 0.5, 2.0) == NEVER  # comes down beside it
     assert accelerated_body_delay(0.25, 1.0, 0.5, 0.0, -1.0, 0.0, 0.5, 2.0) == 1.0  # sunk: back at its depth
+    assert accelerated_body_delay(1.5, 1.0, 0.0, 0.0, -2.0, 0.0, 0.5, 2.0) == 1.0  # at rest above it: √(2h/g)
+    assert accelerated_body_delay(-1.5, 1.0, 0.0, 0.0, 2.0, 0.0, 0.5, 2.0) == 1.0
     assert accelerated_body_delay(1.0, 1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 2.0) == NEVER
 
 
@@ -198,6 +200,8 @@ def test_an_end_is_met_from_outside_only():
     inside = body(vx=-1.0, vy=0.0, r=0.5)
     assert straight_end_delay(0.4, 0.0, inside, inside.r) == 0.0
     assert end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.0, 2.0, inside, inside.r, None) == NEVER
+    back = end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.5, 2.0, inside, inside.r, Gravity(0.5, 0.0))
+    assert back == pytest.approx(2 + 2 * math.sqrt(0.1), rel=1e-14)  # 0.4 - t + t²/4 = -0.5, after it has turned
 
 
 @pytest.mark.parametrize("gravity", [None, Gravity(0.3, -0.7)])

@@ -38,6 +38,29 @@ def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
     assert not differences(*paths)
 
 
+@pytest.mark.interpreted
+@pytest.mark.usefixtures("uncompiled")
+def test_a_summary_has_the_largest_overlaps_of_the_whole_run(tmp_path):
+    """Discs that begin as far beyond a side and in one another as rounding allows, and part: 2⁻⁴⁰ of a diameter."""
+    gap = 2.0**-40
+    scene = f"""
+        box.size = [10, 10]
+        run.until = 2
+        log.snapshot_every = 0.5
+        disc = [
+            {{ position = [{0.5 - gap}, 5], velocity = [1, 0], radius = 0.5 }},
+            {{ position = [5, 2], velocity = [-1, 0], radius = 0.5 }},
+            {{ position = [{6 - 2 * gap}, 2], velocity = [1, 0], radius = 0.5 }},
+        ]
+    """
+    summary, log = run(tmp_path / "run.h5", parse_scene(scene))
+    with log:
+        beyond, overlap = (log.observables[name][1] for name in ("outside", "overlap"))
+        assert (beyond[0], beyond[-1]) == (gap, 0.0)
+        assert (overlap[0], overlap[-1]) == (2 * gap, 0.0)
+    assert (summary.max_wall_penetration, summary.deepest_overlap) == (gap, 2 * gap)
+
+
 def test_walls_are_in_the_log_by_their_numbers(tmp_path):
     _, log = run(tmp_path / "run.h5", load_scene(CONFIGS / "effusion.toml", ["run.until=6"]))
     with log:

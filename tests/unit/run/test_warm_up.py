@@ -35,8 +35,12 @@ def test_a_long_scene_runs_for_one_event_and_leaves_nothing(monkeypatch, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["novak-bortz", "periodic"])
-def test_every_method_ends(name):
+def test_every_method_ends_after_one_event(name, monkeypatch):
+    ran, original = [], module.simulate
+    monkeypatch.setattr(module, "simulate", lambda *arguments: ran.append(original(*arguments)) or ran[0])
     module.warm_up(load_scene(ROOT / "configs" / f"{name}.toml", ["species.0.count=20"]))
+    (summary,) = ran
+    assert (summary.events, summary.completed) == (1, True)
 
 
 def test_the_command_says_what_it_compiled(tmp_path, monkeypatch):

@@ -178,6 +178,31 @@ def test_accelerations_add_up():
     assert (one & other).acceleration == (1.5, -2.0)
 
 
+SPREAD = {"acceleration": (1.0, 0.0), "later_accelerations": ((-3.0, 0.5), (2.0, -0.25))}
+
+
+@pytest.mark.parametrize(
+    ("given", "name", "value"),
+    [
+        ({"periodic": (True, True), "shear": 0.5}, "conserves_momentum", (False, True)),
+        ({"periodic": (True, True)}, "conserves_momentum", (True, True)),
+        ({"periodic": (True, True), "acceleration": (0.0, -1.0)}, "conserves_momentum", (True, False)),
+        ({"periodic": (True, True), "last_wall_removed_at": 3.0}, "conserves_momentum", (False, False)),
+        (SPREAD, "strongest_pull", (-3.0, 0.5)),
+        ({"periodic": (False, True), **SPREAD}, "falls", (False, True)),
+        ({"escapes": True}, "conserves_energy", False),
+        ({"fixed_walls": False}, "conserves_energy", False),
+        ({"inertia": 0.5}, "conserves_energy", True),
+        ({"inertia": 0.5}, "conserves_motion", False),
+        ({"bath": 2.0}, "conserves_motion", False),
+        ({"later_temperatures": (3.0,), "emits": (None, 2.0, None, None)}, "temperatures", {2.0, 3.0}),
+        ({"bath": 2.0}, "frictionless", False),
+    ],
+)
+def test_what_follows_from_properties(given, name, value):
+    assert getattr(Properties(**given), name) == value
+
+
 def test_every_property_says_how_it_comes_together():
     assert all("both" in entry.metadata for entry in fields(Properties))
 

@@ -59,8 +59,8 @@ def test_discs_that_touch_a_side_or_a_wall_with_two_decimals_are_accepted(upper)
         radius = hundredths / 100
         x, y = (round(SIZE - radius, 2), round(SIZE - radius, 2)) if upper else (radius, radius)
         beside = round(5.1 + (radius if upper else -radius), 2)
-        parse_scene(discs((x, y, radius)))
-        parse_scene(discs((beside, 5, radius)) + wall)
+        assert parse_scene(discs((x, y, radius))).disc[0].position == (x, y)
+        assert parse_scene(discs((beside, 5, radius)) + wall).disc[0].position == (beside, 5)
 
 
 @pytest.mark.parametrize(

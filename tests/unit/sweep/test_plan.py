@@ -13,6 +13,8 @@ run.events = 100
 """
 
 
+PART = '{name = "part", count = 1, radius = 0.1, temperature = 1.0, region = [0, 0, 5, 5]}'
+
 MANY = "".join(f'[[axis]]\nkey = "species.{key}"\nrange = [1, 2, 1000]\n' for key in ("mass", "radius", "count"))
 """Three axes of 1000 values each."""
 
@@ -133,6 +135,14 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
             ["2: species.neon.mass = 1: nothing of this name"],
         ),
         ('[[axis]]\nkey = "phi"\nvalues = [0.5, 1.5]\n' + BASE, ["2: phi = 1.5: not a packing fraction"]),
+        (
+            '[[axis]]\nkey = "phi"\nvalues = [0, 1]\n' + BASE,
+            [f"2: phi = {phi}: not a packing fraction" for phi in (0, 1)],
+        ),
+        (
+            '[[axis]]\nkey = "phi"\nvalues = [0.1]\n' + BASE.replace("}]", f"}}, {PART}]"),
+            ["2: phi = 0.1: the box alone is scaled (got a scene with species.region"],
+        ),
         (
             '[[axis]]\nkey = "phi"\nvalues = [0.1]\n' + BASE + "disc = [{position = [1, 1], radius = 0.1}]\n",
             ["2: phi = 0.1: the box alone is scaled (got a scene with disc"],

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.equilibration import MARGIN, detect_equilibration, unsteady
+from idealgas.analysis.core.equilibration import MARGIN, _Series, detect_equilibration, unsteady
 from idealgas.analysis.core.observables import Observable
 
 
@@ -16,6 +16,18 @@ def noise(rng, length, memory=0.0):
 
 def detect(series):
     return detect_equilibration(map(Observable, series))
+
+
+@pytest.mark.parametrize(("level", "normal"), [(0.1, 1.959963984540054), (0.2, 1.6448536269514722)])
+def test_half_of_the_false_alarms_are_in_the_first_block(level, normal):
+    """Two-sided: its deviation from the rest, of variance 2, is normal, and beyond the bound at half of the level."""
+    for factor, agrees in ((1 - 1e-9, True), (1 + 1e-9, False)):
+        sums = np.append(0.0, np.full(16, factor * normal * np.sqrt(2.0)))
+        sums[9:] = sums[8]  # the later half has the mean 0
+        series = _Series(sums, np.ones(1), np.inf, 1.0, np.inf)
+        assert series.agrees(0, level) == agrees
+        assert series.agrees(0, level, floor=3.0)
+        assert not series._replace(most=0.9).agrees(0, level)
 
 
 @pytest.mark.parametrize(("length", "memory"), [(40, 0.0), (40, 0.5), (400, 0.0), (400, 0.9), (400, -0.5), (2000, 0.9)])

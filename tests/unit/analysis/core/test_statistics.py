@@ -109,11 +109,32 @@ def test_deviation_is_in_standard_errors():
     assert Estimate(1.2, 0.1, 40).deviation is None
 
 
-def test_bootstrap_error_of_a_mean():
-    values = np.random.default_rng(2).normal(size=30)
+def test_an_estimate_times_a_factor():
+    assert Estimate(2.0, 0.1, 9.0, 3.0, 0.25).times(-2.0) == Estimate(-4.0, 0.2, 9.0, -6.0, 0.5)
+    assert Estimate(2.0, 0.1, 9.0).times(3.0) == Estimate(6.0, pytest.approx(0.3), 9.0)
+    assert Estimate(1.5, 0.3, 9.0, 1.0, 0.4).deviation == pytest.approx(1.0)  # 0.5/√(0.3² + 0.4²)
+
+
+@pytest.mark.parametrize(
+    ("samples", "level", "half"),
+    [
+        (2.0, 0.5, 1.0),  # Student's t with one degree of freedom is Cauchy's law: tan(π/4)
+        (3.0, 0.95, 4.302652729911275),  # with two: level √(2/(1 - level²))
+        (math.inf, 0.95, 1.959963984540054),
+        (0.0, 0.5, 1.0),
+    ],
+)
+def test_an_interval_has_one_degree_of_freedom_less_than_samples(samples, level, half):
+    assert Estimate(5.0, 0.1, samples).interval(level) == pytest.approx((5 - 0.1 * half, 5 + 0.1 * half), rel=1e-11)
+
+
+@pytest.mark.parametrize("n", [2, 3, 30])
+def test_bootstrap_error_of_a_mean(n):
+    """Of two values it would be √½ of the standard error without the factor √(n/(n - 1))."""
+    values = np.random.default_rng(2).normal(size=n)
     result = statistics.bootstrap(values)
     assert result.value == values.mean()
-    assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(30), rel=0.06)  # 4/√(2·2000) resamples
+    assert result.standard_error == pytest.approx(values.std(ddof=1) / np.sqrt(n), rel=0.06)  # 4/√(2·2000) resamples
 
 
 def test_degrees_of_freedom_of_a_mean_of_runs():

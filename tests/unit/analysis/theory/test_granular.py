@@ -60,6 +60,9 @@ def test_smooth_discs():
     assert relaxation(GranularParameters(0.9)) == 0
     assert loss_of_spin(GranularParameters(0.9, -1.0, 0.5), 3.0) == 0
     assert fourth_cumulant(math.sqrt(0.5)) == pytest.approx(0, abs=1e-15)
+    assert fourth_cumulant(0.9) == pytest.approx(-992 / 36_930, rel=1e-13)
+    assert fourth_cumulant(0.8) == pytest.approx(-896 / 40_840, rel=1e-13)
+    assert fourth_cumulant(0.5) == pytest.approx(4 / 48.25, rel=1e-13)
     e, rate = 0.9, 2.5
     a2, smooth = fourth_cumulant(e), GranularParameters(e)
     assert cooling_time(smooth, rate) == pytest.approx(4 / ((1 - e**2) * rate * (1 + 3 * a2 / 16)), rel=1e-14)

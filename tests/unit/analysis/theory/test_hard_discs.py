@@ -54,6 +54,12 @@ def test_closed_system_has_fewer_pairs():
     )
 
 
+def test_the_long_time_tail():
+    """1/(8π n (D + ν) t), for n = ½, D = 3 and ν = 1: 1/(16π t)."""
+    tail = hard_discs.long_time_tail([1.0, 4.0], 0.5, 3.0, 1.0)
+    assert tail == pytest.approx([1 / (16 * math.pi), 1 / (64 * math.pi)], rel=1e-14)
+
+
 def test_mixture_of_equals_is_one_species():
     one = hard_discs.mixture_compressibility_factor([0.5], [300], 1000.0)
     two = hard_discs.mixture_compressibility_factor([0.5, 0.5], [100, 200], 1000.0)
