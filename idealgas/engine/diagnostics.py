@@ -1,16 +1,14 @@
 """Conserved quantities and overlaps of a gas, measured when all discs are at one time."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.jit import inline, njit
-from idealgas.physics.absorbing import has_left, inside
-from idealgas.physics.periodic import separation
+from idealgas.pairs import MARGIN, near_pairs
+from idealgas.physics.absorbing import inside
+from idealgas.physics.periodic import Periodic, separation
+from idealgas.physics.shear import offset_at
 from idealgas.state import Gas
-
-U = np.uintp
 
 
 class Diagnostics(NamedTuple):
@@ -30,21 +28,36 @@ class Diagnostics(NamedTuple):
     outside: float
 
 
-@inline
-def overlap_of(a, b, periodic):
-    """Overlap of two discs divided by the sum of their radii; negative if they are apart."""
-    x, y = separation(a, b, periodic)
-    return 1.0 - math.hypot(x, y) / (a.r + b.r)
+class Points(NamedTuple):
+    """Coordinates (n,) of discs, length, at a local time, in the form of a record."""
+
+    x: np.ndarray
+    y: np.ndarray
+    t: float = 0.0
 
 
-@njit
-def deepest_overlap_of_all(record, periodic, absorbing):
-    """Deepest overlap of all pairs of discs, divided by the sum of their radii; 0 without any."""
-    deepest = 0.0
-    for i in range(record.shape[0]):
-        for j in range(0 if has_left(record[i], absorbing) else i):
-            if not has_left(record[j], absorbing):
-                deepest = max(deepest, overlap_of(record[i], record[j], periodic))
+def deepest_overlap(gas: Gas, periodic: Periodic | None, absorbing: np.ndarray | None) -> float:
+    """Deepest overlap of all pairs of discs, divided by the sum of their radii; 0 without any.
+
+    periodic: with the shear at the time of the gas, from which local times count.
+    """
+    here = inside(gas.position[:, 0], absorbing)
+    position, radius, disc = gas.position[here], gas.radius[here], np.arange(len(gas))[here]
+    period, deepest = (0.0, 0.0), 0.0
+    if periodic is not None:
+        period = (periodic.Lx * periodic.x, periodic.Ly * periodic.y)
+        if periodic.shear is not None:  # discs at the bottom meet others as images above the top
+            low = position[:, 1] < 2 * (1 + MARGIN) * radius.max(initial=0.0)
+            above = position[low] + (offset_at(periodic.shear, 0.0), periodic.shear.Ly)
+            position, radius, disc = (
+                np.concatenate(both) for both in ((position, above), (radius, radius[low]), (disc, disc[low]))
+            )
+    for i, k in near_pairs(position, radius, period):
+        a, b = disc[i], disc[k]
+        a, b = a[a != b], b[a != b]
+        x, y = separation(Points(*gas.position[a].T), Points(*gas.position[b].T), periodic)
+        overlap = 1.0 - np.hypot(x, y) / (gas.radius[a] + gas.radius[b])
+        deepest = max(deepest, float(overlap.max(initial=0.0)))
     return deepest
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from idealgas.columns import Column, EventBatch
-from idealgas.effects.bundle import Effects
-from idealgas.engine.diagnostics import deepest_overlap_of_all
+from idealgas.effects.bundle import Effects, for_kernels
+from idealgas.engine.diagnostics import deepest_overlap
 from idealgas.engine.records import Discs, make_discs
 from idealgas.state import Gas
 
@@ -92,6 +92,6 @@ class Method(ABC):
         Returns the number of rows written, and whether everything up to the limit of time has happened.
         """
 
-    def deepest_overlap(self) -> float:
-        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap_of_all(self.discs.record, self._effects.periodic, self._effects.absorbing)
+    def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
+        """Deepest overlap of a gas in this epoch, divided by the sum of the radii; effects: at the time of the gas."""
+        return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

@@ -179,7 +179,7 @@ class MonteCarlo(Method):
             self.extra_state[V_REF] = RAISED * math.sqrt(square)
         return rows, reached
 
-    def deepest_overlap(self) -> float:
+    def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
         """Always 0: discs without positions do not overlap."""
         return 0.0
 

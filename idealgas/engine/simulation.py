@@ -1,6 +1,5 @@
 """The simulation of a gas through the epochs of its run."""
 
-import copy
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
@@ -299,16 +298,14 @@ class Simulation:
         self.gas, self.steered = replace(self.gas, velocity=velocity), np.union1d(self.steered, discs)
 
     def check_invariants(self) -> Diagnostics:
-        """Conserved quantities and overlaps at the start of the epoch; to be called before `advance`."""
-        return check_invariants(
-            self.gas, self.method.deepest_overlap(), self.effects.absorbing, periodic_axes(self.effects.periodic)
-        )
+        """Conserved quantities and overlaps at the start of the epoch."""
+        return self._check(self.gas, self.time)
 
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
         """Conserved quantities and overlaps of a gas that `state` returned."""
-        method = copy.copy(self.method)
-        sides, shift = copy_of(self.effects.periodic), shear.at(self.effects.shear, self.reached)
-        method.start(gas, for_kernels(self.effects._replace(periodic=sides, shear=shift)))
-        return check_invariants(
-            gas, method.deepest_overlap(), self.effects.absorbing, periodic_axes(self.effects.periodic)
-        )
+        return self._check(gas, self.reached)
+
+    def _check(self, gas: Gas, time: float) -> Diagnostics:
+        effects = self.effects._replace(shear=shear.at(self.effects.shear, time))
+        overlap = self.method.deepest_overlap(gas, effects)
+        return check_invariants(gas, overlap, effects.absorbing, periodic_axes(effects.periodic))

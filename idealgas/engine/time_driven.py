@@ -292,6 +292,6 @@ class TimeDriven(Method):
             epoch_start, batch, counters,
         )  # fmt: skip
 
-    def deepest_overlap(self) -> float:
-        """Deepest overlap of a collision in the epoch before the start, divided by the sum of the radii."""
-        return self._overlap
+    def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
+        """Deepest overlap of a collision, divided by the sum of the radii: in this epoch or, at its start, the last."""
+        return self._overlap if self._step[0].number == 0 else float(self._deepest[0])

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from idealgas.initial.contacts import static_contact_issues
-from idealgas.jit import in_python
 from idealgas.physics.elementary import cos_sin_turns
 from idealgas.physics.shear import flow_at
 from idealgas.scene import Scene, SceneError, Species
@@ -13,9 +12,6 @@ from idealgas.scene.checks.piston import chamber_issues
 from idealgas.scene.sizes import Values, mass_of
 from idealgas.state import Gas, rng
 from idealgas.toml.issues import Issue
-
-FEW, SPARSE = 1000, 0.3
-"""Number of discs up to which, and packing fraction up to which, they are placed faster than numba is loaded."""
 
 
 def make_gas(scene: Scene) -> Gas:
@@ -124,29 +120,20 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length, of all discs; of few that find room soon without compiled code."""
-    left, bottom, right, top = scene.room
-    sparse = math.pi * float(radius @ radius) <= SPARSE * (right - left) * (top - bottom)
-    anywhere = not scene.walls and not any(s.region for _, s in scene.placed)
-    with in_python(len(radius) <= FEW and sparse and anywhere):
-        return _placed_in_order(scene, radius)
-
-
-def _placed_in_order(scene: Scene, radius: np.ndarray) -> np.ndarray:
     """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
-    from idealgas.initial import placement  # compiled code, which a reader of logs does not need
+    from idealgas.initial import lattices, placement  # compiled code, which a reader of logs does not need
+    from idealgas.initial.room import make_room
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
     walls = [wall for wall in scene.walls if wall.is_there(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    grid = placement.make_grid(box.size, radius, periodic, walls, scene.solids.walls)
+    room = make_room(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")
     ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.given), *(s.count for _, s in scene.placed)])[:-1])
-    if len(scene.given):
-        position[ids[0]] = scene.given.position
-        placement.insert_given(grid, position, ids[0])
-    lattices: dict[tuple[float, ...], list[int]] = {}
+    position[ids[0]] = scene.given.position
+    placed = ids[0]
+    by_region: dict[tuple[float, ...], list[int]] = {}
     triangular: list[int] = []
     at_random: list[int] = []
     for k, s in scene.placed:
@@ -156,39 +143,41 @@ def _placed_in_order(scene: Scene, radius: np.ndarray) -> np.ndarray:
         own = radius[ids[k + 1]]
         bounds[ids[k + 1]] = np.column_stack((x0 + own, y0 + own, x1 - own, y1 - own))
         if s.placement == "lattice":
-            lattices.setdefault(region, []).append(k)
+            by_region.setdefault(region, []).append(k)
         elif s.placement == "triangular":
             triangular.append(k)
         else:
             at_random.append(k)
             for axis in (a for a in range(2) if periodic[a] and s.region is None):
                 bounds[ids[k + 1], axis::2] = 0.0, np.nextafter(box.size[axis], 0.0)
-    for members in lattices.values():
+    for members in by_region.values():
         chosen = np.concatenate([ids[k + 1] for k in members])
         if len(members) > 1:
             random.shuffle(chosen)
         largest = bounds[chosen[radius[chosen].argmax()]]
-        if not placement.insert_on_lattice(grid, position, radius, largest, chosen):
+        if not lattices.place_on_lattice(room, position, radius, largest, placed, chosen):
             raise _no_room(
                 scene, members[0], "on a lattice", f"{len(chosen)} discs", "fewer or smaller discs, or more room"
             )
+        placed = np.concatenate((placed, chosen))
     if lattice := scene.lattice:
         chosen = np.concatenate([ids[k + 1] for k in triangular])
         if len(triangular) > 1:
             random.shuffle(chosen)
-        position[chosen] = placement.lattice_sites(lattice)
-        if placement.insert(grid, position, radius, chosen) < len(chosen):
+        position[chosen] = lattices.lattice_sites(lattice)
+        if not lattices.fits(room, position, radius, placed, chosen):
             raise _no_room(
                 scene, triangular[0], "on a triangular lattice", f"{len(chosen)} discs", "no others in its way"
             )
+        placed = np.concatenate((placed, chosen))
     if at_random:
         chosen = np.concatenate([ids[k + 1] for k in at_random])
         chosen = chosen[np.argsort(-radius[chosen], kind="stable")]  # the largest first
         max_refusals = max(placement.REFUSALS_PER_DISC * len(chosen), placement.MIN_REFUSALS)
-        placed = placement.insert_randomly(grid, position, radius, bounds, chosen, random, max_refusals)
-        if placed < len(chosen):
-            k = next(k for k in at_random if chosen[placed] in ids[k + 1])
-            got = f"{len(chosen)} discs, {placed} placed"
+        number = placement.place_at_random(room, position, radius, bounds, placed, chosen, random, max_refusals)
+        if number < len(chosen):
+            k = next(k for k in at_random if chosen[number] in ids[k + 1])
+            got = f"{len(chosen)} discs, {number} placed"
             raise _no_room(scene, k, "at random", got, 'fewer or smaller discs, or placement = "lattice"')
     return position
 

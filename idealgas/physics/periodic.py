@@ -107,8 +107,8 @@ def is_periodic(periodic, along_y):
 
 @inline
 def nearest_image(distance, length, is_periodic):
-    """Coordinate difference (length) to the nearest image, or as it is along an axis that is not periodic."""
-    return distance - length * round(distance / length) if is_periodic else distance
+    """Difference of coordinates (length) to the nearest image, unchanged without periodic sides; numbers or arrays."""
+    return distance - length * np.rint(distance / length) if is_periodic else distance
 
 
 @inline
@@ -123,7 +123,7 @@ def nearest_images(x, y, periodic):
 
 @inline
 def separation(a, b, periodic):
-    """Position (x, y), length, of disc a relative to the nearest image of disc b."""
+    """Position (x, y), length, of disc a relative to the nearest image of disc b; records of numbers or of arrays."""
     x = a.x - b.x
     y = a.y - b.y
     if periodic is not None:

@@ -78,7 +78,7 @@ def less_offset(x, vx, time, shear, images):
 def less_offset_of_nearest(x, y, time, shear):
     """Relative position (x, y), length, at a local time, less that of the nearest image along y."""
     if shear is not None:
-        rows = round(y / shear.Ly)
+        rows = np.rint(y / shear.Ly)
         return x - offset_at(shear, time) * rows, y - shear.Ly * rows
     return x, y
 

@@ -10,7 +10,9 @@ from idealgas.columns import IMAGES, OUTWARD, POSITIONS, SIDES, empty_batch, eve
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.initial.placement import insert_on_lattice, insert_randomly, make_grid
+from idealgas.initial.lattices import place_on_lattice
+from idealgas.initial.placement import place_at_random
+from idealgas.initial.room import make_room
 from idealgas.log import Flights, LogState
 from idealgas.log.join import Join
 from idealgas.physics.periodic import Periodic
@@ -101,13 +103,13 @@ def _rows(simulation, collisions, periodic):
 
 def _places(radius, box, periodic, random, lattice):
     position = np.empty((len(radius), 2))
-    grid = make_grid(box, radius, periodic)
+    room = make_room(box, radius, periodic)
     bounds = np.array([[*np.where(periodic, 0.0, r), *np.where(periodic, box, np.subtract(box, r))] for r in radius])
     ids = np.argsort(-radius, kind="stable")
     if lattice:
         random.shuffle(ids)
         largest = np.array([radius.max(), radius.max(), box[0] - radius.max(), box[1] - radius.max()])
-        assert insert_on_lattice(grid, position, radius, largest, ids)
+        assert place_on_lattice(room, position, radius, largest, ids[:0], ids)
     else:
-        assert insert_randomly(grid, position, radius, bounds, ids, random, 3_000_000) == len(radius)
+        assert place_at_random(room, position, radius, bounds, ids[:0], ids, random, 3_000_000) == len(radius)
     return position

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from helpers.support import ROOT
 
-FREE = {"_version", "errors", "catalogue", "columns", "files", "locks", "system", ""}
-"""Version, errors, names of analyses, plain text, files, locks, systems, columns and numbers of walls are for all."""
+FREE = {"_version", "errors", "catalogue", "columns", "files", "locks", "pairs", "system", ""}
+"""Version, errors, names of analyses, files, locks, near pairs, systems, columns and numbers of walls are for all."""
 
 ALLOWED = {
     "jit": set(),
@@ -35,6 +35,7 @@ ALLOWED = {
     "columns": set(),
     "files": set(),
     "locks": set(),
+    "pairs": set(),
     "system": set(),
     "": {
         "scene",

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from idealgas.engine.diagnostics import overlap_of
 from idealgas.engine.event_driven.cells import cell_index, is_large, own_cells
 from idealgas.engine.event_driven.neighbours import neighbours, new_neighbours
 from idealgas.engine.event_driven.prediction import (
@@ -16,8 +15,7 @@ from idealgas.engine.event_driven.prediction import (
 )
 from idealgas.engine.event_driven.state import copy_image, image_of
 from idealgas.engine.event_driven.wall_cells import images_to_item
-from idealgas.jit import inline, njit, noinline
-from idealgas.physics.absorbing import has_left
+from idealgas.jit import inline, noinline
 from idealgas.physics.arc import misses_wall, wall_contact
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
 from idealgas.physics.periodic import NO_IMAGES, images_between
@@ -189,28 +187,3 @@ def predict_contact(record, ids, state, i, crossing_code, now, effects):
         count = neighbours(state, record[U(i)], effects.periodic)
     predict_disc_contact(record, ids, state, count, i, now, effects)
     predict_segment_contact(record, ids, state, i, effects.segments, effects)
-
-
-@inline
-def deepest_around(record, state, i, periodic):
-    """Deepest overlap of disc i with discs of smaller index, divided by the sum of the radii; 0 without any."""
-    deepest = 0.0
-    disc = record[U(i)]
-    count = neighbours(state, disc, periodic)
-    for k in range(count):
-        j = state.candidates[U(k)]
-        while j >= 0:
-            if j < i:
-                deepest = max(deepest, overlap_of(disc, record[U(j)], periodic))
-            j = state.cells.link[U(j)].next
-    return deepest
-
-
-@njit
-def deepest_overlap(record, state, periodic, absorbing):
-    """Deepest overlap of all pairs of discs, divided by the sum of their radii; all records are at one time."""
-    deepest = 0.0
-    for i in range(record.shape[0]):
-        if not has_left(record[U(i)], absorbing):
-            deepest = max(deepest, deepest_around(record, state, i, periodic))
-    return deepest

@@ -9,7 +9,6 @@ import numpy as np
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.cells import Cells, CoarseCells, cell_of, discs_per_cell, make_cells, make_levels
-from idealgas.engine.event_driven.contacts import deepest_overlap
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
@@ -63,12 +62,6 @@ class EventDriven(Method):
         self._decomposition: DomainDecomposition | None = None
         self._walls: tuple[bytes, WallCells, WallCells | None] | None = None
         self._radius: np.ndarray | None = None  # of the discs for which there is memory
-
-    def __copy__(self) -> "EventDriven":
-        """Another method with the same parameters and its own memory."""
-        other = EventDriven(self._filling, self._threads, self.workers.tuning)
-        other._walls = self._walls
-        return other
 
     def start(self, gas: Gas, effects: Effects) -> None:
         """Begin an epoch: put all discs in their cells. The discs and the set of effects never change in a run."""
@@ -139,7 +132,3 @@ class EventDriven(Method):
             return self._decomposition.advance(limits, epoch_start, batch, counters)
         record, ids, _ = self.discs
         return advance_events(record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None)
-
-    def deepest_overlap(self) -> float:
-        """Deepest overlap at the start of the epoch, divided by the sum of the radii; to be called before `advance`."""
-        return deepest_overlap(self.discs.record, self._state, self._effects.periodic, self._effects.absorbing)

@@ -29,7 +29,7 @@ _WIDTHS = (4, 8)
 """Bytes of the items that compiled functions shuffle; others use NumPy."""
 
 _WORTH_LOADING = 64 * 2**20
-"""Bytes that NumPy decodes in about the time that loading compiled functions takes."""
+"""Bytes that NumPy encodes or decodes in about the time that loading compiled functions takes."""
 
 _LARGEST_KEPT = 31 * 2**20
 """Nearly the bytes of the largest block that glibc can be made to keep."""
@@ -69,6 +69,16 @@ def shuffle(items, noise, blocks, planes):
                     place += (place // _STORED_BLOCK + 1) * _BLOCK_HEADER
                 _gather_byte(items, byte, start, stop, blocks if stored else planes, place)
                 start = stop
+
+
+def _shuffle_in_numpy(items, noise, blocks, planes):
+    """Do the work of `shuffle`."""
+    n, words = len(items), items.view(np.uint8).reshape(-1, items.itemsize).T
+    planes.reshape(-1, n)[:] = words[noise:]
+    stored = words[:noise].reshape(-1)
+    for k, start in enumerate(range(0, len(stored), _STORED_BLOCK)):
+        part, place = stored[start : start + _STORED_BLOCK], start + (k + 1) * _BLOCK_HEADER
+        blocks[place : place + len(part)] = part
 
 
 @inline
@@ -124,13 +134,14 @@ class Encoder:
         """Number of planes that are noise, which are copied to their blocks, and the bytes of the others."""
         words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
         noise = width if len(items) >= _SAMPLE else 0
+        gather = shuffle if _is_worth_loading(items.nbytes) else _shuffle_in_numpy
         if noise:
             sample = self._planes[: width * _SAMPLE]
-            shuffle(words[:_SAMPLE], 0, blocks, sample)
+            gather(words[:_SAMPLE], 0, blocks, sample)
             while noise and len(isal_zlib.compress(sample.reshape(width, -1)[noise - 1], 0)) < _SAMPLE:
                 noise -= 1
         planes = self._planes[: (width - noise) * len(items)]
-        shuffle(words, noise, blocks, planes)
+        gather(words, noise, blocks, planes)
         return noise, planes
 
     def plain(self, rows: np.ndarray) -> np.ndarray:
@@ -226,14 +237,14 @@ def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
     return struct.pack("<HH", _fold(simple), _fold(running))
 
 
-_decoded = 0
+_processed = 0
 
 
 def _is_worth_loading(size: int) -> bool:
-    """Whether compiled functions are used for `size` bytes more: what reads little starts without numba."""
-    global _decoded
-    _decoded += size
-    return _decoded > _WORTH_LOADING
+    """Whether compiled functions are used for `size` bytes more: what reads or writes little starts without them."""
+    global _processed
+    _processed += size
+    return _processed > _WORTH_LOADING
 
 
 def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:

@@ -1,3 +1,4 @@
+import hashlib
 import math
 
 import numpy as np
@@ -6,7 +7,10 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 
 from idealgas.initial import placement
-from idealgas.initial.placement import make_lattice
+from idealgas.initial.build import make_gas
+from idealgas.initial.lattices import make_lattice
+from idealgas.initial.room import make_room
+from idealgas.scene import parse_scene
 
 LOW, HIGH = np.array([1.0, 2.0]), np.array([9.0, 7.0])
 
@@ -50,12 +54,11 @@ def placed_at_random(number, packing, seed=0):
     """Positions of discs of diameter 1 in a square box, and its side."""
     radius = np.full(number, 0.5)
     side = math.sqrt(number * math.pi / 4 / packing)
-    grid = placement.make_grid((side, side), radius)
     position = np.empty((number, 2))
     bounds = np.tile([0.5, 0.5, side - 0.5, side - 0.5], (number, 1))
-    ids = np.arange(number)
-    rng = np.random.default_rng(seed)
-    assert placement.insert_randomly(grid, position, radius, bounds, ids, rng, 10**7) == number
+    ids, rng = np.arange(number), np.random.default_rng(seed)
+    room = make_room((side, side), radius)
+    assert placement.place_at_random(room, position, radius, bounds, ids[:0], ids, rng, 10**7) == number
     return position, side
 
 
@@ -89,9 +92,44 @@ def test_dense_discs_are_near_equilibrium():
     assert near_contact == pytest.approx(3.125, rel=0.1)
 
 
-def test_random_placement_gives_up():
-    radius = np.full(3, 0.5)
-    grid = placement.make_grid((1.95, 1.9), radius)
+@pytest.mark.parametrize("few", [0, 10**6])
+def test_random_placement_gives_up(monkeypatch, few):
+    monkeypatch.setattr(placement, "FEW", few)
+    radius, ids = np.full(3, 0.5), np.arange(3)
+    room = make_room((1.95, 1.9), radius)
     bounds = np.tile([0.5, 0.5, 1.45, 1.4], (3, 1))
-    rng = np.random.default_rng(0)
-    assert placement.insert_randomly(grid, np.empty((3, 2)), radius, bounds, np.arange(3), rng, 1_000) == 2
+    rng, nobody = np.random.default_rng(0), ids[:0]
+    assert placement.place_at_random(room, np.empty((3, 2)), radius, bounds, nobody, ids, rng, 1_000) == 2
+
+
+MIXTURE = """
+box = { size = [10, 8], left = "periodic", right = "periodic" }
+run.until = 1
+species = [
+  { name = "large", count = 20, radius = 0.4, speed = 1, placement = "random" },
+  { name = "even", count = 30, radius = 0.1, speed = 1, placement = "lattice", region = [1, 1, 9, 7] },
+  { name = "small", count = 700, radius = 0.1, speed = 1, placement = "random" },
+]
+disc = [{ position = [5, 4], radius = 1 }]
+wall = [
+  { from = [1, 1], to = [2, 3] },
+  { from = [7, 2], to = [9, 2], via = [8, 3] },
+  { from = [3, 6], to = [3, 6], via = [4, 6], solid = "inside" },
+]
+"""
+
+
+@pytest.mark.parametrize("few_refusals", [10**9, 100])
+def test_python_and_compiled_code_place_discs_alike(monkeypatch, few_refusals):
+    """Bit for bit, all in one of them or the rest after some refusals."""
+    positions = []
+    for few in (0, 10**6):
+        monkeypatch.setattr(placement, "FEW", few)
+        monkeypatch.setattr(placement, "FEW_REFUSALS", few_refusals)
+        positions.append(make_gas(parse_scene(MIXTURE)).position)
+    assert positions[0].tobytes() == positions[1].tobytes()
+
+
+def test_a_seed_gives_the_same_gas_as_ever():
+    position = make_gas(parse_scene(MIXTURE)).position
+    assert hashlib.sha256(position.tobytes()).hexdigest()[:16] == "a90c622c4310f29a"

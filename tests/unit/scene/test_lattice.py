@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from idealgas.initial.build import make_gas
-from idealgas.initial.placement import lattice_sites
+from idealgas.initial.lattices import lattice_sites
 from idealgas.scene import parse_scene
 from idealgas.scene.lattice import triangular_lattice
 

@@ -69,6 +69,15 @@ def test_hdf5_reads_and_checks_both_kinds_of_chunk(tmp_path, data):
             assert np.array_equal(dataset[:], data)
 
 
+def test_numpy_and_compiled_code_encode_alike(monkeypatch):
+    for data in arrays():
+        encoded = []
+        for worth_loading in (-1, 2**60):
+            monkeypatch.setattr(chunks, "_WORTH_LOADING", worth_loading)
+            encoded.append(chunks.Encoder().compressed(data).tobytes())
+        assert encoded[0] == encoded[1]
+
+
 @pytest.mark.parametrize("mask", [chunks.COMPRESSED, chunks.PLAIN, 0])
 def test_what_hdf5_wrote_is_decoded(tmp_path, mask):
     data = rows(0, 500).position

@@ -1,0 +1,106 @@
+"""Initial positions on lattices: spaced evenly in a region, or triangular in a whole periodic box."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from idealgas.initial.room import Room, is_clear
+from idealgas.pairs import near_pairs
+from idealgas.physics.periodic import nearest_image
+from idealgas.scene.lattice import TriangularLattice
+
+
+def place_on_lattice(
+    room: Room, position: np.ndarray, radius: np.ndarray, bounds: np.ndarray, placed: np.ndarray, ids: np.ndarray
+) -> bool:
+    """Place discs on a lattice spaced for the largest of them; return whether there is room for all.
+
+    Sites where discs are already are left out; the free sites are used evenly.
+
+    Args:
+        room: for the discs.
+        position: (N, 2), length, changed in place.
+        radius: (N,), length.
+        bounds: (4,), x0, y0, x1, y1 for the centre of the largest disc, length.
+        placed: ids of the discs that are there already.
+        ids: of the discs to be placed.
+    """
+    largest = radius[ids].max()
+    wanted = len(ids)
+    while (sites := make_lattice(bounds[:2], bounds[2:], 2 * largest, wanted)) is not None:
+        reach = np.full(len(sites), largest)
+        free = is_clear(room, sites, reach)
+        if len(placed):
+            others = np.concatenate((sites, position[placed])), np.concatenate((reach, radius[placed]))
+            for i, k in overlapping(room, *others):
+                free[i[(i < len(sites)) & (k >= len(sites))]] = False
+                free[k[(k < len(sites)) & (i >= len(sites))]] = False
+        sites = sites[free]
+        if len(sites) >= len(ids):
+            position[ids] = sites[np.arange(len(ids)) * len(sites) // len(ids)]
+            return fits(room, position, radius, placed, ids)
+        wanted += len(ids) - len(sites)
+    return False
+
+
+def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarray, ids: np.ndarray) -> bool:
+    """Whether discs `ids` at their positions (N, 2) overlap no wall, none of the discs `placed` and none of themselves.
+
+    position, radius (N,): length.
+    """
+    if not is_clear(room, position[ids], radius[ids]).all():
+        return False
+    both = np.concatenate((ids, placed))
+    return not any(((i < len(ids)) | (k < len(ids))).any() for i, k in overlapping(room, position[both], radius[both]))
+
+
+def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Indices (n,) of both discs of every pair that overlaps, in several parts; position: (M, 2), radius: (M,)."""
+    for i, k in near_pairs(position, radius, (room.period_x, room.period_y)):
+        (dx, dy), contact = (position[i] - position[k]).T, radius[i] + radius[k]
+        dx = nearest_image(dx, room.period_x, room.period_x > 0)
+        dy = nearest_image(dy, room.period_y, room.period_y > 0)
+        overlap = dx * dx + dy * dy < contact * contact
+        yield i[overlap], k[overlap]
+
+
+def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int) -> np.ndarray | None:
+    """At least `sites` points (M, 2) from `low` to `high`, no two closer than a diameter; None if there is no room.
+
+    low, high: (2,), length. The lattice is square if that fits, else triangular; its points are in rows from below, and
+    fill the whole region.
+    """
+    width, height = high - low + diameter
+    rows = np.arange(1, min(int(2 * height / diameter), sites) + 1)
+    columns = -(-sites // rows)
+    nearest = np.minimum(width / columns, height / rows)
+    if nearest.max() >= diameter:
+        return _square(low, high, columns[nearest.argmax()], rows[nearest.argmax()], diameter)
+    along = (width - diameter) / (columns - 0.5)
+    across = (height - diameter) / np.maximum(rows - 1, 1)
+    nearest = np.minimum(np.minimum(along, np.hypot(along / 2, across)), np.where(rows > 2, 2 * across, np.inf))
+    if nearest.max() >= diameter:
+        return _triangular(low, high, columns[nearest.argmax()], rows[nearest.argmax()])
+    return None
+
+
+def _square(low: np.ndarray, high: np.ndarray, columns: int, rows: int, diameter: float) -> np.ndarray:
+    """Points (M, 2) of a square lattice, each in the middle of a cell of its own."""
+    shape = np.array((columns, rows))
+    index = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
+    corner = low - diameter / 2
+    return np.clip(corner + (index + 0.5) * ((high - low + diameter) / shape), low, high)
+
+
+def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> np.ndarray:
+    """Points (M, 2) of a triangular lattice, every other row shifted by half a spacing."""
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
+    step = (high - low) / (columns - 0.5, max(rows - 1, 1))
+    return np.minimum(low + np.column_stack((column + row % 2 / 2, row)) * step, high)
+
+
+def lattice_sites(lattice: TriangularLattice) -> np.ndarray:
+    """Sites (M, 2) of a triangular lattice in a periodic box, half a step from its lower left corner."""
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(lattice.columns), np.arange(lattice.rows)))
+    along, across = (column + row % 2 / 2 + 0.25) * lattice.spacing, (row + 0.5) * lattice.height
+    return np.column_stack((along, across) if lattice.axis == 0 else (across, along))

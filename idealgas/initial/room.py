@@ -1,0 +1,193 @@
+"""Where discs can be: the box, its walls and its solids, in cells for the search of what a disc would overlap."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from idealgas.jit import inline
+from idealgas.physics.arc import ARC, faces_arc, toggles
+from idealgas.physics.arc_geometry import NO_ARC, Arc, bounds, nearest_points
+from idealgas.scene.solids import NO_SOLIDS
+
+WALL = np.dtype(
+    [("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8"), ("arc", ARC)], align=True
+)
+"""A `PlacedWall` in compiled code."""
+
+
+class PlacedWall(NamedTuple):
+    """A wall or a fixed disc.
+
+    Attributes:
+        x, y: its start, length.
+        along_x, along_y: from the start to the end, length.
+        radius: of a fixed disc, length; else 0.
+        arc: the arc, if it is one, else NO_ARC.
+    """
+
+    x: float
+    y: float
+    along_x: float
+    along_y: float
+    radius: float
+    arc: Arc
+
+
+class Room(NamedTuple):
+    """Cells no smaller than the largest diameter, about one for each disc, and the walls near each.
+
+    Attributes:
+        columns: number of cells along x.
+        rows: number of cells along y; cell (c, r) has the index c * rows + r.
+        width: of a cell, length.
+        height: of a cell, length.
+        period_x: width of the box if its left and right sides are periodic, length; else 0.
+        period_y: height of the box if its lower and upper sides are periodic, length; else 0.
+        wall: every wall, images included: a list of `PlacedWall`, or (W,) WALL for compiled code.
+        wall_start: (cells + 1,) i8, first entry of each cell in `wall_item`.
+        wall_item: i8, numbers of the walls that a disc of a cell may touch, cell by cell.
+        inside: closed curves of walls in which no disc is, like `wall`.
+        outside: closed curves of walls outside of which no disc is; no walls if discs are everywhere else.
+    """
+
+    columns: int
+    rows: int
+    width: float
+    height: float
+    period_x: float
+    period_y: float
+    wall: Any
+    wall_start: Any
+    wall_item: Any
+    inside: Any
+    outside: Any
+
+
+def make_room(
+    box: tuple[float, float],
+    radius: np.ndarray,
+    periodic: tuple[bool, bool] = (False, False),
+    walls: Sequence[Any] = (),
+    solids: Mapping[str, Sequence[Any]] = NO_SOLIDS.walls,
+) -> Room:
+    """Room for discs of some radii (N,), length.
+
+    box: width and height, length. periodic: whether the sides along x and along y are periodic. walls: with start, end,
+    arc and radius. solids: the walls of solids, as in `Solids`.
+    """
+    largest = float(radius.max())
+    side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
+    shape = max(int(box[0] / side), 1), max(int(box[1] / side), 1)
+    size, period = np.array(box) / shape, np.where(periodic, box, 0.0)
+    images = _images(_numbers(walls), period)
+    near = [_cells_near(wall, shape, size, largest) for wall in images]
+    cell = np.concatenate([*near, np.empty(0, np.int64)])
+    item = np.repeat(np.arange(len(images)), [len(cells) for cells in near])
+    order = np.argsort(cell, kind="stable")
+    start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
+    placed, inside, outside = map(_placed, (images, _numbers(solids["inside"]), _numbers(solids["outside"])))
+    (width, height), (period_x, period_y) = size.tolist(), period.tolist()
+    return Room(*shape, width, height, period_x, period_y, placed, start, item[order], inside, outside)
+
+
+def for_kernels(room: Room) -> Room:
+    """The same room with arrays of walls, for compiled code."""
+    wall, inside, outside = (np.array(a, WALL).view(np.recarray) for a in (room.wall, room.inside, room.outside))
+    return room._replace(wall=wall, inside=inside, outside=outside)
+
+
+def _numbers(walls: Sequence[Any]) -> np.ndarray:
+    """Start, end, radius and arc of each wall as numbers (W, 12)."""
+    rows = [(*wall.start, *wall.end, wall.radius, *(wall.arc or NO_ARC)) for wall in walls]
+    return np.array(rows, float).reshape(-1, 12)
+
+
+def _placed(rows: np.ndarray) -> list[PlacedWall]:
+    """Walls from the numbers (W, 12) of `_numbers`."""
+    columns = np.hstack((rows[:, :2], rows[:, 2:4] - rows[:, :2], rows[:, 4:]))
+    return [PlacedWall(x, y, dx, dy, radius, Arc(*arc)) for x, y, dx, dy, radius, *arc in columns.tolist()]
+
+
+def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
+    """Numbers (W, 12) of walls and of their images next to the box along periodic axes."""
+    shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
+    rest = np.zeros(walls.shape[1] - 4)
+    return np.concatenate([walls + np.array((dx, dy, dx, dy, *rest)) for dx in shifts[0] for dy in shifts[1]])
+
+
+def _cells_near(wall: np.ndarray, shape: tuple[int, int], size: np.ndarray, reach: float) -> np.ndarray:
+    """Indices of the cells of which a point may be within reach (length) of a wall."""
+    ends, reach = wall[:4].reshape(2, 2), reach + wall[4]
+    arc = Arc(*wall[5:])
+    place = (*ends, arc if arc.radius else None)
+    low, high = np.array(bounds(*place)) + np.array(((-reach,), (reach,)))
+    ranges = [np.arange(*np.clip((low[a] // size[a], high[a] // size[a] + 1), 0, shape[a]).astype(int)) for a in (0, 1)]
+    column, row = (axis.ravel() for axis in np.meshgrid(*ranges))
+    centre = (np.column_stack((column, row)) + 0.5) * size
+    near = np.hypot(*(centre - nearest_points(centre, *place)).T) <= (reach + np.hypot(*size) / 2) * (1 + 1e-9)
+    return (column * shape[1] + row)[near]
+
+
+def cells_of(room: Room, position: np.ndarray) -> np.ndarray:
+    """Indices (M,) of the cells of positions (M, 2), length."""
+    column, row = (position / (room.width, room.height)).astype(np.int64).T
+    return np.minimum(column, room.columns - 1) * room.rows + np.minimum(row, room.rows - 1)
+
+
+def is_clear(room: Room, position: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Mask (M,) of discs at positions (M, 2), of radii (M,), length, that would overlap no wall and no solid."""
+    x, y = position.T
+    clear = ~np.broadcast_to(is_in_solid(room, x, y), x.shape)
+    cell = cells_of(room, position)
+    for n in np.flatnonzero(np.diff(room.wall_start)[cell]):
+        clear[n] &= not meets_wall(room, cell[n], *position[n].tolist(), float(radius[n]))
+    return clear
+
+
+@inline
+def meets_wall(room, cell, x, y, reach):
+    """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap a wall."""
+    for k in range(room.wall_start[cell], room.wall_start[cell + 1]):
+        wall = room.wall[room.wall_item[k]]
+        contact = reach + wall.radius
+        if _squared_distance(wall, x - wall.x, y - wall.y) < contact * contact:
+            return True
+    return False
+
+
+@inline
+def is_in_solid(room, x, y):
+    """Whether the point (x, y) is in a solid; numbers or arrays."""
+    inside = False
+    for k in range(len(room.inside)):
+        wall = room.inside[k]
+        inside = inside ^ toggles(x - wall.x, y - wall.y, wall.along_x, wall.along_y, wall.arc)
+    beyond = len(room.outside) > 0
+    for k in range(len(room.outside)):
+        wall = room.outside[k]
+        beyond = beyond ^ toggles(x - wall.x, y - wall.y, wall.along_x, wall.along_y, wall.arc)
+    return inside | beyond
+
+
+@inline
+def _squared_distance(wall, dx, dy):
+    """Squared distance, length², of a point from a wall, from the centre of a fixed disc.
+
+    dx, dy: position of the point relative to the start of the wall, length.
+    """
+    squared = wall.along_x * wall.along_x + wall.along_y * wall.along_y
+    if wall.arc.radius > 0.0:
+        away_x = dx - wall.arc.x
+        away_y = dy - wall.arc.y
+        distance = math.sqrt(away_x * away_x + away_y * away_y)
+        if faces_arc(away_x, away_y, distance, wall.arc):
+            return (distance - wall.arc.radius) * (distance - wall.arc.radius)
+        share = 1.0 if 2.0 * (dx * wall.along_x + dy * wall.along_y) > squared else 0.0  # the nearer end
+    else:
+        along = dx * wall.along_x + dy * wall.along_y
+        share = min(max(along / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+    dx -= share * wall.along_x
+    dy -= share * wall.along_y
+    return dx * dx + dy * dy
