@@ -33,8 +33,8 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 
 def _make(tables: Tables, start: Start) -> law.Periodic:
-    crossings, image = (np.zeros((len(start.gas), *IMAGE.shape), IMAGE.dtype) for _ in range(2))
-    return law.Periodic(tables.sides[0] == PERIODIC, tables.sides[2] == PERIODIC, *tables.size, crossings, image)
+    image = np.zeros((len(start.gas), *IMAGE.shape), IMAGE.dtype)
+    return law.Periodic(tables.sides[0] == PERIODIC, tables.sides[2] == PERIODIC, *tables.size, image)
 
 
 def _joined(*names: str) -> str:
@@ -50,7 +50,6 @@ EFFECT = EffectSpec(
     check=_check,
     make=_make,
     disc_state=lambda periodic: {IMAGE: periodic.image},
-    begin_epoch=law.begin_epoch,
     samples=(Sample(box=lambda side: _joined(*SIDES)),),
     sample_together=Sample(box=lambda side: _joined("left", "right")),
 )

@@ -55,7 +55,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
         along_y = side >= 2
         if is_piston_side(side, effects.piston):
             best = piston_event(disc, i, side, effects.piston, effects.gravity, best)
-        elif not boundary_crossings_along(effects.periodic, i, along_y)[1]:
+        elif not boundary_crossings_along(effects.periodic, disc, along_y)[1]:
             time = side_time(disc, side, length_y if along_y else length_x, effects.shear, effects)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
@@ -92,7 +92,7 @@ def segment_event(disc, i, segments, effects, best):
                 passage = passage_of(effects.permeable, i, k)
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
-                        images = images_to_wall(effects.periodic, i, (image_x, image_y))
+                        images = images_to_wall(effects.periodic, disc, (image_x, image_y))
                         time = contact_with_wall(disc, i, k, passage, effects, images)
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)
@@ -123,7 +123,7 @@ def pair_event(record, i, j, effects, best):
     """The earlier of the event `best` and the next collision of discs i and j, in all images."""
     for image_x in range(*sheared_range(effects.shear, 3, image_range(effects.periodic, False))):
         for image_y in range(*sheared_range(effects.shear, 1, image_range(effects.periodic, True))):
-            images = images_between(effects.periodic, i, j, (image_x, image_y))
+            images = images_between(effects.periodic, record[i], record[j], (image_x, image_y))
             time = contact_time(
                 record[i], record[j], i, j, effects.gravity, effects.restitution, effects.periodic, images
             )
@@ -176,7 +176,7 @@ def boundary_crossing_event(record, i, periodic, gravity, now, best):
     """
     if periodic is not None:
         for axis in range(2):
-            crossings, is_periodic = boundary_crossings_along(periodic, i, axis == 1)
+            crossings, is_periodic = boundary_crossings_along(periodic, record[i], axis == 1)
             if is_periodic:
                 length = periodic.Ly if axis == 1 else periodic.Lx
                 time, forward = boundary_crossing_along(record[i], axis == 1, crossings, length, gravity, now)
@@ -218,10 +218,13 @@ def next_event(record, box, effects, now):
 
 
 @inline
-def cross_boundary(periodic, i, axis, forward):
-    """Count disc i's crossing of a periodic side along an axis; forward: 1 or -1."""
+def cross_boundary(periodic, disc, axis, forward):
+    """Count a disc's crossing of a periodic side along an axis; forward: 1 or -1."""
     if periodic is not None:
-        periodic.boundary_crossings[i, axis] += np.int32(forward)
+        if axis == 0:
+            disc.crossed_x += np.int16(forward)
+        else:
+            disc.crossed_y += np.int16(forward)
 
 
 @inline
@@ -252,7 +255,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             break
         happened = time
         if what == BOUNDARY_CROSSING:
-            cross_boundary(effects.periodic, i, partner, image_x)
+            cross_boundary(effects.periodic, record[i], partner, image_x)
             continue
         if what == STOP:
             resolve_stop(i, time, effects.piston)
@@ -260,7 +263,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
         disc = record[i]
         clock = epoch_start + time
         if what == DISC:
-            images = images_between(effects.periodic, i, partner, (image_x, image_y))
+            images = images_between(effects.periodic, disc, record[partner], (image_x, image_y))
             resolve_pair(disc, record[partner], i, partner, time, images, effects)
             rows += write_pair(batch, rows, clock, record, ids, i, partner, effects)
             collisions += 1
@@ -268,7 +271,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
             resolve_side(disc, i, partner, time, effects)
             rows += write_hit(batch, rows, clock, i, -1 - partner, WALL, disc, effects)
         elif what == SEGMENT:
-            images = images_to_wall(effects.periodic, i, (image_x, image_y))
+            images = images_to_wall(effects.periodic, disc, (image_x, image_y))
             kind = resolve_segment(disc, i, partner, time, images, effects.segments, effects)
             rows += write_hit(batch, rows, clock, i, -1 - FIRST_SEGMENT - partner, kind, disc, effects)
             take_out(disc, i, kind, effects.absorbing, effects.rotation)

@@ -16,7 +16,7 @@ DISC = np.dtype(
         ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),  # position, length; velocity, length/time
         ("t", "f8"),  # local time of the record, from the start of the epoch
         ("r", "f8"), ("m", "f8"),  # radius, length; mass
-        ("column", "i2"), ("row", "i2"),  # of its cell
+        ("crossed_x", "i2"), ("crossed_y", "i2"),  # boundary crossings since then, see `periodic`
         ("count", "u4"),  # events of this disc in this epoch
     ],
     align=True,
@@ -73,6 +73,7 @@ def reload(disc, own, position, velocity):
     disc.x, disc.y = position[own, 0], position[own, 1]
     disc.vx, disc.vy = velocity[own, 0], velocity[own, 1]
     disc.t = 0.0
+    disc.crossed_x = disc.crossed_y = 0
     disc.count = 0
 
 

@@ -1,8 +1,9 @@
 """Periodic sides of the box: wrapped positions, images and minimum-image distances.
 
-A disc that crosses a periodic side keeps its record: the crossing is counted, and the position is wrapped when the
-record is next moved. In all laws, `images` are the numbers of box lengths (x, y) between two records, or between a
-record and a wall; they matter only where sides are periodic.
+A disc that crosses a periodic side keeps its record. This counts its boundary crossings along x and y since its time,
+crossings to the left and downwards as -1, and the position is wrapped when the record is next moved. In all laws,
+`images` are the numbers of box lengths (x, y) between two records, or between a record and a wall; they matter only
+where sides are periodic.
 """
 
 from typing import NamedTuple
@@ -17,15 +18,13 @@ NO_IMAGES = (0, 0)
 
 
 class Periodic(NamedTuple):
-    """Periodic sides of the box, and each disc's boundary crossings and image.
+    """Periodic sides of the box, and each disc's image.
 
     Attributes:
         x: whether the left and the right side are periodic.
         y: whether the bottom and the top side are periodic.
         Lx: width of the box, length.
         Ly: height of the box, length.
-        boundary_crossings: (N, 2) i4 by id, how often each disc crossed periodic sides along x and y since its record's
-            time; crossings to the left and downwards count as -1.
         image: (N, 2) i4 by id, box lengths to add to a record's position to unwrap it.
         shear: motion of the images along y, for kernels; None without sheared sides. The crossing of a sheared side
             is an event, so that y is false.
@@ -35,7 +34,6 @@ class Periodic(NamedTuple):
     y: bool
     Lx: float
     Ly: float
-    boundary_crossings: np.ndarray
     image: np.ndarray
     shear: Shear | None = None
 
@@ -46,15 +44,10 @@ def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
 
 
 def copy_of(periodic: Periodic | None) -> Periodic | None:
-    """Independent copy of periodic sides, whose counts may change without changing the original; None without any."""
+    """Independent copy of periodic sides, whose images may change without changing the original; None without any."""
     if periodic is None:
         return None
-    return periodic._replace(boundary_crossings=periodic.boundary_crossings.copy(), image=periodic.image.copy())
-
-
-def begin_epoch(periodic: Periodic, time: float, length: float) -> None:
-    """Set all boundary crossings to 0 at the start of an epoch, when all records are at one time."""
-    periodic.boundary_crossings[:] = 0
+    return periodic._replace(image=periodic.image.copy())
 
 
 def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
@@ -63,29 +56,27 @@ def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
 
 
 @inline
-def images_between(periodic, a_id, b_id, image):
+def images_between(periodic, a, b, image):
     """Numbers of box lengths (x, y) between the records of discs a and b; zeros without periodic sides.
 
     image: numbers of box lengths (x, y) between the discs now, both seen inside the box.
     """
     if periodic is not None:
         return (
-            np.int64(periodic.boundary_crossings[U(a_id), 0] - periodic.boundary_crossings[U(b_id), 0] + image[0]),
-            np.int64(periodic.boundary_crossings[U(a_id), 1] - periodic.boundary_crossings[U(b_id), 1] + image[1]),
+            np.int64(a.crossed_x) - np.int64(b.crossed_x) + image[0],
+            np.int64(a.crossed_y) - np.int64(b.crossed_y) + image[1],
         )
     return NO_IMAGES
 
 
 @inline
-def images_to_wall(periodic, own, image):
+def images_to_wall(periodic, disc, image):
     """Numbers of box lengths (x, y) between a disc's record and an image of a wall; zeros without periodic sides.
 
     image: numbers of box lengths (x, y) between the wall and its image, seen from the disc inside the box.
     """
     if periodic is not None:
-        return np.int64(periodic.boundary_crossings[U(own), 0] + image[0]), np.int64(
-            periodic.boundary_crossings[U(own), 1] + image[1]
-        )
+        return np.int64(disc.crossed_x) + image[0], np.int64(disc.crossed_y) + image[1]
     return NO_IMAGES
 
 
@@ -142,16 +133,18 @@ def wrapped(position, length):
 
 @inline
 def wrap(disc, own, periodic):
-    """Wrap a record's position into the box, and update the disc's image and boundary crossings."""
+    """Wrap a record's position into the box, and update its image and boundary crossings."""
     if periodic is not None:
         if periodic.x:
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
-            periodic.image[U(own), 0] += np.int32(boxes)
-            periodic.boundary_crossings[U(own), 0] -= np.int32(boxes)
+            if boxes != 0.0:  # rare, and an image is memory that nothing else has loaded
+                periodic.image[U(own), 0] += np.int32(boxes)
+                disc.crossed_x -= np.int16(boxes)
         if periodic.y:
             disc.y, boxes = wrapped(disc.y, periodic.Ly)
-            periodic.image[U(own), 1] += np.int32(boxes)
-            periodic.boundary_crossings[U(own), 1] -= np.int32(boxes)
+            if boxes != 0.0:
+                periodic.image[U(own), 1] += np.int32(boxes)
+                disc.crossed_y -= np.int16(boxes)
 
 
 @inline
@@ -159,7 +152,7 @@ def enter_opposite_side(disc, own, rows, periodic):
     """Wrap a record that has crossed a sheared side along x; rows: box lengths upwards, 1 or -1."""
     if periodic is not None:
         wrap(disc, own, periodic)
-        periodic.boundary_crossings[U(own), 0] = 0
+        disc.crossed_x = 0
         periodic.image[U(own), 1] += np.int32(rows)
 
 
@@ -175,12 +168,8 @@ def place_in_space(disc, own, periodic):
 
 
 @inline
-def boundary_crossings_along(periodic, own, along_y):
+def boundary_crossings_along(periodic, disc, along_y):
     """Boundary crossings of a disc along an axis since its record's time, and whether that axis is periodic."""
     if periodic is not None:
-        return (
-            (periodic.boundary_crossings[U(own), 1], periodic.y)
-            if along_y
-            else (periodic.boundary_crossings[U(own), 0], periodic.x)
-        )
-    return np.int32(0), False
+        return (disc.crossed_y, periodic.y) if along_y else (disc.crossed_x, periodic.x)
+    return np.int16(0), False

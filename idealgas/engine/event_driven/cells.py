@@ -11,7 +11,13 @@ import numpy as np
 
 from idealgas.jit import aligned, inline
 
-LINK = np.dtype([("next", "i4"), ("previous", "i4")], align=True)  # indices of discs, or -1
+LINK = np.dtype(
+    [
+        ("next", "i4"), ("previous", "i4"),  # indices of discs in the same cell, or -1
+        ("column", "i2"), ("row", "i2"),  # of the cell
+    ],
+    align=True,
+)  # fmt: skip
 MARGIN = 1e-9  # by which a cell is wider than a diameter, relative
 MOST_A_SIDE = 30_000  # columns or rows: a disc's are stored in 16 bits
 OTHER_WORK = 20.0  # discs that could be searched in the time for the rest of an event
@@ -25,7 +31,7 @@ class Cells(NamedTuple):
 
     Attributes:
         head: (rows * columns,) i4, index of the first disc of each cell, or -1.
-        link: (N,) LINK, index of the next and the previous disc in the same cell, or -1.
+        link: (N,) LINK, cell of each disc, and the next and the previous disc in it.
         width: width of a cell, length.
         height: height of a cell, length.
         columns: number of cells along x, ring included.
@@ -153,22 +159,24 @@ def clear_cells(cells, coarse):
 
 
 @inline
-def find_cell(cells, disc):
-    """Store in a disc's record the column and row of the cell of its position, see `cell_of`."""
-    disc.column = min(max(np.int64(disc.x / cells.width) + 1, 1), cells.columns - 2)
-    disc.row = min(max(np.int64(disc.y / cells.height) + 1, 1), cells.rows - 2)
+def find_cell(cells, i, disc):
+    """Store in disc i's link the column and row of the cell of its position, see `cell_of`."""
+    link = cells.link[U(i)]
+    link.column = min(max(np.int64(disc.x / cells.width) + 1, 1), cells.columns - 2)
+    link.row = min(max(np.int64(disc.y / cells.height) + 1, 1), cells.rows - 2)
 
 
 @inline
-def cell_index(cells, disc):
-    """Index of a disc's cell."""
-    return np.int64(disc.row) * cells.columns + np.int64(disc.column)
+def cell_index(cells, i):
+    """Index of disc i's cell."""
+    link = cells.link[U(i)]
+    return np.int64(link.row) * cells.columns + np.int64(link.column)
 
 
 @inline
-def is_in_ring(cells, disc):
+def is_in_ring(cells, link):
     """Whether a disc's cell is one of the ring around the box."""
-    column, row = np.int64(disc.column), np.int64(disc.row)
+    column, row = np.int64(link.column), np.int64(link.row)
     return (column < 1) | (column > cells.columns - 2) | (row < 1) | (row > cells.rows - 2)
 
 

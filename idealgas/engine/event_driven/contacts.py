@@ -18,18 +18,16 @@ from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, noinline
 from idealgas.physics.arc import misses_wall, wall_contact
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
-from idealgas.physics.periodic import NO_IMAGES, images_between
+from idealgas.physics.periodic import images_between
 from idealgas.physics.permeable import passage_of
 
 U = np.uintp
 
 
 @inline
-def images_to(state, k, ids, i, j, periodic):
+def images_to(state, k, record, i, j, periodic):
     """Numbers of box lengths (x, y) between the records of disc i and of disc j, which is candidate k."""
-    if periodic is not None:
-        return images_between(periodic, ids[U(i)], ids[U(j)], image_of(state.images, k))
-    return NO_IMAGES
+    return images_between(periodic, record[U(i)], record[U(j)], image_of(state.images, k))
 
 
 @inline
@@ -41,17 +39,17 @@ def store_images(prediction, images, periodic):
 
 
 @inline
-def store_contact(state, record, ids, i, j, k, time, periodic):
+def store_contact(state, record, i, j, k, time, periodic):
     """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next."""
     prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
-    store_images(prediction, images_to(state, k, ids, i, j, periodic), periodic)
+    store_images(prediction, images_to(state, k, record, i, j, periodic), periodic)
 
 
 @inline
-def filter_colliding(record, ids, state, count, i, effects):
+def filter_colliding(record, state, count, i, effects):
     """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
 
     Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
@@ -66,7 +64,7 @@ def filter_colliding(record, ids, state, count, i, effects):
         candidates[U(count)] = behind
         copy_image(state.images, count, k)
         count += 1 if behind >= 0 else 0
-        images = images_to(state, k, ids, i, j, effects.periodic)
+        images = images_to(state, k, record, i, j, effects.periodic)
         candidates[U(kept)] = j
         copy_image(state.images, kept, k)
         kept += 1 if will_collide(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
@@ -80,14 +78,14 @@ def predict_disc_contact(record, ids, state, count, i, now, effects):
 
     Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
     """
-    count = filter_colliding(record, ids, state, count, i, effects)
+    count = filter_colliding(record, state, count, i, effects)
     disc = record[U(i)]
     best = state.prediction[U(i)].contact
     chosen = -1
     tied = False
     for k in range(count):
         j = state.candidates[U(k)]
-        images = images_to(state, k, ids, i, j, effects.periodic)
+        images = images_to(state, k, record, i, j, effects.periodic)
         time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
         chosen = k if time < best else chosen
@@ -95,7 +93,7 @@ def predict_disc_contact(record, ids, state, count, i, now, effects):
     if tied | (best <= now):
         predict_tied_contact(record, ids, state, count, i, effects)
     elif chosen >= 0:
-        store_contact(state, record, ids, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
+        store_contact(state, record, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
 
 
 @inline
@@ -122,12 +120,12 @@ def predict_tied_contact(record, ids, state, count, i, effects):
     for k in range(count):
         j = state.candidates[U(k)]
         other = np.int64(ids[U(j)])
-        images = images_to(state, k, ids, i, j, effects.periodic)
+        images = images_to(state, k, record, i, j, effects.periodic)
         time = contact_time(
             record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
         )
         if comes_earlier(prediction, ids, own, other, j, time, images):
-            store_contact(state, record, ids, i, j, k, time, effects.periodic)
+            store_contact(state, record, i, j, k, time, effects.periodic)
 
 
 @inline
@@ -142,7 +140,7 @@ def own_walls(walls, coarse_walls, coarse, disc):
 def predict_segment_contact(record, ids, state, i, segments, effects):
     """Store disc i's contact with a wall segment of its cell if that is its earliest."""
     if segments is not None:
-        cell = U(cell_index(own_cells(state.cells, state.coarse, record[U(i)]), record[U(i)]))
+        cell = U(cell_index(own_cells(state.cells, state.coarse, record[U(i)]), i))
         walls = own_walls(state.walls, state.coarse_walls, state.coarse, record[U(i)])
         first, last = walls.start[cell], walls.start[cell + U(1)]
         if first < last:
@@ -156,7 +154,7 @@ def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effec
     """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
     for entry in range(first, last):
         k = walls.item[U(entry)]
-        images = images_to_item(walls, U(entry), own, effects.periodic)
+        images = images_to_item(walls, U(entry), disc, effects.periodic)
         if misses_wall(disc, k, effects.segments, effects.arcs, effects.gravity, effects.periodic, images):
             continue
         passage = passage_of(effects.permeable, own, k)
@@ -179,11 +177,11 @@ def predict_contact(record, ids, state, i, crossing_code, now, effects):
     stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
     """
     if crossing_code < SIDE_OF_BOX:
-        count = new_neighbours(state, record[U(i)], crossing_code, effects.periodic)
+        count = new_neighbours(state, i, record[U(i)], crossing_code, effects.periodic)
     else:
         prediction = state.prediction[U(i)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-        count = neighbours(state, record[U(i)], effects.periodic)
+        count = neighbours(state, i, record[U(i)], effects.periodic)
     predict_disc_contact(record, ids, state, count, i, now, effects)
     predict_segment_contact(record, ids, state, i, effects.segments, effects)

@@ -69,7 +69,7 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
         predict_contact(record, ids, state, i, change, now, effects)
         if change != Repredict.STALE:
             predict_crossing(record, ids, state, i, now, effects)
-    push_to_owner(record, ids, state, i, subdomain)
+    push_to_owner(ids, state, i, subdomain)
     if change > Repredict.STALE:
         offer_to_pistons(record, ids, state, i, effects.piston, effects)
 
@@ -79,7 +79,7 @@ def take_out(record, ids, state, i, kind, absorbing, rotation):
     """Take disc i out of its cell and of the gas if its event of this kind was the last."""
     if absorbing is not None and kind == ESCAPED:
         cells = own_cells(state.cells, state.coarse, record[U(i)])
-        leave(cells, i, cell_index(cells, record[U(i)]))
+        leave(cells, i, cell_index(cells, i))
         leave_gas(record[U(i)], ids[U(i)], rotation)
 
 
@@ -91,10 +91,10 @@ def place(record, ids, position, velocity, state, absorbing):
         reload(record[U(i)], U(ids[U(i)]), position, velocity)
         cells = own_cells(state.cells, state.coarse, record[U(i)])
         if has_left(record[U(i)], absorbing):
-            record[U(i)].column = record[U(i)].row = 1
+            cells.link[U(i)].column = cells.link[U(i)].row = 1
         else:
-            find_cell(cells, record[U(i)])
-            enter(cells, i, cell_index(cells, record[U(i)]))
+            find_cell(cells, i, record[U(i)])
+            enter(cells, i, cell_index(cells, i))
     clear(state.tree)
 
 
@@ -117,7 +117,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         state.unpredicted[0] = False
         predict_pistons(record, ids, state, effects.piston, effects)
         for k in range(record.shape[0]):
-            if if_owned(record, k, subdomain) >= 0:
+            if if_owned(state, k, subdomain) >= 0:
                 predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, subdomain)
     time = 0.0
     change = np.int64(Repredict.START)
@@ -145,7 +145,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         prefetch_next(state.pipeline, record, state, i)
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             change = np.int64(prediction.crossing_code)
-            cross_cell(record, ids, state, i, change, effects.periodic)
+            cross_cell(record, state, i, change, effects.periodic)
             continue
         of_piston = is_piston(i, ids, effects.piston)
         tied = False
@@ -157,7 +157,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             tied = has_other_event(state.tree, state.prediction, i, other, time) and state.tree.tie_time[0] != time
             remove(state.tree, state.prediction, ids, other)
         if tied or not is_resolved(state.tree, time):
-            resolve_ties(state.tree, state.prediction, ids, i, if_owned(record, other, subdomain))
+            resolve_ties(state.tree, state.prediction, ids, i, if_owned(state, other, subdomain))
             change = np.int64(Repredict.STALE)
             i = other = np.int64(-1)
             continue

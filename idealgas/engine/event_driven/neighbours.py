@@ -103,21 +103,22 @@ def append_line(state, count, column, row, along_y, periodic):
 
 
 @inline
-def append_coarse(state, coarse, disc, crossing_code, periodic):
+def append_coarse(state, coarse, i, disc, crossing_code, periodic):
     """Make the first discs near a large disc, or the first large ones near a small disc, the candidates.
 
     crossing_code: direction in which the disc has just crossed into its cell: only those that came within reach then.
     SIDE_OF_BOX for all. Returns their number, 0 without coarse cells.
     """
     if coarse is not None:
-        return append_coarse_cells(state, coarse, disc, crossing_code, periodic)
+        return append_coarse_cells(state, coarse, i, disc, crossing_code, periodic)
     return 0
 
 
 @noinline
-def append_coarse_cells(state, coarse, disc, crossing_code, periodic):
+def append_coarse_cells(state, coarse, i, disc, crossing_code, periodic):
     """Do the work of `append_coarse`: small and large discs are near in adjacent coarse cells, large ones in two."""
-    column, row = np.int64(disc.column), np.int64(disc.row)
+    link = state.cells.link[U(i)]
+    column, row = np.int64(link.column), np.int64(link.row)
     if is_large(coarse, disc):
         count = append_coarse_block(state, coarse, 0, True, column, row, 1, crossing_code, periodic)
         return append_coarse_block(state, coarse, count, False, column, row, 2, crossing_code, periodic)
@@ -168,29 +169,31 @@ def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
 
 
 @inline
-def neighbours(state, disc, periodic):
-    """Make the first discs of a disc's own cell and of the eight around it the candidates; return their number."""
-    count = append_coarse(state, state.coarse, disc, SIDE_OF_BOX, periodic)
+def neighbours(state, i, disc, periodic):
+    """Make the first discs of disc i's own cell and of the eight around it the candidates; return their number."""
+    count = append_coarse(state, state.coarse, i, disc, SIDE_OF_BOX, periodic)
     if is_large(state.coarse, disc):
         return count
-    column = np.int64(disc.column) - 1
-    row = np.int64(disc.row) - 1
+    link = state.cells.link[U(i)]
+    column = np.int64(link.column) - 1
+    row = np.int64(link.row) - 1
     count = append_line(state, count, column, row, False, periodic)
     count = append_line(state, count, column, row + 1, False, periodic)
     return append_line(state, count, column, row + 2, False, periodic)
 
 
 @inline
-def new_neighbours(state, disc, crossing_code, periodic):
-    """Make the first discs of the three cells that came within reach of a disc the candidates; return their number.
+def new_neighbours(state, i, disc, crossing_code, periodic):
+    """Make the first discs of the three cells that came within reach of disc i the candidates; return their number.
 
     crossing_code: direction in which it crossed into its cell, see PREDICTION.
     """
-    count = append_coarse(state, state.coarse, disc, crossing_code, periodic)
+    count = append_coarse(state, state.coarse, i, disc, crossing_code, periodic)
     if is_large(state.coarse, disc):
         return count
     forward = 1 if crossing_code & 1 else -1
     along_y = crossing_code >= 2
-    column = np.int64(disc.column) + (-1 if along_y else forward)
-    row = np.int64(disc.row) + (forward if along_y else -1)
+    link = state.cells.link[U(i)]
+    column = np.int64(link.column) + (-1 if along_y else forward)
+    row = np.int64(link.row) + (forward if along_y else -1)
     return append_line(state, count, column, row, not along_y, periodic)

@@ -54,16 +54,17 @@ def fetch_disc(tree, record, state, i):
 
 
 @inline
-def cell_around(cells, disc):
-    """Index of a disc's cell, also while another thread moves it across a periodic side."""
-    row = min(max(np.int64(disc.row), np.int64(1)), cells.rows - 2)
-    return row * cells.columns + min(max(np.int64(disc.column), np.int64(1)), cells.columns - 2)
+def cell_around(cells, i):
+    """Index of disc i's cell, also while another thread moves it across a periodic side."""
+    link = cells.link[U(i)]
+    row = min(max(np.int64(link.row), np.int64(1)), cells.rows - 2)
+    return row * cells.columns + min(max(np.int64(link.column), np.int64(1)), cells.columns - 2)
 
 
 @inline
-def fetch_cells(cells, disc):
-    """Fetch the cells around a disc, including those that may come within its reach."""
-    cell = cell_around(cells, disc)
+def fetch_cells(cells, i):
+    """Fetch the cells around disc i, including those that may come within its reach."""
+    cell = cell_around(cells, i)
     for row in range(-2, 3):
         prefetch(cells.head, U(cell + row * cells.columns))
 
@@ -86,9 +87,9 @@ def fetch_block(cells, record, cell):
 
 
 @inline
-def fetch_candidates(cells, record, disc, prediction):
-    """Fetch the first discs of the cells that a disc's next event will search."""
-    cell = cell_around(cells, disc)
+def fetch_candidates(cells, record, i, prediction):
+    """Fetch the first discs of the cells that disc i's next event will search."""
+    cell = cell_around(cells, i)
     code = prediction.crossing_code
     if prediction.crossing < prediction.contact and code < SIDE_OF_BOX:
         ahead = 2 if code & 1 else -2  # cells that come within reach
@@ -99,7 +100,7 @@ def fetch_candidates(cells, record, disc, prediction):
     else:
         fetch_block(cells, record, cell)
         if prediction.partner >= 0:
-            fetch_block(cells, record, cell_around(cells, record[U(prediction.partner)]))
+            fetch_block(cells, record, cell_around(cells, prediction.partner))
 
 
 @inline
@@ -110,6 +111,6 @@ def prefetch_next(pipeline, record, state, i):
         first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # a piston is no disc
         pipeline[0], pipeline[1] = second, first
         fetch_disc(state.tree, record, state, first)
-        fetch_cells(state.cells, record[U(second)])
+        fetch_cells(state.cells, second)
         fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))
-        fetch_candidates(state.cells, record, record[U(third)], state.prediction[U(third)])
+        fetch_candidates(state.cells, record, third, state.prediction[U(third)])

@@ -231,14 +231,14 @@ def resolve_ties(tree, predictions, ids, i, j):
 
 
 @njit
-def build(tree, predictions, record, low, high):
+def build(tree, predictions, link, low, high):
     """Build the tree of the discs in the rows of cells from `low` to before `high`, and of no others."""
     clear(tree)
-    for i in range(record.shape[0]):
-        if low <= record[U(i)].row < high:
+    for i in range(link.shape[0]):
+        if low <= link[U(i)].row < high:
             prediction = predictions[U(i)]
             tree.time[U(i)] = min(prediction.contact, prediction.crossing)
-    nodes = record.shape[0]
+    nodes = link.shape[0]
     base = 0
     for level in range(1, tree.start.shape[0]):
         nodes = (nodes + 7) // 8

@@ -49,10 +49,10 @@ def make_wall_cells(
 
 
 @inline
-def images_to_item(walls, entry, own, periodic):
+def images_to_item(walls, entry, disc, periodic):
     """Numbers of box lengths (x, y) between a disc's record and the segment of an entry of its cell."""
     if periodic is not None:
-        return images_to_wall(periodic, own, (walls.image[entry, 0], walls.image[entry, 1]))
+        return images_to_wall(periodic, disc, (walls.image[entry, 0], walls.image[entry, 1]))
     return NO_IMAGES
 
 

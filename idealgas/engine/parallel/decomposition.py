@@ -115,7 +115,7 @@ class DomainDecomposition:
         here = inside(record.x, effects.absorbing)
         fastest = float(np.sqrt((record.vx**2 + record.vy**2).max())) or 1.0
         self._subdomains = make_subdomains(
-            slab_edges(np.bincount(record.row[here], minlength=cells.rows), slabs),
+            slab_edges(np.bincount(cells.link["row"][here], minlength=cells.rows), slabs),
             periodic_axes(effects.periodic)[1],
             workers.tuning.lead * cells.height / fastest,
         )
@@ -186,7 +186,7 @@ class DomainDecomposition:
         """Process events on this thread only."""
         record, ids, _ = self._discs
         if not self._built:
-            _build(self._state, record, 0, self._state.cells.rows)
+            _build(self._state, 0, self._state.cells.rows)
             self._built = True
         before = counters.copy()
         rows, reached = advance_events(
@@ -328,7 +328,7 @@ class _Slab:
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self.effects)
         self._state.unpredicted[0] = unpredicted
-        _build(self._state, record, subdomain.low, subdomain.high)
+        _build(self._state, subdomain.low, subdomain.high)
         self.filled, _ = advance_events(
             record, ids, self._state, self.effects, limits, 0.0, rows, self.counters, subdomain
         )
@@ -336,6 +336,6 @@ class _Slab:
             stress.flush(self.effects.flow)
 
 
-def _build(state: EventDrivenState, record: Any, low: int, high: int) -> None:
+def _build(state: EventDrivenState, low: int, high: int) -> None:
     """Build the scheduler of the discs in the rows from `low` to before `high`; empty if nothing is predicted yet."""
-    build(state.tree, state.prediction, record, low, low if state.unpredicted[0] else high)
+    build(state.tree, state.prediction, state.cells.link, low, low if state.unpredicted[0] else high)

@@ -53,18 +53,18 @@ def next_event(record, ids, state, until, sub):
 
 
 @inline
-def push_to_owner(record, ids, state, i, sub):
+def push_to_owner(ids, state, i, sub):
     """Schedule disc i's next event in the thread that owns the disc."""
-    if sub is not None and not sub.low <= record[U(i)].row < sub.high:
+    if sub is not None and not sub.low <= state.cells.link[U(i)].row < sub.high:
         migrate(ids, state, i, sub)
     else:
         push(state.tree, state.prediction, ids, i)
 
 
 @inline
-def if_owned(record, j, sub):
+def if_owned(state, j, sub):
     """Disc j if this thread owns it, else -1; j: -1 for no disc."""
-    if sub is not None and j >= 0 and not sub.low <= record[U(j)].row < sub.high:
+    if sub is not None and j >= 0 and not sub.low <= state.cells.link[U(j)].row < sub.high:
         return np.int64(-1)
     return j
 
@@ -111,13 +111,13 @@ def is_interior(row, sub):
 
 
 @inline
-def is_halo_event(record, ids, state, i, sub):
+def is_halo_event(ids, state, i, sub):
     """Whether disc i's next event involves rows outside the interior."""
     prediction = state.prediction[U(i)]
     j = prediction.partner
-    if j >= 0 and contact_is_next(prediction, ids, i) and not is_interior(record[U(j)].row, sub):
+    if j >= 0 and contact_is_next(prediction, ids, i) and not is_interior(state.cells.link[U(j)].row, sub):
         return True
-    return not is_interior(record[U(i)].row, sub)
+    return not is_interior(state.cells.link[U(i)].row, sub)
 
 
 @inline
@@ -128,28 +128,28 @@ def halo_of(row, sub):
 
 
 @inline
-def location_of(record, ids, state, i, sub):
+def location_of(ids, state, i, sub):
     """Location of disc i's next event: a sum of LOW, HIGH and FOREIGN; 0 in the interior."""
-    where = halo_of(record[U(i)].row, sub)
+    where = halo_of(state.cells.link[U(i)].row, sub)
     prediction = state.prediction[U(i)]
     j = prediction.partner
     if j >= 0 and contact_is_next(prediction, ids, i):
-        row = record[U(j)].row
+        row = state.cells.link[U(j)].row
         where |= halo_of(row, sub) if sub.low <= row < sub.high else FOREIGN
     return where
 
 
 @inline
-def depth_of(record, ids, state, i, where, sub):
+def depth_of(ids, state, i, where, sub):
     """Largest distance, in rows, from the interfaces of a halo event to the rows of this slab that it writes."""
-    row = np.int64(record[U(i)].row)
+    row = np.int64(state.cells.link[U(i)].row)
     first = last = row
     prediction = state.prediction[U(i)]
     if contact_is_next(prediction, ids, i):
         j = prediction.partner
-        if j >= 0 and sub.low <= record[U(j)].row < sub.high:
-            first = min(first, np.int64(record[U(j)].row))
-            last = max(last, np.int64(record[U(j)].row))
+        if j >= 0 and sub.low <= state.cells.link[U(j)].row < sub.high:
+            first = min(first, np.int64(state.cells.link[U(j)].row))
+            last = max(last, np.int64(state.cells.link[U(j)].row))
     elif prediction.crossing_code == 2:
         first -= 1
     elif prediction.crossing_code == 3:
@@ -168,11 +168,11 @@ def is_misplaced(record, state, i, where, sub):
     partner = record[U(prediction.partner)]
     if partner.count != prediction.partner_count:
         return False
-    row = np.int64(record[U(i)].row)
+    row, opposite = np.int64(state.cells.link[U(i)].row), state.cells.link[U(prediction.partner)].row
     below = sub.low - 1 if sub.low > 1 else state.cells.rows - 2
     above = sub.high if sub.high < state.cells.rows - 1 else 1
-    at_low = where & HIGH == 0 and row == sub.low and partner.row == below
-    at_high = where & LOW == 0 and row == sub.high - 1 and partner.row == above
+    at_low = where & HIGH == 0 and row == sub.low and opposite == below
+    at_high = where & LOW == 0 and row == sub.high - 1 and opposite == above
     return not (at_low or at_high)
 
 
@@ -217,7 +217,7 @@ def earliest_clock(sub):
 
 
 @inline
-def is_in_order(record, ids, state, i, time, where, sub):
+def is_in_order(ids, state, i, time, where, sub):
     """Whether no event that had to wait for disc i's event has happened yet; notes that disc i's happens now."""
     private = sub.private[0]
     if not where & (LOW | HIGH):
@@ -225,7 +225,7 @@ def is_in_order(record, ids, state, i, time, where, sub):
             return False
         private.interior = max(private.interior, time)
         return True
-    if time <= private.message_interior and depth_of(record, ids, state, i, where, sub) > SAFE_DEPTH:
+    if time <= private.message_interior and depth_of(ids, state, i, where, sub) > SAFE_DEPTH:
         return False
     for side in (LOW, HIGH):
         if where & side:
@@ -259,14 +259,14 @@ def may_happen(record, ids, state, i, time, sub):
     """Whether disc i's event, the next of this slab, may happen now: 1 with its interfaces locked, 0, or ABORTED."""
     private = sub.private[0]
     where = 0
-    if is_halo_event(record, ids, state, i, sub):
-        where = location_of(record, ids, state, i, sub)
+    if is_halo_event(ids, state, i, sub):
+        where = location_of(ids, state, i, sub)
         store(sub.words, clock_word(sub.rank) + 2, i)
         store(sub.times, clock_word(sub.rank) + 1, time)
         publish_clock(sub, time)
         if precedes_neighbours(state, i, time, where, sub) == 0 or not try_lock(sub, where):
             return 0
-        first = 0 if has_message(sub) or location_of(record, ids, state, i, sub) != where else 1
+        first = 0 if has_message(sub) or location_of(ids, state, i, sub) != where else 1
         if first == 1:
             first = precedes_neighbours(state, i, time, where, sub)
         if first == 2:
@@ -284,7 +284,7 @@ def may_happen(record, ids, state, i, time, sub):
                 return 0
     if not clock_advances(time, sub):
         return abort(sub, CLOCK)
-    if not is_in_order(record, ids, state, i, time, where, sub):
+    if not is_in_order(ids, state, i, time, where, sub):
         return abort(sub, VIOLATION)
     return 1
 
