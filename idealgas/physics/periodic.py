@@ -135,16 +135,14 @@ def wrapped(position, length):
 def wrap(disc, own, periodic):
     """Wrap a record's position into the box, and update its image and boundary crossings."""
     if periodic is not None:
-        if periodic.x:
+        if periodic.x and not 0.0 < disc.x < periodic.Lx:  # rare, and it takes a division
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
-            if boxes != 0.0:  # rare, and an image is memory that nothing else has loaded
-                periodic.image[U(own), 0] += np.int32(boxes)
-                disc.crossed_x -= np.int16(boxes)
-        if periodic.y:
+            periodic.image[U(own), 0] += np.int32(boxes)
+            disc.crossed_x -= np.int16(boxes)
+        if periodic.y and not 0.0 < disc.y < periodic.Ly:
             disc.y, boxes = wrapped(disc.y, periodic.Ly)
-            if boxes != 0.0:
-                periodic.image[U(own), 1] += np.int32(boxes)
-                disc.crossed_y -= np.int16(boxes)
+            periodic.image[U(own), 1] += np.int32(boxes)
+            disc.crossed_y -= np.int16(boxes)
 
 
 @inline

@@ -86,7 +86,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
         first.x, first.a, first.m, first.outward, first.wall = 4.2, 0.0, 3.0, 0.0, FIRST_SEGMENT + len(walls)
     own: dict[str, Any] = {
         "gravity": lambda: Gravity(0.1, -0.4),
-        "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
+        "periodic": lambda: Periodic(not moves, moves, *BOX, np.zeros((n, 2), np.int32)),
         "segments": lambda: make_segments(table[:, :2], table[:, 2:4], table[:, 4] > 0),
         "permeable": lambda: Permeable(gas.species.copy(), passage),
         "absorbing": lambda: np.arange(len(walls)) == 1,

@@ -162,7 +162,7 @@ def wind(seed: int) -> tuple[Gas, Effects]:
     up[:each] += draw.normal(0.0, 2.0, each)
     none = np.zeros((len(x), 2), np.int32)
     gas = gas_of((width, height), np.column_stack((x, y)), np.column_stack((0 * up, up)), 0.4)
-    return gas, Effects(periodic=Periodic(False, True, width, height, none, none.copy()))
+    return gas, Effects(periodic=Periodic(False, True, width, height, none))
 
 
 def stop_of(draw: np.random.Generator) -> Stop:

@@ -56,7 +56,7 @@ def _run(radius, box, periodic, random, collisions, warm_up, lattice):
     _, species = np.unique(radius, return_inverse=True)
     names = tuple(f"{k}" for k in range(species.max() + 1))
     gas = Gas(box, position, velocity, radius, np.ones(n), species.astype(np.uint16), names)
-    images = Periodic(*periodic, *box, *np.zeros((2, n, 2), np.int32)) if any(periodic) else None
+    images = Periodic(*periodic, *box, np.zeros((n, 2), np.int32)) if any(periodic) else None
     simulation = Simulation(gas, EventDriven(), Effects(periodic=images))
     for _ in _rows(simulation, warm_up * n // 2, any(periodic)):
         pass

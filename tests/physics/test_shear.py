@@ -94,7 +94,7 @@ def simulation_of(box, rate, position, velocity, radius, mass=1.0, start=0.0):
     """A gas between sheared sides, from a time on."""
     gas = gas_of(box, position, velocity, radius, mass)
     none = np.zeros((len(gas), 2), np.int32)
-    sides = Periodic(True, False, *box, none, none.copy())
+    sides = Periodic(True, False, *box, none)
     effects = Effects(periodic=sides, shear=make_shear(rate, box), wall_energy=make_sums([1.0] * 4))
     return Simulation(gas, EventDriven(), effects, start)
 

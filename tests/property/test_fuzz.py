@@ -75,7 +75,7 @@ def fresh_effects(scene: Scene, gas: Gas) -> Effects:
     beyond[0].x = beyond[0].length = math.inf
     beyond[0].wall, beyond[0].outward = -1, 1.0
     neutral = Effects(
-        periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32), np.zeros((n, 2), np.int32)),
+        periodic=Periodic(False, False, *gas.box, np.zeros((n, 2), np.int32)),
         segments=aligned(0, SEGMENT),
         arcs=aligned(walls, ARC),
         absorbing=np.zeros(walls, bool),

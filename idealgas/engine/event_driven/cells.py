@@ -135,6 +135,12 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
 
 
 @inline
+def has_coarse(coarse):
+    """Whether some discs are in coarse cells."""
+    return coarse is not None
+
+
+@inline
 def is_large(coarse, disc):
     """Whether a disc is in coarse cells."""
     if coarse is not None:

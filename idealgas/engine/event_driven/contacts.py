@@ -18,16 +18,19 @@ from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, noinline
 from idealgas.physics.arc import misses_wall, wall_contact
 from idealgas.physics.disc_disc import collision_time, contact_time, will_collide
-from idealgas.physics.periodic import images_between
+from idealgas.physics.periodic import NO_IMAGES, images_between
 from idealgas.physics.permeable import passage_of
 
 U = np.uintp
 
 
 @inline
-def images_to(state, k, record, i, j, periodic):
+def images_to(state, k, has_images, record, i, j, periodic):
     """Numbers of box lengths (x, y) between the records of disc i and of disc j, which is candidate k."""
-    return images_between(periodic, record[U(i)], record[U(j)], image_of(state.images, k))
+    if periodic is not None:
+        image = image_of(state.images, k) if has_images else NO_IMAGES
+        return images_between(periodic, record[U(i)], record[U(j)], image)
+    return NO_IMAGES
 
 
 @inline
@@ -39,17 +42,17 @@ def store_images(prediction, images, periodic):
 
 
 @inline
-def store_contact(state, record, i, j, k, time, periodic):
+def store_contact(state, record, i, j, k, has_images, time, periodic):
     """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next."""
     prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
-    store_images(prediction, images_to(state, k, record, i, j, periodic), periodic)
+    store_images(prediction, images_to(state, k, has_images, record, i, j, periodic), periodic)
 
 
 @inline
-def filter_colliding(record, state, count, i, effects):
+def filter_colliding(record, state, count, has_images, i, effects):
     """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
 
     Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
@@ -62,38 +65,38 @@ def filter_colliding(record, state, count, i, effects):
         j = candidates[U(k)]
         behind = state.cells.link[U(j)].next
         candidates[U(count)] = behind
-        copy_image(state.images, count, k)
+        copy_image(state.images, count, k, has_images)
         count += 1 if behind >= 0 else 0
-        images = images_to(state, k, record, i, j, effects.periodic)
+        images = images_to(state, k, has_images, record, i, j, effects.periodic)
         candidates[U(kept)] = j
-        copy_image(state.images, kept, k)
+        copy_image(state.images, kept, k, has_images)
         kept += 1 if will_collide(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
         k += 1
     return kept
 
 
 @inline
-def predict_disc_contact(record, ids, state, count, i, now, effects):
+def predict_disc_contact(record, ids, state, count, has_images, i, now, effects):
     """Store disc i's earliest contact among the candidates and the further discs of their cells.
 
     Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
     """
-    count = filter_colliding(record, state, count, i, effects)
+    count = filter_colliding(record, state, count, has_images, i, effects)
     disc = record[U(i)]
     best = state.prediction[U(i)].contact
     chosen = -1
     tied = False
     for k in range(count):
         j = state.candidates[U(k)]
-        images = images_to(state, k, record, i, j, effects.periodic)
+        images = images_to(state, k, has_images, record, i, j, effects.periodic)
         time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
         tied |= time == best
         chosen = k if time < best else chosen
         best = min(time, best)
     if tied | (best <= now):
-        predict_tied_contact(record, ids, state, count, i, effects)
+        predict_tied_contact(record, ids, state, count, has_images, i, effects)
     elif chosen >= 0:
-        store_contact(state, record, i, state.candidates[U(chosen)], chosen, best, effects.periodic)
+        store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
 
 
 @inline
@@ -110,7 +113,7 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
 
 
 @noinline
-def predict_tied_contact(record, ids, state, count, i, effects):
+def predict_tied_contact(record, ids, state, count, has_images, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
 
     It does the work of `predict_disc_contact`, and leaves out collisions that would change no digit of a velocity.
@@ -120,12 +123,12 @@ def predict_tied_contact(record, ids, state, count, i, effects):
     for k in range(count):
         j = state.candidates[U(k)]
         other = np.int64(ids[U(j)])
-        images = images_to(state, k, record, i, j, effects.periodic)
+        images = images_to(state, k, has_images, record, i, j, effects.periodic)
         time = contact_time(
             record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
         )
         if comes_earlier(prediction, ids, own, other, j, time, images):
-            store_contact(state, record, i, j, k, time, effects.periodic)
+            store_contact(state, record, i, j, k, has_images, time, effects.periodic)
 
 
 @inline
@@ -177,11 +180,11 @@ def predict_contact(record, ids, state, i, crossing_code, now, effects):
     stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
     """
     if crossing_code < SIDE_OF_BOX:
-        count = new_neighbours(state, i, record[U(i)], crossing_code, effects.periodic)
+        count, has_images = new_neighbours(state, i, record[U(i)], crossing_code, effects.periodic)
     else:
         prediction = state.prediction[U(i)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-        count = neighbours(state, i, record[U(i)], effects.periodic)
-    predict_disc_contact(record, ids, state, count, i, now, effects)
+        count, has_images = neighbours(state, i, record[U(i)], effects.periodic)
+    predict_disc_contact(record, ids, state, count, has_images, i, now, effects)
     predict_segment_contact(record, ids, state, i, effects.segments, effects)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import is_large
+from idealgas.engine.event_driven.cells import has_coarse, is_large
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 from idealgas.engine.event_driven.state import record_image
 from idealgas.jit import inline, noinline
@@ -75,28 +75,23 @@ def append_sheared_row(cells, candidates, images, count, column, along_y, image_
 
 
 @inline
-def is_inside(cells, column, row, along_y):
-    """Whether three cells in a row or column, from (column, row) on, are all in the box."""
-    last_column = column + (0 if along_y else 2)
-    last_row = row + (2 if along_y else 0)
-    return (column >= 1) & (row >= 1) & (last_column < cells.columns - 1) & (last_row < cells.rows - 1)
+def is_inside(cells, column, row, columns, rows):
+    """Whether a block of cells, from (column, row) on, is all in the box; columns, rows: their numbers."""
+    return (column >= 1) & (row >= 1) & (column + columns < cells.columns) & (row + rows < cells.rows)
 
 
 @inline
-def append_line(state, count, column, row, along_y, periodic):
+def append_line(state, count, column, row, along_y):
     """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
 
-    Returns the new number of candidates.
+    Returns the new number of candidates. The cells are in the box or its ring; no image is recorded.
     """
     cells = state.cells
-    if periodic is not None and not is_inside(cells, column, row, along_y):
-        return append_wrapped_line(cells, state.candidates, state.images, count, column, row, along_y, periodic)
     stride = cells.columns if along_y else 1
     cell = row * cells.columns + column
     for _ in range(3):
         j = cells.head[U(cell)]
         state.candidates[U(count)] = j
-        record_image(state.images, count, 0, 0)
         count += 1 if j >= 0 else 0
         cell += stride
     return count
@@ -170,30 +165,43 @@ def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
 
 @inline
 def neighbours(state, i, disc, periodic):
-    """Make the first discs of disc i's own cell and of the eight around it the candidates; return their number."""
+    """Make the first discs of disc i's own cell and of the eight around it the candidates.
+
+    Returns their number, and whether their images are recorded: else all are seen as they are in the box.
+    """
     count = append_coarse(state, state.coarse, i, disc, SIDE_OF_BOX, periodic)
     if is_large(state.coarse, disc):
-        return count
+        return count, True
     link = state.cells.link[U(i)]
     column = np.int64(link.column) - 1
     row = np.int64(link.row) - 1
-    count = append_line(state, count, column, row, False, periodic)
-    count = append_line(state, count, column, row + 1, False, periodic)
-    return append_line(state, count, column, row + 2, False, periodic)
+    if periodic is not None and (has_coarse(state.coarse) or not is_inside(state.cells, column, row, 3, 3)):
+        for line in range(3):
+            count = append_wrapped_line(
+                state.cells, state.candidates, state.images, count, column, row + line, False, periodic
+            )
+        return count, True
+    count = append_line(state, count, column, row, False)
+    count = append_line(state, count, column, row + 1, False)
+    return append_line(state, count, column, row + 2, False), False
 
 
 @inline
 def new_neighbours(state, i, disc, crossing_code, periodic):
-    """Make the first discs of the three cells that came within reach of disc i the candidates; return their number.
+    """Make the first discs of the three cells that came within reach of disc i the candidates; see `neighbours`.
 
     crossing_code: direction in which it crossed into its cell, see PREDICTION.
     """
     count = append_coarse(state, state.coarse, i, disc, crossing_code, periodic)
     if is_large(state.coarse, disc):
-        return count
+        return count, True
     forward = 1 if crossing_code & 1 else -1
     along_y = crossing_code >= 2
     link = state.cells.link[U(i)]
     column = np.int64(link.column) + (-1 if along_y else forward)
     row = np.int64(link.row) + (forward if along_y else -1)
-    return append_line(state, count, column, row, not along_y, periodic)
+    columns, rows = (3, 1) if along_y else (1, 3)
+    if periodic is not None and (has_coarse(state.coarse) or not is_inside(state.cells, column, row, columns, rows)):
+        cells, images = state.cells, state.images
+        return append_wrapped_line(cells, state.candidates, images, count, column, row, not along_y, periodic), True
+    return append_line(state, count, column, row, not along_y), False

@@ -74,9 +74,9 @@ def record_image(images, k, x, y):
 
 
 @inline
-def copy_image(images, to, k):
-    """Store for candidate `to` the image in which candidate k is seen, where sides are periodic."""
-    if images is not None:
+def copy_image(images, to, k, has_images):
+    """Store for candidate `to` the image in which candidate k is seen, where sides are periodic and it has one."""
+    if images is not None and has_images:
         images[np.uintp(to)] = images[np.uintp(k)]
 
 

@@ -31,10 +31,10 @@ def some_gas(n=60, seed=1, radius=0.25, box=BOX):
 
 
 def effects_of(n=60, gravity=False, periodic=(), box=BOX):
-    images = np.zeros((2, n, 2), np.int32)
+    image = np.zeros((n, 2), np.int32)
     return Effects(
         gravity=Gravity(0.1, -0.5) if gravity else None,
-        periodic=Periodic("x" in periodic, "y" in periodic, *box, *images) if periodic else None,
+        periodic=Periodic("x" in periodic, "y" in periodic, *box, image) if periodic else None,
     )
 
 

@@ -28,7 +28,14 @@ LX, LY = 7.3, 4.1
 
 
 def sides(x=True, y=True, discs=2):
-    return Periodic(x, y, LX, LY, np.zeros((discs, 2), np.int32), np.zeros((discs, 2), np.int32))
+    return Periodic(x, y, LX, LY, np.zeros((discs, 2), np.int32))
+
+
+def crossed(across, up, **state):
+    """A record that has counted boundary crossings along x and y."""
+    disc = body(**state)
+    disc.crossed_x, disc.crossed_y = np.int16(across), np.int16(up)
+    return disc
 
 
 def test_the_nearest_image():
@@ -74,31 +81,39 @@ def test_wrapping():
 
 
 def test_a_disc_is_put_back_and_counted():
-    periodic, disc = sides(y=False), body(x=-0.5, y=-0.5)
-    periodic.boundary_crossings[1] = (-1, 0)  # it went through the left side since its record
+    periodic, disc = sides(y=False), crossed(-1, 0, x=-0.5, y=-0.5)  # it went through the left side since its record
     wrap(disc, 1, periodic)
     assert (disc.x, disc.y) == (LX - 0.5, -0.5)
     assert periodic.image.tolist() == [[0, 0], [-1, 0]]
-    assert not periodic.boundary_crossings.any()
+    assert (disc.crossed_x, disc.crossed_y) == (0, 0)
     untouched = body(x=99.0, y=99.0)
     wrap(untouched, 0, None)
     assert (untouched.x, untouched.y) == (99.0, 99.0)
 
 
+@pytest.mark.parametrize("x", [0.0, -0.0, LX, np.nextafter(LX, 0), np.nextafter(LX, 9), 5e-324, -5e-324, 3 * LX])
+def test_at_a_side_a_disc_is_put_where_wrapping_puts_it(x):
+    """Only a disc beyond the open interval between the sides is wrapped: for one inside, that changes no bit."""
+    periodic, disc = sides(), crossed(0, 0, x=x, y=1.0)
+    wrap(disc, 0, periodic)
+    place, boxes = wrapped(x, LX)
+    assert np.float64(disc.x).tobytes() == np.float64(place).tobytes()
+    assert (disc.crossed_x, periodic.image[0, 0]) == (-boxes, boxes)
+
+
 def test_images_are_counted_from_the_records():
-    periodic = sides()
-    periodic.boundary_crossings[:] = [[2, -1], [0, 3]]
-    assert images_between(periodic, 0, 1, (1, 0)) == (3, -4)
-    assert images_between(periodic, 1, 0, (0, 0)) == (-2, 4)
-    assert images_to_wall(periodic, 1, (-1, 1)) == (-1, 4)
+    periodic, a, b = sides(), crossed(2, -1), crossed(0, 3)
+    assert images_between(periodic, a, b, (1, 0)) == (3, -4)
+    assert images_between(periodic, b, a, (0, 0)) == (-2, 4)
+    assert images_to_wall(periodic, b, (-1, 1)) == (-1, 4)
     assert shift_by_images(1.0, 2.0, periodic, (1, -2)) == (1.0 - LX, 2.0 + 2 * LY)
-    assert [boundary_crossings_along(periodic, 0, along_y) for along_y in (False, True)] == [(2, True), (-1, True)]
+    assert [boundary_crossings_along(periodic, a, along_y) for along_y in (False, True)] == [(2, True), (-1, True)]
 
 
 def test_without_joined_sides_there_are_none():
-    assert images_between(None, 0, 1, (1, 0)) == images_to_wall(None, 0, (1, 0)) == NO_IMAGES
+    assert images_between(None, body(), body(), (1, 0)) == images_to_wall(None, body(), (1, 0)) == NO_IMAGES
     assert shift_by_images(1.0, 2.0, None, (1, 1)) == (1.0, 2.0)
-    assert boundary_crossings_along(None, 0, True) == (0, False)
+    assert boundary_crossings_along(None, body(), True) == (0, False)
     assert periodic_axes(None) == (False, False)
     assert periodic_axes(sides(x=False)) == (False, True)
     assert [is_periodic(sides(x=False), along_y) for along_y in (False, True)] == [False, True]
