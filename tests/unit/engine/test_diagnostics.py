@@ -38,6 +38,6 @@ def test_the_deepest_overlap_is_that_of_all_pairs(periodic, ahead, seed):
     gas = Gas((WIDTH, HEIGHT), position, np.zeros((60, 2)), radius, np.ones(60), np.zeros(60, np.uint16), ("gas",))
     shear = Shear(1.0, HEIGHT, WIDTH, HEIGHT, np.array([ahead, ahead])) if ahead else None
     counts = np.zeros((60, 2), np.int32)
-    sides = Periodic(periodic[0], periodic[1] and not ahead, WIDTH, HEIGHT, counts, counts, shear)
+    sides = Periodic(periodic[0], periodic[1] and not ahead, WIDTH, HEIGHT, counts, shear)
     expected = max(all_overlaps(gas, periodic, ahead, here))
     assert deepest_overlap(gas, sides if any(periodic) else None, absorbing) == pytest.approx(expected, abs=1e-14)

@@ -63,7 +63,7 @@ def accounts(effects):
 
 
 def box(**fields):
-    return Periodic(True, False, 10.0, 8.0, np.zeros((2, 2), np.int32), np.zeros((2, 2), np.int32), **fields)
+    return Periodic(True, False, 10.0, 8.0, np.zeros((2, 2), np.int32), **fields)
 
 
 def segments():
