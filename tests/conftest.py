@@ -1,4 +1,4 @@
-"""Case files as parameters: `invalid_case` and those of FOLDERS go through the folders of scenes.
+"""What is not here is deselected; case files as parameters: `invalid_case` and those of FOLDERS go through folders.
 
 Hypothesis sets no deadlines: the first example of a test may have to compile.
 """
@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from helpers.needs import NEEDS, has_all, is_here
 from hypothesis import settings
 
 from idealgas.jit import EntryPoint
@@ -49,6 +50,20 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         if name in metafunc.fixturenames:
             paths = sorted(folder.glob("*.toml"))
             metafunc.parametrize(name, paths, ids=[path.stem for path in paths])
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the tests that need what is not here."""
+    absent = [item for item in items if not has_all(item)]
+    config.hook.pytest_deselected(items=absent)
+    items[:] = [item for item in items if item not in set(absent)]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Name in one line what is deselected."""
+    lacking = ", ".join(name for name in NEEDS if not is_here(name))
+    chosen = terminalreporter.config.option.markexpr
+    terminalreporter.write_line(f"Selected: {chosen or 'all tests'}; deselected: those that need {lacking}.")
 
 
 @pytest.fixture

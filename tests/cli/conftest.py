@@ -1,8 +1,9 @@
 """Report pages, and the browser that opens them."""
 
 import pytest
+from helpers.needs import program
 from helpers.report_pages import FULL, QUICK, SCENES
-from helpers.support import called, program
+from helpers.support import called
 from selenium import webdriver
 
 from idealgas.analysis import registry

@@ -247,7 +247,7 @@ def test_a_reader_that_goes_ends_the_program_quietly(arguments, log):
 FULL = "standard output: cannot be written: No space left on device"
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+@pytest.mark.needs("/dev/full")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize(
     "arguments",
@@ -271,7 +271,7 @@ def test_output_to_a_full_disk_is_one_line(arguments, unbuffered, log):
     assert (done.returncode, done.stderr) == (1, f"{FULL}\n")
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+@pytest.mark.needs("/dev/full")
 def test_a_stream_to_a_full_disk_ends_the_run_which_can_be_resumed(log):
     run = ("run", "scene.toml", "-o", "full.h5", "--stream", "--set", "run.collisions_per_disc=20000")
     with open("/dev/full", "w") as full:

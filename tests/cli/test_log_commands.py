@@ -139,7 +139,6 @@ def test_frames_as_csv_have_radius_and_mass_and_gsd_needs_no_format(copy, tmp_pa
     head, *rows = (tmp_path / "gas.csv").read_text().splitlines()
     assert head == '"time","disc","species","radius","mass","x","y","vx","vy"'
     assert len(rows) == 2000
-    pytest.importorskip("gsd")
     assert output_of("export", copy, "--frames", 2, "-o", tmp_path / "x.gsd") == f"{tmp_path / 'x.gsd'}: 2 frames\n"
 
 

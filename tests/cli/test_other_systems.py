@@ -10,7 +10,7 @@ from helpers.support import ROOT
 
 from idealgas.log import open_log
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="emulates another system on Linux")
+pytestmark = pytest.mark.needs("Linux")  # emulates another system
 
 START = "from helpers.foreign_system import install; install()"
 NOT_WINDOWS = "from idealgas import system; system.MOVES_OPEN_FILES = False"

@@ -194,7 +194,6 @@ def test_code_of_the_log_runs(folder):
     assert "1,000 discs" in read
     assert read.endswith(" wall hits\n")
     assert "mean kinetic energy" in run_python(flights, LOG)
-    pytest.importorskip("pandas", reason='no pandas: .venv/bin/pip install -e ".[notebook]"')
     assert "disc" in run_python(frame, LOG)
 
 

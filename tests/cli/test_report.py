@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.needs import AXE
 from helpers.report_pages import FULL, PLAIN, picture, seek
-from helpers.support import ROOT, called, error_of
+from helpers.support import called, error_of
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -18,14 +19,6 @@ from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 pytestmark = pytest.mark.slow
-
-
-def rules_of_axe():
-    """The program axe-core; skips the test where npm has not installed it."""
-    path = ROOT / "tests" / "dev" / "node_modules" / "axe-core" / "axe.min.js"
-    if not path.exists():
-        pytest.skip("no axe-core: npm install --prefix tests/dev")
-    return path.read_text(encoding="utf-8")
 
 
 def test_everything_is_reached_with_the_tab_key(opened):
@@ -91,12 +84,13 @@ def test_nothing_is_cut_off_or_wider_than_its_column(sized, name, width):
     assert browser.execute_script(beyond) == []
 
 
+@pytest.mark.needs("axe-core")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [360, 800, 1600])
 def test_everyone_can_read_it(sized, width, scheme):
     """Nothing to mend by the rules of axe-core, contrast of at least 4.5:1 among them."""
     browser = sized("piston", width, scheme)
-    browser.execute_script(rules_of_axe())
+    browser.execute_script(AXE.read_text(encoding="utf-8"))
     found = browser.execute_async_script("""
         const done = arguments[0];
         axe.run({ resultTypes: ["violations"] }).then(({ violations }) => done(violations

@@ -39,7 +39,6 @@ def test_code_of_a_page_runs(tmp_path, monkeypatch, page):
 @pytest.mark.slow
 def test_mean_free_paths_from_flights_are_those_of_the_pressure(tmp_path, monkeypatch):
     """The page gives the means over flights that one might take instead."""
-    pytest.importorskip("pandas", reason='no pandas: .venv/bin/pip install -e ".[notebook]"')
     monkeypatch.chdir(tmp_path)
     page = (SITE / "pages" / "how-to.md").read_text(encoding="utf-8")
     (program,) = (text for _, text in FENCE.findall(page) if "ends_in_collision" in text)
@@ -119,10 +118,10 @@ def test_a_release_requires_the_address_of_its_repository(tmp_path, address, cod
     assert done.stderr == needed * code
 
 
+@pytest.mark.needs("mkdocs")
 @pytest.mark.slow
 def test_the_site_is_built_without_a_warning(tmp_path):
     """Its pages load no file of another server, and the theme does not ask one for the stars of a repository."""
-    pytest.importorskip("mkdocstrings_handlers.python", reason="pip install -r .github/site/requirements.txt")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", SITE / "mkdocs.yml", "-d", tmp_path / "site"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

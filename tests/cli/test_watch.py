@@ -8,8 +8,9 @@ from contextlib import contextmanager
 
 import psutil
 import pytest
+from helpers.needs import posix
 from helpers.report_pages import assert_positions, picture
-from helpers.support import ended, error_of, posix, started
+from helpers.support import ended, error_of, started
 from selenium.webdriver.support.ui import WebDriverWait
 
 from idealgas.log import open_log

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
@@ -22,29 +21,8 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 
-linux = pytest.mark.skipif(sys.platform != "linux", reason="replaces functions of Linux's C library, or mounts a tmpfs")
-posix = pytest.mark.skipif(os.name != "posix", reason="needs files, links, users or processes of POSIX systems")
-
 ROOT = Path(__file__).parents[2]
 IDEALGAS = shutil.which("idealgas", path=str(Path(sys.executable).parent)) or "idealgas"
-
-
-PACKAGES = {
-    "chromium": "chromium",
-    "chromedriver": "chromium-driver",
-    "h5dump": "hdf5-tools",
-    "ffmpeg": "ffmpeg",
-    "cc": "gcc",
-}
-"""Programs beside Python that tests use, and what Debian packs them in."""
-
-
-def program(name: str) -> str:
-    """Its path; skips the test where it is not installed, or fails it where ALL_PROGRAMS is set."""
-    path = shutil.which(name)
-    if path is None:
-        (pytest.fail if os.environ.get("ALL_PROGRAMS") else pytest.skip)(f"no {name}: apt-get install {PACKAGES[name]}")
-    return path
 
 
 def gas_of(box, position, velocity, radius, mass=1.0) -> Gas:
@@ -156,14 +134,13 @@ def ended(child: subprocess.Popen[str]) -> tuple[int, str]:
 
 @contextlib.contextmanager
 def small_disk(folder: Path, kilobytes: int) -> Iterator[Callable[[int], None]]:
-    """Mount a small disk at a new folder, and yield a function that resizes it; skip where only root may mount."""
+    """Mount a small disk at a new folder, and yield a function that resizes it."""
 
     def mount(options: str) -> subprocess.CompletedProcess[bytes]:
         return subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", folder], capture_output=True)
 
     folder.mkdir()
-    if mount(f"size={kilobytes}k").returncode:
-        pytest.skip("only root may mount a disk")
+    mount(f"size={kilobytes}k").check_returncode()
     try:
         yield lambda size: mount(f"remount,size={size}k").check_returncode()
     finally:

@@ -173,8 +173,6 @@ def test_a_start_after_a_species_has_left(tmp_path):
 
 @pytest.mark.parametrize("kind", ["csv", "extxyz", "gsd"])
 def test_a_start_from_a_frame_has_those_that_are_left(two, tmp_path, kind):
-    if kind == "gsd":
-        pytest.importorskip("gsd")
     path = tmp_path / f"frames.{kind}"
     output_of("export", two.path, "--format", kind, "--frames", "2", "-o", path)
     columns, overlap = read_state(path, 10.0)

@@ -2,7 +2,6 @@
 
 from itertools import combinations
 
-import numba
 import numpy as np
 import pytest
 from helpers.effect_samples import NAMES, allowed, log_of, make_effects, make_gas
@@ -21,10 +20,6 @@ ALL_PERIODIC = set(NAMES) - {"piston", "inner", "shear"}
 ALL_PISTONS = set(NAMES) - {"periodic", "shear"}
 SETS += [ALL, ALL_PERIODIC, ALL_PISTONS]
 
-interpreted_only = pytest.mark.skipif(
-    not numba.config.DISABLE_JIT, reason="would compile for each set: NUMBA_DISABLE_JIT=1 pytest -m interpreted"
-)
-
 
 def assert_same_log(names: set[str], seed: int, events: int, shape=(4, 3)) -> None:
     gas = make_gas(seed, *shape)
@@ -35,7 +30,7 @@ def assert_same_log(names: set[str], seed: int, events: int, shape=(4, 3)) -> No
 
 
 @pytest.mark.interpreted
-@interpreted_only
+@pytest.mark.needs("an interpreted engine")  # would compile for each set
 @pytest.mark.parametrize("names", SETS, ids=lambda names: "+".join(sorted(names)) or "plain")
 def test_same_log_as_the_oracle(names):
     assert_same_log(names, 1, 25)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from helpers.log_compare import differences
-from helpers.support import idealgas, linux, small_disk
+from helpers.support import idealgas, small_disk
 from helpers.sweeps import scheduler, start, wait_for, workers_of
 
 pytestmark = pytest.mark.slow
@@ -128,7 +128,7 @@ def undisturbed_with_logs(tmp_path_factory):
     return folder / "out", finished(plan(folder, events=QUICK, keep_logs=True), folder / "out")
 
 
-@linux
+@pytest.mark.needs("a disk to mount")
 @each_history
 def test_the_disk_is_full(history, undisturbed_with_logs, tmp_path):
     """At any time between the first file and the last one."""

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 from helpers.log_compare import differences
-from helpers.support import IDEALGAS, ROOT, idealgas, linux, program, small_disk
+from helpers.needs import linux, program
+from helpers.support import IDEALGAS, ROOT, idealgas, small_disk
 
 from idealgas.run.resume import resume
 
@@ -105,7 +106,7 @@ def test_a_file_that_may_not_grow(kilobytes, undisturbed, tmp_path):
         assert differences(path, undisturbed) == []
 
 
-@linux
+@pytest.mark.needs("a disk to mount")
 @pytest.mark.slow
 @pytest.mark.parametrize("kilobytes", [1, 4, 8, 12, 16, 20, 24, 32, 40, 48, 56, 64, 96, 128, 192, 256])
 def test_a_small_disk(kilobytes, undisturbed, tmp_path):

@@ -11,7 +11,7 @@ from pathlib import Path
 import idealgas_cli
 import pytest
 from helpers.log_samples import new_writer, write_rows
-from helpers.support import posix
+from helpers.needs import posix
 
 import idealgas
 from idealgas.errors import OutputError

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from helpers.crafted import craft, link, opened, put, read_path, refused, seal, swap
 from helpers.log_samples import write_log
-from helpers.support import posix
+from helpers.needs import posix
 from isal import isal_zlib
 
 from idealgas.log import DamageError, LogError, LogWriter, open_log, recover

@@ -4,6 +4,7 @@ import re
 import sys
 
 import numpy as np
+import pandas
 import pytest
 from helpers.log_compare import scene_of
 from helpers.log_samples import write_log
@@ -12,8 +13,6 @@ from idealgas.columns import Kind
 from idealgas.log import LogError, open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
-
-pandas = pytest.importorskip("pandas")
 
 COMMON = ["time", "disc", "partner", "kind", "x", "y", "vx", "vy"]
 FURTHER = {"mixture": [], "rough": ["angular_velocity"], "periodic": ["image_x", "image_y"]}

@@ -201,7 +201,6 @@ def test_some_discs_and_some_columns(log):
 
 
 def test_a_data_frame_of_flights(log):
-    pytest.importorskip("pandas")
     times = [0.0, log.end_time / 2, log.end_time]
     frame, found = log.to_pandas("flights", times=times), Flights.joined(log.flights(times))
     assert frame["end_vy"].tolist() == found.end_velocity[:, 1].tolist()

@@ -10,7 +10,8 @@ import time
 import h5py
 import pytest
 from helpers.log_samples import check, new_writer, write_log, write_rows
-from helpers.support import ROOT, posix
+from helpers.needs import posix
+from helpers.support import ROOT
 
 from idealgas.errors import OutputError, UserError
 from idealgas.files import LOG, check_output, is_of_kind, written

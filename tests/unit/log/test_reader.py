@@ -6,7 +6,7 @@ import pytest
 from helpers.fresh_python import python
 from helpers.log_compare import scene_of
 from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
-from helpers.support import posix
+from helpers.needs import posix
 
 from idealgas.columns import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log

@@ -5,16 +5,15 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pyh5md
 import pytest
 from helpers.log_compare import scene_of
-from helpers.support import program
+from helpers.needs import program
 
 import idealgas
 from idealgas.log import LogError
 from idealgas.log.replay import Checkpoint, Replay
 from idealgas.run.simulate import simulate
-
-pyh5md = pytest.importorskip("pyh5md")
 
 
 @pytest.fixture(scope="module", params=["quickstart", "periodic", "atmosphere", "rough", "mixing"])
@@ -90,6 +89,7 @@ def test_without_events_there_are_states_at_checkpoints(tmp_path):
             log.state_at(last.time / 3)
 
 
+@pytest.mark.needs("h5dump")
 @pytest.mark.parametrize("compression", ["gzip", "none"])
 def test_h5dump_reads_it(tmp_path: Path, compression):
     h5dump, path = program("h5dump"), tmp_path / "run.h5"

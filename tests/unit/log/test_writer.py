@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.log_samples import DISCS, STEP, check, gas, new_writer, rows, write_checkpoint, write_log, write_rows
-from helpers.support import posix
+from helpers.needs import posix
 
 import idealgas.log.writer as log_writer
 from idealgas.columns import (

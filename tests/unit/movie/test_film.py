@@ -8,7 +8,6 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from helpers.support import program
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -194,9 +193,9 @@ def test_without_an_end_it_is_twenty_seconds_of_film(path, tmp_path):
     assert made.frames == 41
 
 
+@pytest.mark.needs("ffmpeg")
 @pytest.mark.slow
 def test_a_video_has_all_frames(path, tmp_path):
-    program("ffmpeg")
     with open_log(path) as log:
         made = animate(log, tmp_path / "film.mp4", end=2.0, fps=25, speed=1.0, size=(321, 240))
     probe = ("ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", str(made.path))

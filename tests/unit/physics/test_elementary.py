@@ -87,7 +87,7 @@ def extended(numbers):
     return np.array([*turned, np.log(x)])
 
 
-@pytest.mark.skipif(np.finfo(np.longdouble).nmant < 63, reason="no extended precision on this machine")
+@pytest.mark.needs("extended precision")
 def test_a_million_arguments():
     """Within one unit in the last place, less the error of the reference, which is compared with `mpmath`."""
     numbers = np.array(random_numbers(MANY))
