@@ -7,6 +7,16 @@ run.collisions_per_disc = 30
 """
 PERIODIC = 'box = {size=[8, 8], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
 TWO = "species = [{name='gas', count=2, radius=0.5, temperature=1.0}]"
+LANES = """
+box.size = [10, 8]
+wall = [{ from = [0, 4], to = [10, 4] }]
+run.until = 180
+disc = [
+    { position = [2, 2], velocity = [1, 0.5], radius = 0.5, mass = 2, species = "a" },
+    { position = [5, 6], velocity = [-2, 1], radius = 0.25, mass = 1, species = "b" },
+]
+"""
+"""Two discs on either side of a wall, which meet nothing but walls: every number of them is known."""
 SLIT = (
     "species.gas.region=[0, 0, 4, 8]",
     "species.gas.radius=0.03",

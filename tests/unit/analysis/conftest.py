@@ -3,7 +3,7 @@
 import zlib
 
 import pytest
-from helpers.small_gases import GAS
+from helpers.small_gases import GAS, LANES
 
 from idealgas.log import open_log
 from idealgas.run.simulate import simulate
@@ -41,3 +41,11 @@ def made(tmp_path_factory):
     yield run
     for log in logs.values():
         log.close()
+
+
+@pytest.fixture
+def lanes(uncompiled, tmp_path):
+    """The log of two discs that meet nothing but walls."""
+    simulate(parse_scene(LANES), tmp_path / "lanes.h5")
+    with open_log(tmp_path / "lanes.h5") as log:
+        yield log

@@ -10,6 +10,8 @@ from idealgas.engine.epoch import EVENTS_PER_DISC, MOST_CROSSINGS, encounters_pe
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.state import Gas
 
+pytestmark = pytest.mark.interpreted
+
 
 def gas(n=100, speed=1.0, side=50.0):
     draw = np.random.default_rng(3)

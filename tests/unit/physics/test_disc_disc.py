@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from idealgas.engine.records import DISC
 from idealgas.jit import aligned, njit
 from idealgas.physics.disc_disc import collide, contact_time, random_contact
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import NO_IMAGES
 
@@ -19,6 +20,11 @@ pytestmark = pytest.mark.interpreted
 @njit
 def contact_of(discs):
     return contact_time(discs[0], discs[1], 0, 1, None, None, None, (0, 0))
+
+
+@njit
+def contact_under_gravity(discs):
+    return contact_time(discs[0], discs[1], 0, 1, Gravity(0.0, -1.0), None, None, (0, 0))
 
 
 @njit
@@ -42,6 +48,7 @@ def pair(a, b):
         pytest.param((0, 0, -1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="receding"),
         pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 1.01, 0, 0, 0, 0.5, 1), NEVER, id="passing"),
         pytest.param((-3, 1, 1, 0, 0, 0.5, 1), (0, 0, 0, 0, 0, 0.5, 1), NEVER, id="grazing, exactly"),
+        pytest.param((0, 0, 1, 0, 7, 0.5, 1), (-2, 0, 0, 0, 3, 0.5, 1), NEVER, id="apart when both records are valid"),
         pytest.param((0, 0, 1, 0, 0, 0.5, 1), (5, 0, 1, 0, 0, 0.5, 1), NEVER, id="same velocity"),
         pytest.param((0, 0, 0, 0, 0, 0.5, 1), (1, 0, 1, 0, 0, 0.5, 1), NEVER, id="touching and receding"),
         pytest.param((0, 0, 1, 0, 7, 0.5, 1), (1, 0, 0, 0, 7, 0.5, 1), 7.0, id="touching and approaching"),
@@ -53,9 +60,23 @@ def test_contact_times(a, b, time):
     assert contact_of(pair(a, b)) == time
 
 
+@pytest.mark.parametrize(("first", "then"), [(0, 2), (2, 0)])
+def test_discs_that_fall_since_different_times(first, then):
+    """At t = 2 both are level, at rest and at the speed 1, three apart: they touch at t = 4, as they fall alike."""
+    bodies = {2: (0, 0, 1, 0, 2, 0.5, 1), 0: (3, -2, 0, 2, 0, 0.5, 1)}
+    assert contact_under_gravity(pair(bodies[first], bodies[then])) == 4.0
+
+
 def test_oblique_contact_at_45_degrees():
     time = contact_of(pair((0, 0, 1, 0, 0, 0.5, 1), (10, math.sqrt(0.5), 0, 0, 0, 0.5, 1)))
     assert time == pytest.approx(10 - math.sqrt(0.5), rel=1e-15)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_oblique_contact_along_a_triangle(side):
+    """Along (0.6, 0.8) at the speed 5, 10 away and 0.6 aside: the centres are 0.8 short of abreast, at 9.2/5."""
+    b = (6 - side * 0.48, 8 + side * 0.36, 0, 0, 0, 0.5, 1)
+    assert contact_of(pair((0, 0, 3, 4, 0, 0.5, 1), b)) == pytest.approx(1.84, rel=1e-14)
 
 
 def test_touching_discs_whose_collision_changes_nothing_are_done():

@@ -14,6 +14,8 @@ from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 from idealgas.physics.vibration import begin_epoch, height_on, parabola_at, vibrating_contact
 
+pytestmark = pytest.mark.interpreted
+
 LENGTH = 9.0
 
 
@@ -93,6 +95,7 @@ def test_the_motion_is_continuous_and_its_phase_exact():
     assert parabola_at(side, 0.0) in (0, 1, 2)
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_disc_leaves_with_twice_the_velocity_of_the_side_more(tmp_path):
     """The acceleration is 32 A f² = 8: up to t = 0.25 the side is at 4 t² and has the speed 8 t; at 0.5 it rests."""
     disc = "[[disc]]\nposition = [4, {}]\nvelocity = [0, -4]\nradius = 0.5\n"

@@ -275,5 +275,9 @@ def test_what_a_reflection_changes():
     assert not reflection_changes(body(vx=1.0, vy=0.0), 0, 0.0, 1.0, None)
     slides = body(x=3.5, y=4.0, vx=1.0, vy=0.0, r=0.5, m=1.0)
     assert segment_contact(slides, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, None, NO_IMAGES) == NEVER
+    pressed = segment_contact(
+        slides, 0, segment((3.0, 3.5), (9.0, 3.5)), None, Gravity(0.0, -1.0), None, None, NO_IMAGES
+    )
+    assert pressed == 0.0  # now: gravity takes it to the wall, whatever a reflection changes
     falls = body(x=3.5, y=4.0, vx=1.0, vy=-1e-9, r=0.5, m=1.0, t=7.0)
     assert segment_contact(falls, 0, segment((3.0, 3.5), (9.0, 3.5)), None, None, None, None, NO_IMAGES) == 7.0

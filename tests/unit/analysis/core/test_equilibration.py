@@ -22,12 +22,13 @@ def detect(series):
 def test_half_of_the_false_alarms_are_in_the_first_block(level, normal):
     """Two-sided: its deviation from the rest, of variance 2, is normal, and beyond the bound at half of the level."""
     for factor, agrees in ((1 - 1e-9, True), (1 + 1e-9, False)):
-        sums = np.append(0.0, np.full(16, factor * normal * np.sqrt(2.0)))
-        sums[9:] = sums[8]  # the later half has the mean 0
-        series = _Series(sums, np.ones(1), np.inf, 1.0, np.inf)
+        values = np.zeros(16)  # the later half of the rest has the mean 0
+        values[[0, 6]] = factor * normal * np.sqrt(2.0), -0.5
+        series = _Series(np.append(0.0, np.cumsum(values)), np.ones(1), np.inf, 1.0, np.inf)
         assert series.agrees(0, level) == agrees
         assert series.agrees(0, level, floor=3.0)
-        assert not series._replace(most=0.9).agrees(0, level)
+        bounded = series._replace(sums=series.sums * np.sqrt(0.9), most=0.9)  # both variances are then 0.9
+        assert bounded.agrees(0, level) == agrees
 
 
 @pytest.mark.parametrize(("length", "memory"), [(40, 0.0), (40, 0.5), (400, 0.0), (400, 0.9), (400, -0.5), (2000, 0.9)])

@@ -18,6 +18,31 @@ from idealgas.analysis.theory.granular import (
 )
 
 
+def test_perfectly_rough_discs_share_their_energy():
+    for kappa in (0.2, 0.5, 1.0):
+        rough = GranularParameters(1.0, 1.0, kappa)
+        assert temperature_ratio(rough) == pytest.approx(1, rel=1e-12)
+        assert loss_of_motion(rough, 1.0) == pytest.approx(0, abs=1e-15)
+
+
+def test_smooth_discs():
+    assert temperature_ratio(GranularParameters(0.9)) is temperature_ratio(GranularParameters(0.9, -1.0, 0.5)) is None
+    assert relaxation(GranularParameters(0.9)) == 0
+    assert loss_of_spin(GranularParameters(0.9, -1.0, 0.5), 3.0) == 0
+    assert fourth_cumulant(math.sqrt(0.5)) == pytest.approx(0, abs=1e-15)
+    assert fourth_cumulant(0.9) == pytest.approx(-992 / 36_930, rel=1e-13)
+    assert fourth_cumulant(0.8) == pytest.approx(-896 / 40_840, rel=1e-13)
+    assert fourth_cumulant(0.5) == pytest.approx(4 / 48.25, rel=1e-13)
+    e, rate = 0.9, 2.5
+    a2, smooth = fourth_cumulant(e), GranularParameters(e)
+    assert cooling_time(smooth, rate) == pytest.approx(4 / ((1 - e**2) * rate * (1 + 3 * a2 / 16)), rel=1e-14)
+    assert cooling_per_collision(smooth) == pytest.approx((1 - e**2) / 2 * (1 + a2 / 4), rel=1e-3)  # to first order
+    time = np.array([0.0, 10.0])
+    t, s = homogeneous_cooling(smooth, rate, 2.0, 0.7, time)
+    assert t == pytest.approx(2 / (1 + time / cooling_time(smooth, rate)) ** 2, rel=1e-14)
+    assert s.tolist() == [0.7, 0.7]
+
+
 @pytest.mark.parametrize(
     "parameters",
     [
@@ -46,31 +71,6 @@ def test_losses_are_means_over_collisions(parameters, x):
     ):
         error = share * energy.std() / math.sqrt(n)
         assert abs(-share * energy.mean() - found) <= 4 * error + 1e-15
-
-
-def test_perfectly_rough_discs_share_their_energy():
-    for kappa in (0.2, 0.5, 1.0):
-        rough = GranularParameters(1.0, 1.0, kappa)
-        assert temperature_ratio(rough) == pytest.approx(1, rel=1e-12)
-        assert loss_of_motion(rough, 1.0) == pytest.approx(0, abs=1e-15)
-
-
-def test_smooth_discs():
-    assert temperature_ratio(GranularParameters(0.9)) is temperature_ratio(GranularParameters(0.9, -1.0, 0.5)) is None
-    assert relaxation(GranularParameters(0.9)) == 0
-    assert loss_of_spin(GranularParameters(0.9, -1.0, 0.5), 3.0) == 0
-    assert fourth_cumulant(math.sqrt(0.5)) == pytest.approx(0, abs=1e-15)
-    assert fourth_cumulant(0.9) == pytest.approx(-992 / 36_930, rel=1e-13)
-    assert fourth_cumulant(0.8) == pytest.approx(-896 / 40_840, rel=1e-13)
-    assert fourth_cumulant(0.5) == pytest.approx(4 / 48.25, rel=1e-13)
-    e, rate = 0.9, 2.5
-    a2, smooth = fourth_cumulant(e), GranularParameters(e)
-    assert cooling_time(smooth, rate) == pytest.approx(4 / ((1 - e**2) * rate * (1 + 3 * a2 / 16)), rel=1e-14)
-    assert cooling_per_collision(smooth) == pytest.approx((1 - e**2) / 2 * (1 + a2 / 4), rel=1e-3)  # to first order
-    time = np.array([0.0, 10.0])
-    t, s = homogeneous_cooling(smooth, rate, 2.0, 0.7, time)
-    assert t == pytest.approx(2 / (1 + time / cooling_time(smooth, rate)) ** 2, rel=1e-14)
-    assert s.tolist() == [0.7, 0.7]
 
 
 def test_rough_discs_at_their_ratio_follow_haff():

@@ -1,0 +1,65 @@
+"""Flow along thermal sides by theory: a parabola with slip."""
+
+import math
+
+import numpy as np
+import pytest
+
+from idealgas import open_log, parse_scene, simulate
+from idealgas.analysis.profile.flow import LAW, expected_flow
+from idealgas.analysis.theory import hard_discs
+
+pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
+
+SCENE = """
+box = { size = [20, 41], left = "periodic", right = "periodic", bottom = { thermal = 2 }, top = { thermal = 2 } }
+gravity.acceleration = [0.001, 0]
+species = [{ name = "gas", count = 200, radius = 0.5, mass = 3, temperature = 2, placement = "lattice" }]
+run.events = 1
+"""
+
+
+@pytest.fixture
+def log_of(tmp_path):
+    def run(*overrides):
+        simulate(parse_scene(SCENE, overrides=overrides), tmp_path / "run.h5", force=True)
+        return open_log(tmp_path / "run.h5")
+
+    return run
+
+
+def test_a_parabola_with_slip(log_of):
+    """u = ρg/2η (y (H - y) + sH), H = 40 between centres; s = 1.016 ℓ, ℓ = 1.022 · 2/√π free paths."""
+    edges = np.linspace(0, 41, 4101)
+    with log_of() as log:
+        found = expected_flow(log, 1, edges)
+    density = 200 / (20 * 40)
+    phi = density * math.pi / 4
+    chi = hard_discs.fluid_contact_value(phi)
+    viscosity = hard_discs.enskog_viscosity(1.0, density, 2.0, 3.0, chi)
+    slip = 1.016 * 1.022 * 2 / math.sqrt(math.pi) * hard_discs.mean_free_path(1.0, density, phi)
+    y = np.array([0.005, 10.005, 20.005])  # middles of strips
+    expected = 3 * density * 0.001 / (2 * viscosity) * (y * (40 - y) + slip * 40)
+    velocity = np.array([one.value for one in found.velocity])
+    assert velocity[[50, 1050, 2050]] == pytest.approx(expected, rel=1e-5)
+    assert velocity[::-1] == pytest.approx(velocity, rel=1e-9)
+    assert found.relaxation == pytest.approx(1600 / math.pi**2 * 3 * density / viscosity, rel=1e-12)
+    assert {one.source for one in found.velocity} == {LAW}
+    assert 0.02 < found.velocity[2050].error / velocity[2050] < 0.1
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "gravity.acceleration=[0.001, -0.1]",
+        "gravity.acceleration=[0, 0.1]",
+        "box.top={ thermal = 3 }",
+        "box.top=reflecting",
+        "species.gas.count=4",
+        "restitution={ normal = 0.9, contact_duration = 0.01 }",
+    ],
+)
+def test_where_it_is_not_known(log_of, override):
+    """Across the sides too, of two temperatures, without heat, of a thin gas, with losses."""
+    with log_of(override) as log:
+        assert expected_flow(log, 1, np.linspace(0, 41, 5)) is None

@@ -1,0 +1,50 @@
+"""Temperatures of every direction and species, of discs whose energies are known, and equipartition between them."""
+
+import pytest
+
+from idealgas import parse_scene, simulate
+from idealgas.analysis.temperature import temperature
+from idealgas.log import open_log
+
+pytestmark = pytest.mark.interpreted
+
+
+def values(entry):
+    return [one.value for one in (entry.x, entry.y, entry.both)]
+
+
+def test_energies_of_two_discs(lanes):
+    """m vx², m vy² and m v²/2 of 2 at (1, ½), of 1 at (2, 1), and of both; T = 2E/D = 2 · 3.75/4."""
+    found = temperature(lanes, start=20.0, end=140.0)
+    assert [(entry.species, entry.number) for entry in found.species] == [("a", 1), ("b", 1), ("all discs", 2)]
+    for entry, expected in zip(found.species, ([2, 0.5, 1.25], [4, 1, 2.5], [3, 0.75, 1.875]), strict=True):
+        assert values(entry) == pytest.approx(expected, rel=1e-14)
+        assert [one.theory for one in (entry.x, entry.y, entry.both)] == pytest.approx([1.875] * 3, rel=1e-14)
+        assert entry.history == pytest.approx([expected[2]] * len(entry.history), rel=1e-12)
+    assert (found.window.start, found.window.end, found.window.detected) == (20.0, 140.0, False)
+    assert found.law == "T = 1.875 (2E/D with D = 4)"
+    assert found.expected == pytest.approx(1.875, rel=1e-14)
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_a_conserved_momentum_takes_its_part(tmp_path):
+    """Along x the centre of mass, with 1/3, keeps E_x = 3/2 · 1/9: T = 2 (3 - 1/6)/3, and along x T (1 - m/M).
+
+    Masses 1 and 2 at (-1, 1) and (1, 1) turn round at the upper and lower side and do not meet.
+    """
+    text = """
+        box = { size = [10, 8], left = "periodic", right = "periodic" }
+        run.until = 60
+        disc = [
+            { position = [2, 4], velocity = [-1, 1], radius = 0.5, species = "light" },
+            { position = [2, 2.5], velocity = [1, 1], radius = 0.5, mass = 2, species = "heavy" },
+        ]
+    """
+    simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        found = temperature(log, start=0.0, end=4.0)
+    t = 2 * (3 - 1 / 6) / 3
+    light, heavy, _ = found.species
+    assert found.law == f"T = {t:.6g} (2E/D with D = 3), T(1 - m/M) along x"
+    assert (light.x.theory, heavy.x.theory) == pytest.approx((t * 2 / 3, t / 3), rel=1e-12)
+    assert (light.y.theory, heavy.y.theory) == pytest.approx((t, t), rel=1e-12)
