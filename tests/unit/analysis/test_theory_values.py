@@ -8,7 +8,7 @@ import pytest
 
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
-from idealgas.analysis.theory.values import NoTheoryError, Theory, box_theory, fluid
+from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, box_theory, crystal, fluid
 
 
 @pytest.mark.parametrize("box", [(1.0, 1.0), (1.0, 1.7)])
@@ -79,6 +79,33 @@ def test_few_collisions_of_two_discs_are_those_of_the_dilute_gas():
 def test_errors_of_theory_are_those_of_what_follows_from_it():
     assert Theory(2.0, 0.1, "x").times(-3.0) == Theory(-6.0, pytest.approx(0.3), "x")
     assert Theory(2.0, 0.1, "x").inverse() == Theory(0.5, pytest.approx(0.025), "x")  # e/x²
+
+
+def test_pressures_along_both_axes_have_the_mean_of_the_pairs():
+    """In a channel the axis across it has that of the walls; a box with four walls those of its sides, on the gas."""
+    nothing = np.zeros((1, 1))
+    pairs, walls = Theory(1.5, 0.01, "p"), Theory(1.2, 0.02, "w")
+    channel = BoxTheory(pairs, walls, (None, None), nothing, nothing)
+    other = Theory(pytest.approx(1.8), pytest.approx(0.04), "p")
+    radius = np.array([0.5])
+    assert channel.along_axes(radius, (4.0, 8.0), (True, False)) == (other, walls)
+    assert channel.along_axes(radius, (4.0, 8.0), (False, True)) == (walls, other)
+    assert channel.along_axes(radius, (4.0, 4.0), (True, True)) == (pairs, pairs)
+    sides = channel._replace(sides=(Theory(2.0, 0.4, "x"), Theory(4.0, 0.8, "y")))
+    x, y = sides.along_axes(radius, (4.0, 8.0), (False, False))
+    assert (x, y) == (Theory(1.5, pytest.approx(0.3), "x"), Theory(3.5, pytest.approx(0.7), "y"))  # 3/4 and 7/8 of it
+    assert channel.along_axes(radius, (4.0, 8.0), (False, False)) == (None, None)
+
+
+def test_theory_of_a_crystal():
+    """Free volume, too low by 0.4 + 0.8 (φcp/φ - 1)."""
+    close = math.pi / math.sqrt(12)
+    found = crystal(0.8)
+    assert found.value == pytest.approx(1 / (1 - math.sqrt(0.8 / close)), rel=1e-14)
+    assert found.error == pytest.approx(0.4 + 0.8 * (close / 0.8 - 1), rel=1e-14)
+    for phi in (0.71, 0.91):
+        with pytest.raises(NoTheoryError):
+            crystal(phi)
 
 
 def test_names_of_species_change_nothing():

@@ -23,6 +23,7 @@ def simulation(gas=None, seed=3, v_ref=20.0, **options):
     return Simulation(some_gas() if gas is None else gas, MonteCarlo(seed, v_ref, **options))
 
 
+@pytest.mark.interpreted
 def test_rows_are_pairs_without_positions():
     rows = record(simulation(), Stop(events=500))
     assert rows.position is None
@@ -190,6 +191,7 @@ def test_a_rising_reference_speed_goes_on_from_the_start_of_any_epoch():
         assert np.array_equal(whole.time, parts.time)
 
 
+@pytest.mark.interpreted
 def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
     def boundary_crossings(one_sided):
         gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
@@ -201,6 +203,7 @@ def test_one_sided_impact_parameters_turn_the_relative_velocity_one_way():
     assert abs(boundary_crossings(False).mean()) < 4 / math.sqrt(2000)
 
 
+@pytest.mark.interpreted
 def test_impact_parameters_are_uniform():
     """They show in the deflection: a relative velocity that meets the line of centres at φ is turned by π - 2φ."""
     gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
@@ -211,6 +214,17 @@ def test_impact_parameters_are_uniform():
     place = np.sort(offset)
     distance = np.abs(place - np.arange(1, len(place) + 1) / len(place)).max()
     assert distance < 1.95 / math.sqrt(len(place))  # Kolmogorov's bound for p = 0.001
+
+
+@pytest.mark.interpreted
+def test_pairs_of_the_largest_discs_are_accepted_for_certain():
+    """Of radii 0.1, 0.3 and 0.2 these have the reach 0.5: with it and v_ref no other pair is accepted more often."""
+    gas = gas_of(BOX, np.full((3, 2), 5.0), [(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)], [0.1, 0.3, 0.2])
+    method = MonteCarlo(1, 5.0)
+    Simulation(gas, method)
+    chi = (1 - 7 * gas.packing_fraction / 16) / (1 - gas.packing_fraction) ** 2
+    assert method._reach == 0.5
+    assert method._trial_time(5.0) == pytest.approx(100 / (6 * 0.5 * chi * 5.0), rel=1e-14)
 
 
 def test_every_pair_collides_as_often():

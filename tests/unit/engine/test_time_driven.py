@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 from helpers.log_compare import differences
+from helpers.rounding import body
 from helpers.support import gas_of, record, same_rows
 
 from idealgas.columns import Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.engine.time_driven import TimeDriven, first_step_after, make_nearby
+from idealgas.engine.time_driven import TimeDriven, first_step_after, make_nearby, side_beyond
 from idealgas.log import open_log
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.periodic import Periodic
@@ -88,6 +89,45 @@ def test_it_does_what_the_plain_method_does(gravity, periodic):
     assert "x" in periodic or not boxes.any()
 
 
+@pytest.mark.interpreted
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize("periodic", ["", "xy"])
+def test_few_discs_do_what_the_plain_method_does(periodic):
+    gas, dt, steps = some_gas(16, radius=0.4), 0.05, 60
+    effects = effects_of(16, gravity=True, periodic=periodic)
+    made = Simulation(gas, TimeDriven(dt), effects)
+    rows = record(made, Stop(time=dt * (steps + 0.5)))
+    expected, _, velocity = plainly(gas, dt, steps, effects)
+    assert sorted(zip(np.rint(rows.time / dt), rows.disc, rows.partner, strict=True)) == expected
+    assert (rows.kind == Kind.DISC).sum() > 20
+    velocity += np.array(effects.gravity) * dt / 2
+    assert np.abs(made.state()[0].velocity - velocity).max() < 1e-10
+
+
+@pytest.mark.interpreted
+@pytest.mark.usefixtures("uncompiled")
+def test_a_head_on_collision_is_found_at_the_end_of_a_step():
+    """3 - 2 · 0.4 k apart: below 1 after three steps, by 0.4 of the sum of the radii."""
+    gas = gas_of(BOX, [(2.0, 4.0), (5.0, 4.0)], [(1.0, 0.0), (-1.0, 0.0)], 0.5)
+    made = Simulation(gas, TimeDriven(0.4))
+    rows = record(made, Stop(time=2.0))
+    assert rows.time == pytest.approx([1.2, 1.2], rel=1e-15)
+    assert rows.velocity.tolist() == [[-1.0, 0.0], [1.0, 0.0]]
+    assert made.check_invariants_of(made.state()[0]).overlap == pytest.approx(0.4, rel=1e-14)
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize(
+    ("place", "velocity", "side"),
+    [((0.4, 4), (-1, 0), 0), ((0.4, 4), (1, 0), -1), ((9.6, 4), (1, 0), 1), ((9.6, 4), (-1, 0), -1),
+     ((4, 0.4), (0, -1), 2), ((4, 7.6), (0, 1), 3), ((0.5, 4), (-1, 0), -1), ((0.4, 0.4), (-1, -1), 0)],
+)  # fmt: skip
+def test_discs_beyond_a_side_on_their_way_out(place, velocity, side):
+    disc = body(x=place[0], y=place[1], vx=velocity[0], vy=velocity[1], r=0.5)
+    assert side_beyond(disc, BOX, None) == side
+    assert side_beyond(disc, BOX, effects_of(1, periodic="xy").periodic) == -1
+
+
 @pytest.mark.parametrize(("rows", "events"), [(3, 1 << 62), (17, 5), (4096, 1)])
 def test_neither_batches_nor_slices_change_anything(rows, events):
     stop = Stop(time=12.0)
@@ -98,6 +138,7 @@ def test_neither_batches_nor_slices_change_anything(rows, events):
     assert whole.check_invariants_of(whole.gas).overlap == parts.check_invariants_of(parts.gas).overlap > 0
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("dt", [2.3331434616323543, 0.1, 1 / 3])
 def test_no_step_is_left_out_between_epochs(dt):
     for end in (28_672.0, 4096.0, 3 * dt, 7 * dt):

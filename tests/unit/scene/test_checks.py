@@ -29,17 +29,17 @@ def halves(count, other):
     )
 
 
-def solids(*curves):
+def solids(*curves, number=1):
     """Polygons of walls, from their corners."""
     rows = [
         f'{{ solid = "inside", from = {list(a)}, to = {list(b)} }}'
         for corners in curves
         for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)
     ]
-    return f"box.size = [10, 10]\nwall = [{', '.join(rows)}]\n" + GAS.format(1, 0.1)
+    return f"box.size = [10, 10]\nwall = [{', '.join(rows)}]\n" + GAS.format(number, 0.1)
 
 
-SQUARE = ((2, 2), (4, 2), (4, 4), (2, 4))
+SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8))
 
 
 @pytest.mark.parametrize(
@@ -55,6 +55,8 @@ SQUARE = ((2, 2), (4, 2), (4, 4), (2, 4))
         pytest.param(halves(1120, 960), r"discs for the box \(got packing fraction 0\.6535", id="whole+"),
         pytest.param(halves(1, 1030), None, id="region"),
         pytest.param(halves(1, 1040), r"discs for the region \(got packing fraction 0\.6535", id="region+"),
+        pytest.param(solids(BLOCK, number=1310), None, id="free"),  # 0.643 of the 64 that a solid leaves
+        pytest.param(solids(BLOCK, number=1340), r"for the box \(got packing fraction 0\.6578", id="free+"),
         pytest.param(HEAT + ', bottom = "periodic", top = "periodic" }\n' + GAS.format(20, 0.1), None, id="heat"),
         pytest.param(HEAT + " }\n" + GAS.format(20, 0.1), "walls take heat and momentum", id="heat-"),
         pytest.param(solids(SQUARE, ((4, 3), (6, 2), (6, 4))), None, id="a corner on a side"),

@@ -11,6 +11,8 @@ from idealgas.effects.properties import Properties
 from idealgas.physics.disc_wall import inward_normal
 from idealgas.scene import parse_scene
 
+pytestmark = pytest.mark.interpreted
+
 PLAIN = """
 box.size = [20, 10]
 run.until = 4

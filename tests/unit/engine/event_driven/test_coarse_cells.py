@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from helpers.rounding import body
 from helpers.support import record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven.cells import make_cells, make_levels
+from idealgas.engine.event_driven.cells import is_large, make_levels
 from idealgas.engine.event_driven.method import EventDriven, expected_threads
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
@@ -48,24 +49,6 @@ QUICK = ("reflecting", "periodic")
 
 
 @pytest.mark.interpreted
-@pytest.mark.parametrize(
-    ("n", "radius", "columns", "rows"),
-    [
-        (100, 0.5, 9, 4),  # ten cells of one diameter would leave no margin
-        (100, 0.475, 10, 5),
-        (4, 0.5, 3, 1),  # √(50 · 0.8/4) wide: as many as the filling asks for
-        (1, 4.0, 1, 1),
-    ],
-)
-def test_cells_are_a_diameter_wide_or_as_wide_as_their_filling(n, radius, columns, rows):
-    """In a box of 10 by 5, with a ring around it."""
-    cells = make_cells(n, (10.0, 5.0), radius, 0.8)
-    assert (cells.columns - 2, cells.rows - 2) == (columns, rows)
-    assert (cells.width, cells.height) == (10.0 / columns, 5.0 / rows)
-    assert cells.head.tolist() == [-1] * ((columns + 2) * (rows + 2))
-
-
-@pytest.mark.interpreted
 def test_only_discs_that_are_far_larger_have_coarse_cells():
     radius = np.full(4001, 0.006)
     assert make_levels(radius, (4.0, 4.0), 0.4)[1] is None
@@ -76,6 +59,8 @@ def test_only_discs_that_are_far_larger_have_coarse_cells():
     assert fine.width * coarse.ratio == pytest.approx(coarse.cells.width)
     assert fine.width >= 0.012
     assert 0.006 < coarse.limit < 0.5
+    assert [is_large(coarse, body(r=r)) for r in (0.006, coarse.limit, 0.5)] == [False, False, True]
+    assert not is_large(None, body(r=0.5))
     assert fine.link is coarse.cells.link
     wide, narrow = (make_levels(radius, (side, side), 0.4)[1].cells for side in (4.04, 4.07))
     assert (wide.columns, narrow.columns) == (9, 10)  # eight cells of 0.506 need 4.048
