@@ -8,7 +8,12 @@ import pytest
 from helpers.rounding import gamma
 
 from idealgas.analysis.theory.hard_discs import collision_rate, mean_relative_speed
-from idealgas.physics.collision_rates import contact_value, mean_trial_time
+from idealgas.physics.collision_rates import (
+    collisions_per_length,
+    contact_value,
+    disc_collisions_per_length,
+    mean_trial_time,
+)
 
 pytestmark = pytest.mark.interpreted
 
@@ -34,3 +39,18 @@ def test_trials_accepted_at_equilibrium_speeds_give_the_rate_of_kinetic_theory(n
     accepted = mean_relative_speed(temperature, mass) / v_ref
     expected = collision_rate(2 * radius, (n - 1) / area, temperature, mass, phi)
     assert 2 * accepted / duration / n == pytest.approx(expected, rel=1e-13)
+
+
+def test_collisions_of_all_discs_per_length():
+    """√2 · 0.4 · 9/200 χ for each of ten discs, and 2/π over the room of the largest one between opposite sides."""
+    pairs = math.sqrt(2) * 0.4 * 9 / 200 * contact_value(0.2)
+    assert disc_collisions_per_length(10, 0.4, 0.2, (20.0, 10.0)) == pytest.approx(pairs, rel=1e-14)
+    dense = math.sqrt(2) * 0.4 * 9 / 200 * contact_value(0.9)
+    assert disc_collisions_per_length(10, 0.4, 0.95, (20.0, 10.0)) == pytest.approx(dense, rel=1e-14)
+    for size, periodic, sides in (
+        ((20.0, 10.0), (False, False), 2 / math.pi * (1 / 19 + 1 / 9)),
+        ((200.0, 1.0), (False, False), 2 / math.pi / 199),  # no room for two: the others are left out
+        ((200.0, 1.0), (False, True), 2 / math.pi * (1 / 199 + 1)),
+    ):
+        found = collisions_per_length(10, 0.4, 0.5, 0.2, size, periodic)
+        assert found == pytest.approx(10 * (pairs + sides), rel=1e-14)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from helpers.rounding import body, exact, gamma
 
-from idealgas.physics.disc_wall import arrival_delay, inward_normal, side_contact
+from idealgas.physics.disc_wall import arrival_delay, inward_normal, reflected_velocity, side_contact
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 
@@ -81,3 +81,9 @@ def test_without_a_pull_along_its_axis_gravity_changes_no_bit():
 
 def test_normals_point_into_the_box():
     assert [inward_normal(side) for side in range(4)] == [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
+
+
+@pytest.mark.parametrize("length", [0.5, 1.0, 2.0])
+def test_a_reflection_does_not_depend_on_the_length_of_the_normal(length):
+    assert reflected_velocity(body(vx=1.0, vy=-2.0), 0, 0.0, length, None) == (1.0, 2.0)
+    assert reflected_velocity(body(vx=1.0, vy=-3.0), 0, length, length, None) == (3.0, -1.0)

@@ -10,12 +10,14 @@ from idealgas.physics.periodic import (
     NO_IMAGES,
     Periodic,
     boundary_crossings_along,
+    enter_opposite_side,
     images_between,
     images_to_wall,
     is_periodic,
     nearest_image,
     nearest_images,
     periodic_axes,
+    place_in_space,
     separation,
     shift_by_images,
     wrap,
@@ -118,3 +120,18 @@ def test_without_joined_sides_there_are_none():
     assert periodic_axes(sides(x=False)) == (False, True)
     assert [is_periodic(sides(x=False), along_y) for along_y in (False, True)] == [False, True]
     assert not is_periodic(None, True)
+
+
+def test_places_in_space_and_rows_of_sheared_boxes():
+    """Two boxes to the right and one down; a disc that crosses the top is one row further up, and wrapped along x."""
+    both = sides()
+    both.image[1] = (2, -1)
+    assert place_in_space(body(x=1.0, y=2.0), 1, both) == (1.0 + 2 * LX, 2.0 - LY)
+    assert place_in_space(body(x=1.0, y=2.0), 1, None) == (1.0, 2.0)
+    joined = sides(y=False)
+    joined.boundary_crossings[1] = (-1, 0)
+    disc = body(x=1.0 - LX, y=0.0)
+    enter_opposite_side(disc, 1, 1, joined)
+    assert disc.x == pytest.approx(1.0, abs=4 * 2.0**-52)
+    assert (joined.image[1].tolist(), joined.boundary_crossings[1].tolist()) == ([-1, 1], [0, 0])
+    assert joined.image[0].tolist() == [0, 0]
