@@ -80,7 +80,7 @@ class Commands(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program."""
         set_up_streams()
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait actively, longer than small products take
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it looks for them in all installed packages
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
         return super().main(*args, **options)
 

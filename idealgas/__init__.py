@@ -21,14 +21,18 @@ error. An error that a user can mend is a `UserError`, in one plain line; `Scene
 kinds of it.
 
 Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
-used, so that `import idealgas` itself is quick.
+used, so that `import idealgas` itself is quick. Linear algebra of NumPy and SciPy takes one thread if idealgas is
+imported before NumPy, unless the environment variable OPENBLAS_NUM_THREADS sets another number.
 """
 
+import os
 from functools import cache
 from importlib import import_module
 from typing import Any
 
 from idealgas._version import __version__
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait actively, longer than small products take
 
 _HOMES = {
     "idealgas.accuracy.study": ("study_accuracy",),

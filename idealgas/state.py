@@ -78,6 +78,6 @@ class Gas:
         return self.kinetic_energy / len(self)
 
 
-def rng(seed: int, use: str) -> np.random.Generator:
+def rng(seed: int, use: str) -> "np.random.Generator":
     """Random numbers of a seed for one use, independent of those for any other use."""
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))

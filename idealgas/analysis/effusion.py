@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from idealgas.analysis.core.analysis import Analysis, Progress, Section
 from idealgas.analysis.core.caveats import must_be_one_gas
@@ -233,6 +232,7 @@ def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) 
 
     Discs that pass carry the mean energy 3T/2 instead of T, so that one chamber becomes colder and the other hotter.
     """
+    from scipy.integrate import solve_ivp  # which takes longer to import than most analyses to measure
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
         """Rates of the shares of discs and energy: a side with n, e loses √(ne) of discs, 3/2 √(e³/n) of energy."""

@@ -81,7 +81,7 @@ def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: 
     return velocity
 
 
-def _velocities(species: Species, mass: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _velocities(species: Species, mass: np.ndarray, random: "np.random.Generator") -> np.ndarray:
     """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
 
     Their total momentum is 0 if there are two discs or more. mass: (count,), of the discs.

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from idealgas.columns import BLOCK
-from idealgas.jit import njit
 from idealgas.log.replay import LogState
 
 Arrays = dict[str, np.ndarray]
@@ -40,12 +39,10 @@ class Join:
         start = {"time": np.full(self.discs, state.time)}
         start |= {name: getattr(state, name) for name in LogState._fields[1:] if name in names}
         self._states = start  # of the discs, then of the current rows
-        self._latest = np.arange(self.discs)  # index of the latest state of each disc
         self._make_room(BLOCK)
 
     def _make_room(self, rows: int) -> None:
         self._room = rows
-        self._previous, self._touched = np.empty((2, rows), np.int64)
         self._states = {
             name: np.concatenate((values[: self.discs], np.empty((rows, *values.shape[1:]), values.dtype)))
             for name, values in self._states.items()
@@ -56,35 +53,35 @@ class Join:
         number = len(rows["disc"])
         if number > self._room:
             self._make_room(number)
-        disc, previous = rows["disc"].view(), self._previous[:number]
-        disc.flags.writeable = False  # as in most chunks, so that one type is compiled
-        touched = self._touched[: _find_previous(disc, self._latest, previous, self._touched)]
-        newest, found = self._latest[touched], {}
+        previous, discs, newest = self._places(rows["disc"])
+        found = {}
         for name, values in self._states.items():
             values[self.discs : self.discs + number] = rows[name]
             found[name] = values.take(previous, axis=0)
-            values[touched] = values.take(newest, axis=0)
-        self._latest[touched] = touched
+            values[discs] = values.take(newest, axis=0)
         return found | {"disc": rows["disc"]}
+
+    def _places(self, disc: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return where the states before and after event rows are.
+
+        Args:
+            disc: (n,), disc of each row, n > 0.
+
+        Returns:
+            (n,), index of the state of the disc before each row; the discs that have rows; index of the last state of
+            each of them.
+        """
+        order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # in linear time, by radix
+        ordered = disc[order]
+        first = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))  # row of each disc
+        state = self.discs + order
+        before = np.append(0, state[:-1])
+        before[first] = ordered[first]
+        previous = np.empty_like(before)
+        previous[order] = before
+        return previous, ordered[first], state[np.append(first[1:], len(disc)) - 1]
 
     def states(self, discs: np.ndarray) -> Arrays:
         """Latest states of some discs."""
         found = {name: values.take(discs, axis=0) for name, values in self._states.items()}
         return found | {"disc": discs.astype(np.uint32)}
-
-
-@njit
-def _find_previous(disc: np.ndarray, latest: np.ndarray, previous: np.ndarray, touched: np.ndarray) -> int:
-    """Find the index of the latest state of the disc of each row, and the ids of all discs that have rows.
-
-    Returns the number of these discs. It is compiled because each row depends on the previous row of its disc.
-    """
-    discs, found = latest.shape[0], 0
-    for k in range(disc.shape[0]):
-        i = np.uintp(disc[k])
-        previous[k] = latest[i]
-        if latest[i] < discs:
-            touched[found] = i
-            found += 1
-        latest[i] = discs + k
-    return found

@@ -289,8 +289,9 @@ def check_names(names: Mapping[str, Sequence[str]]) -> None:
 
 def check_species(species: np.ndarray, names: Sequence[str]) -> None:
     """Check that each species has a disc and a name of its own."""
-    if missing := set(range(len(names))) - set(np.unique(species).tolist()):
-        raise ValueError(f"no disc of species {min(missing)}")
+    number = np.bincount(species, minlength=len(names))[: len(names)]
+    if not number.all():
+        raise ValueError(f"no disc of species {number.argmin()}")
     if not all(names):
         raise ValueError("a species without a name")
     if len(set(names)) != len(names):

@@ -11,6 +11,14 @@ function unpack(name, Type) {
   return new Type(bytes.buffer);
 }
 
+// Times of events in ticks from the steps between them; for the longest number of 16 bits there is the next leap.
+function addSteps(steps, leaps) {
+  const ticks = new Uint32Array(steps.length);
+  let now = 0, leap = 0;
+  steps.forEach((step, k) => { ticks[k] = now += step === 65535 ? leaps[leap++] : step; });
+  return ticks;
+}
+
 class Gas {
   constructor(head) {
     this.head = head;
@@ -19,30 +27,59 @@ class Gas {
     this.species = unpack("species", Uint16Array);
     this.order = unpack("order", Uint8Array); // shades of all discs at one instant, then at the next
     this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
-    this.tick = unpack("event_tick", Uint32Array);
-    this.disc = unpack("event_disc", Uint32Array);
-    this.event = { position: unpack("event_position", Float32Array), velocity: unpack("event_velocity", Float32Array) };
+    this.number = this.radius.length;
+    this.tick = addSteps(unpack("event_step", Uint16Array), unpack("event_leap", Uint32Array));
+    this.disc = unpack("event_disc", this.number > 65536 ? Uint32Array : Uint16Array);
+    this.event = { velocity: unpack("event_velocity", Float32Array) };
+    this.known = { row: unpack("place_row", Uint32Array), place: unpack("place", Float32Array) };
     this.pistons = head.pistons.map((piston, k) => ({ // with when it is known where it is
       ...piston, knots: unpack("piston_tick_" + k, Uint32Array), places: unpack("piston_place_" + k, Float32Array),
     }));
-    this.number = this.radius.length;
-    this.last = new Int32Array(this.number).fill(-1);
     this.row = 0; // events that have happened
+    this.used = 0; // places of `known` before that row
+    this.last = new Int32Array(this.number).fill(-1);
+    this.from = Float64Array.from(this.start.position); // where each disc had its last event, x and y
     this.x = new Float64Array(this.number);
     this.y = new Float64Array(this.number);
     this.vx = new Float64Array(this.number);
     this.vy = new Float64Array(this.number);
     this.step = Math.max(this.number, 4096);
-    this.marks = [this.last.slice()]; // `last` at every step-th row, to go back to
+    this.marks = [this.mark()]; // at every step-th row, to go back to
     while (this.row < this.tick.length) {
       this.follow(Math.min(this.row + this.step, this.tick.length));
-      if (this.row % this.step === 0) this.marks.push(this.last.slice());
+      if (this.row % this.step === 0) this.marks.push(this.mark());
     }
     this.seek(head.start);
   }
 
+  mark() { return { used: this.used, last: this.last.slice(), from: this.from.slice() }; }
+
+  // Each disc flies to its next event; where that does not lead to its place in the log, the place is known.
   follow(row) {
-    for (; this.row < row; this.row++) this.last[this.disc[this.row]] = this.row;
+    for (; this.row < row; this.row++) {
+      const i = this.disc[this.row], isKnown = this.known.row[this.used] === this.row;
+      const [x, y] = isKnown ? this.known.place.subarray(2 * this.used) : this.placeAt(i, this.timeOf(this.tick[this.row]));
+      this.used += isKnown;
+      this.from[2 * i] = x;
+      this.from[2 * i + 1] = y;
+      this.last[i] = this.row;
+    }
+  }
+
+  // When the flight of a disc began, and its velocity then.
+  begun(i) {
+    const event = this.last[i], { velocity } = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
+    return [event < 0 ? this.head.start : this.timeOf(this.tick[event]), velocity[k], velocity[k + 1]];
+  }
+
+  // Where a disc is in its flight at a time, inside the box.
+  placeAt(i, time) {
+    const [since, vx, vy] = this.begun(i), dt = time - since, [gx, gy] = this.head.gravity;
+    const [width, height] = this.head.box, [periodicX, periodicY] = this.head.periodic;
+    let x = this.from[2 * i] + (vx + gx * dt / 2) * dt, y = this.from[2 * i + 1] + (vy + gy * dt / 2) * dt;
+    if (periodicX) x -= Math.floor(x / width) * width;
+    if (periodicY) y -= Math.floor(y / height) * height;
+    return [x, y];
   }
 
   timeOf(tick) {
@@ -59,34 +96,27 @@ class Gas {
     const row = this.rowAfter(this.time);
     const mark = Math.min(Math.floor(row / this.step), this.marks.length - 1);
     if (row < this.row || row - this.row > this.step) {
-      this.last.set(this.marks[mark]);
       this.row = mark * this.step;
+      this.used = this.marks[mark].used;
+      this.last.set(this.marks[mark].last);
+      this.from.set(this.marks[mark].from);
     }
     this.follow(row);
-    const [gx, gy] = this.head.gravity, [width, height] = this.head.box, [periodicX, periodicY] = this.head.periodic;
+    const [gx, gy] = this.head.gravity;
     for (let i = 0; i < this.number; i++) {
-      const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
-      const dt = this.time - (event < 0 ? this.head.start : this.timeOf(this.tick[event]));
-      const vx = from.velocity[k], vy = from.velocity[k + 1];
-      this.vx[i] = vx + gx * dt;
-      this.vy[i] = vy + gy * dt;
-      this.x[i] = from.position[k] + vx * dt + gx * dt * dt / 2;
-      this.y[i] = from.position[k + 1] + vy * dt + gy * dt * dt / 2;
-      if (periodicX) this.x[i] -= Math.floor(this.x[i] / width) * width;
-      if (periodicY) this.y[i] -= Math.floor(this.y[i] / height) * height;
+      const [since, vx, vy] = this.begun(i);
+      [this.x[i], this.y[i]] = this.placeAt(i, this.time);
+      this.vx[i] = vx + gx * (this.time - since);
+      this.vy[i] = vy + gy * (this.time - since);
     }
   }
 
   // The flight of a disc since its last event in the player: when it began, and places at `steps` + 1 times till now.
   flight(i, steps) {
-    const event = this.last[i], from = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
-    const since = event < 0 ? this.head.start : this.timeOf(this.tick[event]), [gx, gy] = this.head.gravity;
+    const [since, vx, vy] = this.begun(i), [gx, gy] = this.head.gravity;
     const places = Array.from({ length: steps + 1 }, (_, step) => {
       const dt = (this.time - since) * step / steps;
-      return [
-        from.position[k] + from.velocity[k] * dt + gx * dt * dt / 2,
-        from.position[k + 1] + from.velocity[k + 1] * dt + gy * dt * dt / 2,
-      ];
+      return [this.from[2 * i] + (vx + gx * dt / 2) * dt, this.from[2 * i + 1] + (vy + gy * dt / 2) * dt];
     });
     return { since, places };
   }

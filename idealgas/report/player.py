@@ -1,7 +1,8 @@
 """Data of the player in a report page: a state of the gas and the events after it, as compact arrays.
 
-The page computes the flight of each disc from its last event, so that positions at any time are exact up to the 24
-bits of a 32-bit float.
+Velocities have the 24 bits of a 32-bit float. The page computes the flight of each disc from event to event; where that
+would be off by more than ACCURACY, it has the position of the log, so that positions at any time are nearly as accurate
+as if each of them were a 32-bit float.
 """
 
 import base64
@@ -18,7 +19,7 @@ from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.theory.ensemble import classes
 from idealgas.columns import Kind
 from idealgas.errors import UserError
-from idealgas.log import Log
+from idealgas.log import Log, LogState
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.painter import COLOUR_MAP, CROSSING, PALEST
 from idealgas.movie.panels import BRIGHTEST, FASTEST
@@ -26,7 +27,7 @@ from idealgas.movie.piston_track import piston_tracks
 from idealgas.scene.walls import NumberedWall, walls_inside
 
 MOST_ROWS = 600_000
-"""Largest number of event rows in a page, about 19 MB."""
+"""Largest number of event rows in a page, about 10 MB."""
 
 MOST_DISCS = 100_000
 SHADES = 16
@@ -36,6 +37,12 @@ fewest instants); with more discs it has none, as finding their neighbours would
 
 TICKS = 2.0**32 - 1
 """Number of steps in the time of the player; times of events are whole numbers of these steps."""
+
+LEAP = 2**16 - 1
+"""Number of steps to the next event from which on it is stored apart, with 32 bits instead of 16."""
+
+ACCURACY = 2.0**-24
+"""Largest deviation of a position from that of the log, relative to the longer side of the box."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +118,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
     if log.has_positions:
         arrays["position"] = state.position
         arrays |= _order(log, first, last) if order else {}
-    arrays |= knots | _events(log, first, last, row)
+    arrays |= knots | _events(log, first, last, row, state)
     return Player(head, {name: _packed(a) for name, a in arrays.items()}, first, last)
 
 
@@ -156,8 +163,8 @@ def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
     return np.round((time - first) / (last - first) * TICKS).astype("<u4")
 
 
-def _events(log: Log, first: float, last: float, start: int) -> dict[str, np.ndarray]:
-    """Columns of the events between two times."""
+def _events(log: Log, first: float, last: float, start: int, state: LogState) -> dict[str, np.ndarray]:
+    """Columns of the events between two times; state: of all discs at the first one."""
     names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks((*names, *(("kind",) if log.escapes else ())), start, log.row_at(last, "right")))
     empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
@@ -165,11 +172,50 @@ def _events(log: Log, first: float, last: float, start: int) -> dict[str, np.nda
         name: np.concatenate([empty.get(name, np.empty(0)), *(getattr(block, name) for block in blocks)])
         for name in names
     }
+    tick, disc, velocity = _ticks(columns["time"], first, last), columns["disc"].astype("<u4"), columns["velocity"]
+    steps = np.diff(tick, prepend=tick.dtype.type(0))
+    found = {
+        "event_step": np.minimum(steps, LEAP).astype("<u2"),
+        "event_leap": steps[steps >= LEAP],
+        "event_disc": disc.astype("<u2") if len(log.discs) <= 2**16 else disc,
+        "event_velocity": velocity,
+    }
+    if log.has_positions:
+        time = tick / TICKS * (last - first)
+        rows = _unreached(log, state, time, disc, velocity, columns["position"])
+        found |= {"place_row": rows.astype("<u4"), "place": columns["position"][rows]}
     if log.escapes:
         left = np.concatenate([block.kind for block in blocks]) == Kind.ESCAPED if blocks else []
-        columns["velocity"][left] = columns["position"][left] = np.nan
-    columns |= {"tick": _ticks(columns.pop("time"), first, last), "disc": columns["disc"].astype("<u4")}
-    return {f"event_{name}": column for name, column in columns.items()}
+        velocity[left] = np.nan
+    return found
+
+
+def _unreached(
+    log: Log, state: LogState, time: np.ndarray, disc: np.ndarray, velocity: np.ndarray, position: np.ndarray
+) -> np.ndarray:
+    """Return the events, in order, at which the page needs the position of the disc.
+
+    The deviations of all flights of a disc are added up, and the sums divided into cells as wide as the accuracy. The
+    page has a position where a sum comes into another cell, so that the deviation since then is less than the width.
+
+    Args:
+        log: the log.
+        state: of all discs at the start of the player.
+        time: (n,), time of each event since then, as the page computes it.
+        disc: (n,), its disc.
+        velocity: (n, 2), of the disc after it.
+        position: (n, 2), of the disc.
+    """
+    every = np.arange(len(log.discs))
+    order = np.argsort(np.concatenate((every, disc)), kind="stable")  # of starts and events
+    place = np.concatenate((state.position, position))[order]
+    speed = np.concatenate((state.velocity, velocity))[order].astype("<f4").astype(float)
+    delay = np.diff(np.concatenate((np.zeros(len(every)), time))[order])[:, None]
+    off = np.diff(place, axis=0) - (speed[:-1] + np.array(log.gravity) * delay / 2) * delay
+    off -= np.where(log.periodic, log.box, 0.0) * np.round(off / log.box)
+    off[order[1:] < len(every)] = 0.0  # the next disc starts
+    cell = np.floor(off.cumsum(axis=0) / (ACCURACY * max(log.box)))
+    return np.sort(order[1:][np.diff(cell, axis=0, prepend=0.0).any(axis=1)] - len(every))
 
 
 def _order_shades() -> np.ndarray:

@@ -16,8 +16,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 TESTED_FROM = 0.8
 """Restitution coefficient from which on the errors are known; below it there is no theory, as clusters soon form.
@@ -71,6 +69,8 @@ def _ratio_loss(parameters: GranularParameters, x: float) -> float:
 
 def temperature_ratio(parameters: GranularParameters) -> float | None:
     """Ratio x = S/T to which rough discs that cool homogeneously come; None for smooth ones, which keep their spin."""
+    from scipy.optimize import brentq  # which takes longer to import than most analyses to measure
+
     if not parameters.rough:
         return None
     return float(brentq(lambda x: _ratio_loss(parameters, x), 0.0, 1e6, xtol=1e-14))
@@ -117,6 +117,8 @@ def homogeneous_cooling(
     """
     if not parameters.rough:
         return temperature / (1 + time / cooling_time(parameters, rate)) ** 2, np.full(len(time), spin)
+
+    from scipy.integrate import solve_ivp
 
     def slopes(_: float, state: np.ndarray) -> list[float]:
         """Of ln T, of S/T₀ and of the time, against the collisions of a disc."""

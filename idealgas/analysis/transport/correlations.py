@@ -11,7 +11,8 @@ def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """
     length = first.shape[1]
     padded = fft.next_fast_len(2 * length - 1, real=True)
-    one, other = (np.fft.rfft(series, padded, axis=1) for series in (first, second))
+    one = np.fft.rfft(first, padded, axis=1)
+    other = one if second is first else np.fft.rfft(second, padded, axis=1)
     power = (one.conj() * other).sum(axis=3).mean(axis=2)
     return np.fft.irfft(power, padded, axis=1)[:, :length] / np.arange(length, 0, -1)
 
