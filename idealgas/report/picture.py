@@ -5,49 +5,75 @@ import io
 import json
 import re
 from dataclasses import asdict
-from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, GRID, Panel, disable_mathtext
+from idealgas.analysis.core.style import Panel, disable_mathtext
 from idealgas.analysis.core.tables import escape
-
-POINT = 72
-"""Units of an SVG on an inch."""
+from idealgas.report.drawing import NAMES, POINT, Frame, draw, is_drawable
 
 MARGIN = 0.06
 """Free margin above and below a panel, inches."""
 
-NAMES = {colour.lower(): f"--c{k}" for k, colour in enumerate(COLOURS)} | {
-    BLACK: "--ink",
-    GREY.lower(): "--soft",
-    GRID: "--line",
-}
-"""Variables of the page's style for the colours of pictures."""
-
 
 def html_pictures(figure: Figure, caption: str, key: str) -> str:
     """A figure as HTML: an SVG for each panel and the caption below; key: a name of its own on the page."""
-    disable_mathtext(figure)
-    if (engine := figure.get_layout_engine()) is not None:
-        engine.execute(figure)
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
     with rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
-        figure.set_layout_engine(None)  # "none" leaves one in its place, for which every picture is drawn twice
-        pictures = [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
+        drawn = _drawn(figure, panels, key) if is_drawable(figure) else _drawn_by_matplotlib(figure, panels, key)
+    pictures = (_svg(panel, *one) for panel, one in zip(panels, drawn, strict=True))
     return f"<figure>{''.join(pictures)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
-def _picture(figure: Figure, panel: Panel, panels: list[Panel], key: str) -> str:
-    """SVG of one panel of a figure; its ids are its own, and its numbers are the same for the same log."""
-    frame = _frame(figure, panel, panels)
+def _svg(panel: Panel, drawing: str, frame: Frame) -> str:
+    """SVG of one panel, with what its axes show: their place and limits, and what an instant shows there."""
+    axes = {
+        "place": frame[2:],
+        "x": list(map(float, panel.get_xlim())),
+        "y": list(map(float, panel.get_ylim())),
+        "logarithmic": panel.get_yscale() == "log",
+        "time": panel.in_time,
+        "strips": asdict(panel.strips) if panel.strips else None,
+    }
+    words = escape(f"{panel.get_ylabel()} against {panel.get_xlabel()}")
+    shown = html.escape(json.dumps(axes, allow_nan=False))
+    size = f"0 0 {frame.width:.6g} {frame.height:.6g}"
+    return f'<svg viewBox="{size}" role="img" aria-label="{words}" data-axes="{shown}">{drawing}</svg>'
+
+
+def _drawn(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
+    """Drawing of each panel of a figure, and where its axes are."""
+    width, height = POINT * figure.get_size_inches()
+    figure.set_layout_engine(None)
+    grids = [spec.get_gridspec() for panel in panels if (spec := panel.get_subplotspec())]
+    return [
+        draw(figure, panel, (width / grid.ncols, height / grid.nrows), f"{key}-{k}")
+        for k, (panel, grid) in enumerate(zip(panels, grids, strict=True))
+    ]
+
+
+# ── pictures that matplotlib draws itself ──
+
+
+def _drawn_by_matplotlib(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
+    """Drawing of each panel of a figure with images or texts of its own, and where its axes are."""
+    disable_mathtext(figure)
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+    figure.set_layout_engine(None)  # "none" leaves one in its place, for which every picture is drawn twice
+    return [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
+
+
+def _picture(figure: Figure, panel: Panel, panels: list[Panel], key: str) -> tuple[str, Frame]:
+    """Drawing of one panel of a figure; its ids are its own, and its numbers are the same for the same log."""
+    part = _part(figure, panel, panels)
     for other in panels:
         other.set_visible(other is panel)
     file = io.StringIO()
     with rc_context({"svg.hashsalt": key, "svg.fonttype": "none"}):
-        figure.savefig(file, format="svg", metadata={"Date": None}, bbox_inches=frame, transparent=True)
+        figure.savefig(file, format="svg", metadata={"Date": None}, bbox_inches=part, transparent=True)
     for other in panels:
         other.set_visible(True)
     _, _, drawing = file.getvalue().partition("</metadata>")
@@ -56,18 +82,18 @@ def _picture(figure: Figure, panel: Panel, panels: list[Panel], key: str) -> str
     drawing = re.sub(r'<g id="[^"]*"', "<g", drawing).replace("xlink:href", "href")
     drawing = re.sub(r" ?font-family: [^;\"]*;?", "", drawing)
     drawing = re.sub(r"#[0-9a-f]{6}\b", lambda found: _colour(found[0]), drawing)
-    drawing = re.sub(r"\n\s*", "\n", drawing)
-    size = f"0 0 {frame.width * POINT:.6g} {frame.height * POINT:.6g}"
-    words = escape(f"{panel.get_ylabel()} against {panel.get_xlabel()}")
-    shown = html.escape(json.dumps(_axes(panel, frame), allow_nan=False))
-    return f'<svg viewBox="{size}" role="img" aria-label="{words}" data-axes="{shown}">{drawing}'
+    drawing = re.sub(r"\n\s*", "\n", drawing).rpartition("</svg>")[0]
+    box = panel.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
+    left, right = (POINT * (x - part.x0) for x in (box.x0, box.x1))
+    bottom, top = (POINT * (part.y1 - y) for y in (box.y0, box.y1))
+    return drawing, Frame(POINT * part.width, POINT * part.height, left, right, bottom, top)
 
 
 def _colour(colour: str) -> str:
     return f"var({NAMES[colour]})" if colour in NAMES else colour
 
 
-def _frame(figure: Figure, panel: Panel, panels: list[Panel]) -> Bbox:
+def _part(figure: Figure, panel: Panel, panels: list[Panel]) -> Bbox:
     """Part of a figure that a panel takes, inches: all of it, or the width of its column and its own height."""
     width, height = figure.get_size_inches()
     spec = panel.get_subplotspec()
@@ -78,18 +104,3 @@ def _frame(figure: Figure, panel: Panel, panels: list[Panel]) -> Bbox:
     assert own is not None
     low, high = own.y0 / figure.dpi - MARGIN, own.y1 / figure.dpi + MARGIN
     return Bbox.from_extents(spec.colspan.start / columns * width, low, spec.colspan.stop / columns * width, high)
-
-
-def _axes(panel: Panel, frame: Bbox) -> dict[str, Any]:
-    """Where the axes of a panel are in its picture, and what they show: limits of both, and what an instant shows."""
-    box = panel.get_window_extent().transformed(panel.figure.dpi_scale_trans.inverted())
-    left, right = (POINT * (x - frame.x0) for x in (box.x0, box.x1))
-    bottom, top = (POINT * (frame.y1 - y) for y in (box.y0, box.y1))
-    return {
-        "place": [left, right, bottom, top],
-        "x": list(map(float, panel.get_xlim())),
-        "y": list(map(float, panel.get_ylim())),
-        "logarithmic": panel.get_yscale() == "log",
-        "time": panel.in_time,
-        "strips": asdict(panel.strips) if panel.strips else None,
-    }

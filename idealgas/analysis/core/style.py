@@ -91,8 +91,11 @@ class Panel(Axes):
         """What the vertical axis shows, as `set_ylabel` took it."""
         return self.get_title(loc="left")
 
-    def legend(self, *args: Any, **options: Any) -> Legend:
-        """Say below the panel what its curves are, once for a label; of very many, what the first ones are."""
+    def entries(self) -> tuple[dict[str, Any], int]:
+        """Return the entries of a legend, once for a label and of very many the first ones, and its number of columns.
+
+        An entry is what matplotlib shows of a curve, by its label.
+        """
         entries: dict[str, Any] = {}
         for handle, label in zip(*self.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
@@ -100,6 +103,11 @@ class Panel(Axes):
         if len(entries) > (most := LEGEND_ROWS * columns):
             shown = list(entries.items())[: most - 1]
             entries = dict(shown) | {f"and {len(entries) - most + 1} more": Line2D([], [], linestyle="none")}
+        return entries, columns
+
+    def legend(self, *args: Any, **options: Any) -> Legend:
+        """Say below the panel what its curves are."""
+        entries, columns = self.entries()
         if not entries:  # matplotlib makes no legend of given lists without entries
             return super().legend(handles=[])
         below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
