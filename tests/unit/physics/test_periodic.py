@@ -129,9 +129,8 @@ def test_places_in_space_and_rows_of_sheared_boxes():
     assert place_in_space(body(x=1.0, y=2.0), 1, both) == (1.0 + 2 * LX, 2.0 - LY)
     assert place_in_space(body(x=1.0, y=2.0), 1, None) == (1.0, 2.0)
     joined = sides(y=False)
-    joined.boundary_crossings[1] = (-1, 0)
-    disc = body(x=1.0 - LX, y=0.0)
+    disc = crossed(-1, 0, x=1.0 - LX, y=0.0)
     enter_opposite_side(disc, 1, 1, joined)
     assert disc.x == pytest.approx(1.0, abs=4 * 2.0**-52)
-    assert (joined.image[1].tolist(), joined.boundary_crossings[1].tolist()) == ([-1, 1], [0, 0])
+    assert (joined.image[1].tolist(), disc.crossed_x, disc.crossed_y) == ([-1, 1], 0, 0)
     assert joined.image[0].tolist() == [0, 0]

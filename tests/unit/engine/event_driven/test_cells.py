@@ -54,14 +54,14 @@ def test_dilute_gases_have_more_discs_in_a_cell(packing, number):
 def test_the_cell_of_a_position(place, column, row):
     """Five columns of 2 and four rows of 1.25; beyond the box the nearest cell."""
     cells = make_cells(100, (10.0, 5.0), 0.62, 0.1)._replace(columns=7, rows=6, width=2.0, height=1.25)
-    disc = body(x=place[0], y=place[1])
-    find_cell(cells, disc)
-    assert (disc.column, disc.row, cell_index(cells, disc)) == (column, row, row * 7 + column)
+    find_cell(cells, 3, body(x=place[0], y=place[1]))
+    link = cells.link[3]
+    assert (link.column, link.row, cell_index(cells, 3)) == (column, row, row * 7 + column)
     assert [found.tolist() for found in cell_of(np.array([place]), cells)] == [[column], [row]]
-    assert not is_in_ring(cells, disc)
+    assert not is_in_ring(cells, link)
     for ring in ((0, 1), (6, 1), (1, 0), (1, 5)):
-        disc.column, disc.row = ring
-        assert is_in_ring(cells, disc)
+        link.column, link.row = ring
+        assert is_in_ring(cells, link)
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 0, 2), (1, 2, 0)])
