@@ -5,7 +5,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -32,9 +32,10 @@ Entry = TypeVar("Entry")
 
 @contextmanager
 def hold_folder(folder: Path) -> Iterator[None]:
-    """Create the folder of a sweep if it is missing, lock it until the block ends, and remove what died processes left.
+    """Create the folder of a sweep if it is missing and lock it until the block ends.
 
-    Nothing in a folder is opened for writing before its lock file shows that it is the folder of a sweep.
+    Unfinished files that no process is writing are removed at the beginning and at the end of the block. Nothing in a
+    folder is opened for writing before its lock file shows that it is the folder of a sweep.
 
     Raises:
         UserError: if another process has locked it, or if it contains other files.
@@ -54,10 +55,19 @@ def hold_folder(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise storage_error(folder, error) from error
     with held:
+        _remove_unfinished(folder)
+        try:
+            yield
+        finally:
+            _remove_unfinished(folder)
+
+
+def _remove_unfinished(folder: Path) -> None:
+    """Remove the files that processes left when they failed or were killed, as far as the file system lets it."""
+    with suppress(OSError):
         for part in (*temporaries(folder), *temporaries(points_folder(folder)), *unfinished_logs(folder)):
             if not is_locked(part):  # a worker of a cluster may still be writing it
                 part.unlink(missing_ok=True)
-        yield
 
 
 def _is_marked(folder: Path) -> bool:

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from idealgas_cli.main import main
 
 from helpers.support import called, output_of
+from idealgas.locks import is_locked
 from idealgas.log import writer
 
 SHORT, KILL = 0, -1
@@ -60,11 +61,16 @@ def commands(events: int) -> dict[str, Command]:
 
 
 class Ended(NamedTuple):
-    """How a command ended: its exit code (or minus a signal), its error messages, and the number of its writes."""
+    """How a command ended.
+
+    code: exit code, or minus a signal. messages: lines of standard error. writes: number of writes to the file.
+    locked: whether the process still held the lock of the file when it ended.
+    """
 
     code: int
     messages: list[str]
     writes: int
+    locked: bool
 
 
 class Faults:
@@ -113,23 +119,25 @@ class Faults:
             where = f"{name}, write {number}, {fault}{' from then on' * lasting}"
             wrong += [f"{where}: {what}" for what in self._wrong(command, ended, fault == "short")]
 
-    def _call(self, command: Command, number: int, fault: int, lasting: bool = False) -> Ended:
+    def _call(self, command: Command, at: int, fault: int, lasting: bool = False) -> Ended:
         """Run a command in a fork, which ends as the command would, with all that Python and HDF5 do then."""
-        output, messages, writes = paths = [Path("..", name) for name in ("output", "messages", "writes")]
+        printed, messages, writes = paths = [Path("..", name) for name in ("output", "messages", "writes")]
         for path in paths:
             path.write_text("")
         if not (child := os.fork()):
-            for descriptor, path in ((1, output), (2, messages)):
+            for descriptor, path in ((1, printed), (2, messages)):
                 os.dup2(os.open(path, os.O_WRONLY), descriptor)
-            atexit.register(lambda: writes.write_text(str(self._library.counted())))
-            self._library.arm(command.output.encode(), number, fault, lasting)
+            output = Path(command.output)
+            atexit.register(lambda: writes.write_text(f"{self._library.counted()} {is_locked(output):d}"))
+            self._library.arm(command.output.encode(), at, fault, lasting)
             sys.argv = ["idealgas", *command.arguments]
             sys.exit(main(prog_name="idealgas"))
         signal.alarm(SECONDS)
         _, status = os.waitpid(child, 0)
         signal.alarm(0)
         lines = messages.read_text().splitlines()
-        return Ended(os.waitstatus_to_exitcode(status), lines, int(writes.read_text() or 0))
+        number, locked = map(int, (writes.read_text() or "0 0").split())
+        return Ended(os.waitstatus_to_exitcode(status), lines, number, bool(locked))
 
     def _wrong(self, command: Command, ended: Ended, half_written: bool) -> list[str]:
         wrong = []
@@ -137,6 +145,8 @@ class Faults:
             wrong.append(f"exit code {ended.code}: {ended.messages}")
         if ended.code == 1 and (len(ended.messages) != 1 or ": cannot be written: " not in ended.messages[0]):
             wrong.append(f"printed {ended.messages}")
+        if ended.locked:
+            wrong.append(f"{command.output} is still locked")
         wrong += [f"left {path}" for path in Path().iterdir() if path.name.startswith(".")]
         if command.output != LOG:
             if (ended.code == 0) != Path(command.output).exists():

@@ -142,6 +142,7 @@ def test_the_disk_is_full(history, undisturbed_with_logs, tmp_path):
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
         assert done.stderr.startswith(f"{disk / 'out'}")
         assert "cannot be written: No space left on device" in done.stderr
+        assert not list((disk / "out").rglob("*.part"))
         resize(100_000)
         assert finished(path, disk / "out") == files
         for log in (alone / "points").glob("*.h5"):

@@ -64,15 +64,18 @@ class WritableFile:
         """Close the file. HDF5 does so only after other code has closed it too; until then it remains locked.
 
         HDF5 may crash where a file that it closes cannot be written, so it only flushes the file. Raises OSError if
-        that fails, and the file remains open.
+        that fails, and the file is then abandoned.
         """
-        self.file.flush()
         if not self._alone:
+            self.file.flush()
             self.file.close()
             return
-        self._discard_writes()
-        clear_consistency_flags(self._lock.descriptor)
-        self._lock.close()
+        with self._lock:
+            try:
+                self.file.flush()
+            finally:
+                self._discard_writes()
+            clear_consistency_flags(self._lock.descriptor)
 
     def abandon(self) -> None:
         """Close a file that could not be written to, and leave it as if its writer had been killed."""

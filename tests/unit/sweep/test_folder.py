@@ -8,10 +8,10 @@ import pytest
 
 from idealgas.errors import UserError
 from idealgas.locks import WriteLock
-from idealgas.run.simulate import simulate
+from idealgas.run.simulate import open_run, simulate
 from idealgas.sweep.folder import hold_folder, resume_numbering
 from idealgas.sweep.plan import load_sweep
-from idealgas.sweep.point import log_path, points_folder, result_path
+from idealgas.sweep.point import log_path, points_folder, result_path, run_point, unfinished_log
 from idealgas.sweep.results import write_tables
 from idealgas.toml.dump import dump_document
 
@@ -129,6 +129,18 @@ def test_a_folder_has_one_sweep_at_a_time(tmp_path):
         other.kill()
     with hold_folder(folder):
         assert points_folder(folder).is_dir()
+
+
+def test_a_sweep_that_fails_leaves_only_files_that_others_are_writing(plan, tmp_path):
+    folder = tmp_path / "out"
+    with pytest.raises(UserError, match="unknown analysis"), hold_folder(folder):
+        run_point(plan().points[1], folder, ("unheard-of",), True)
+    assert list(points_folder(folder).iterdir()) == []
+    with hold_folder(folder):
+        run = open_run(plan().points[0].scene, unfinished_log(folder, 0))
+        run.__enter__()
+    assert list(points_folder(folder).iterdir()) == [unfinished_log(folder, 0)]
+    run.__exit__(None, None, None)
 
 
 @pytest.mark.parametrize("name", ["precious", "sweep.toml"])
