@@ -52,7 +52,7 @@ def faults(library: Path, folder: Path, *arguments: object, **environment: str) 
 
 @linux
 def test_a_few_writes_that_fail(library, tmp_path):
-    assert faults(library, tmp_path, 20, 160, 5, 70, "run", NUMBA_DISABLE_JIT="1") >= 12
+    assert faults(library, tmp_path, 20, 160, 16, 70, "run", NUMBA_DISABLE_JIT="1") >= 12
 
 
 @linux
