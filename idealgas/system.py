@@ -157,6 +157,12 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def free_unused_memory() -> None:
+    """Return freed memory to the system: glibc keeps much of what placing a large gas and compiling took."""
+    if sys.platform == "linux" and hasattr(c_library := ctypes.CDLL(None), "malloc_trim"):
+        c_library.malloc_trim(0)
+
+
 def cache_home() -> Path | None:
     """Folder for caches of the user; None for a user without a home."""
     if sys.platform == "win32":

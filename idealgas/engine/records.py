@@ -59,9 +59,9 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
     """Records of a gas at local time 0; order: (N,) the ids in their order in memory."""
     record = aligned(len(gas), DISC)
     fields = record.view(np.ndarray)  # a record array takes far longer to find them
-    fields["x"], fields["y"] = gas.position[order, 0], gas.position[order, 1]
-    fields["vx"], fields["vy"] = gas.velocity[order, 0], gas.velocity[order, 1]
-    fields["r"], fields["m"] = gas.radius[order], gas.mass[order]
+    columns = (*gas.position.T, *gas.velocity.T, gas.radius, gas.mass)
+    for name, column in zip(("x", "y", "vx", "vy", "r", "m"), columns, strict=True):
+        fields[name] = column[order]
     ids = aligned(len(gas), np.dtype("u4"))
     ids[:] = order
     return Discs(record, ids, gas.box)

@@ -22,6 +22,7 @@ from idealgas.run.layout import by_name, disc_state, observed, snapshot_state, w
 from idealgas.run.stall import STUCK, StallDetector
 from idealgas.scene import Scene
 from idealgas.state import Gas
+from idealgas.system import free_unused_memory
 
 ONE_WAS_FASTER = "one was faster: few events, a busy machine, or a log that needs a core"
 """Why no slice was shared although several threads were available."""
@@ -255,6 +256,7 @@ class LoggedRun:
         simulation, stop = self._simulation, self._stop
         ended_by_time = simulation.epoch_over and stop.time < LATEST
         end_time = stop.time if ended_by_time else simulation.reached
+        free_unused_memory()
         gas, effects = simulation.state()
         self._observe(end_time, gas, effects, simulation.check_invariants_of(gas))
         start, end = self._start_energy, energy_of(gas, effects, end_time - simulation.time)

@@ -145,3 +145,14 @@ def small_disk(folder: Path, kilobytes: int) -> Iterator[Callable[[int], None]]:
         yield lambda size: mount(f"remount,size={size}k").check_returncode()
     finally:
         subprocess.run(["umount", folder], check=True)
+
+
+def code_errors_and_memory(*arguments: object, cwd: Path) -> tuple[int, str, int]:
+    """Exit code of a command in a folder, its standard error, and the most memory that it took, bytes."""
+    command = [sys.executable, "-m", "idealgas", *map(str, arguments)]
+    child = subprocess.Popen(command, cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    with child.stderr as stream:
+        errors = stream.read()
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, errors, usage.ru_maxrss * 1024

@@ -134,6 +134,12 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
     return np.minimum(np.maximum(column, 1), cells.columns - 2), np.minimum(np.maximum(row, 1), cells.rows - 2)
 
 
+def order_by_cell(position: np.ndarray, cells: Cells) -> np.ndarray:
+    """Order (N,) of the discs at positions (N, 2), length, by their cells, row by row."""
+    column, row = cell_of(position, cells)
+    return np.argsort(row * cells.columns + column, kind="stable")
+
+
 @inline
 def has_coarse(coarse):
     """Whether some discs are in coarse cells."""

@@ -8,7 +8,14 @@ import numpy as np
 
 from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects
-from idealgas.engine.event_driven.cells import Cells, CoarseCells, cell_of, discs_per_cell, make_cells, make_levels
+from idealgas.engine.event_driven.cells import (
+    Cells,
+    CoarseCells,
+    discs_per_cell,
+    make_cells,
+    make_levels,
+    order_by_cell,
+)
 from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
@@ -94,12 +101,10 @@ class EventDriven(Method):
 
     def _sort(self, gas: Gas, effects: Effects) -> None:
         """Sort the discs in memory by cell."""
-        cells = self._state.cells
         position = gas.position
         if effects.absorbing is not None:
             position = np.nan_to_num(position)  # nan of discs that have left
-        column, row = cell_of(position, cells)
-        self.discs = make_discs(gas, np.argsort(row * cells.columns + column, kind="stable"))
+        self.discs = make_discs(gas, order_by_cell(position, self._state.cells))
 
     @property
     def threads(self) -> Threads:

@@ -34,6 +34,9 @@ _WORTH_LOADING = 64 * 2**20
 _LARGEST_KEPT = 31 * 2**20
 """Nearly the bytes of the largest block that glibc can be made to keep."""
 
+_RESERVED = 2**20
+"""Bytes for which memory is kept: more than a chunk of events has."""
+
 _WORDS = 256
 """Number of 16-bit words whose sum, each times its index, fits in 32 bits."""
 
@@ -100,7 +103,9 @@ def unshuffle(planes, items):
 
 
 class Encoder:
-    """Encodes chunks in its own memory: new memory for each would take longer than the encoding.
+    """Encodes chunks in its own memory: new memory for each chunk of events would take longer than the encoding.
+
+    Memory for a larger chunk, of all discs of a large gas, is freed when a smaller chunk follows.
 
     The result of a method is valid until the next call.
     """
@@ -114,7 +119,7 @@ class Encoder:
         The low-order bytes of a measured number are noise. Planes that a test of a few bytes cannot compress become
         stored blocks, which takes a fraction of the time in both directions.
         """
-        self._grow(rows.nbytes)
+        self._reserve(rows.nbytes)
         items = np.ascontiguousarray(rows).reshape(-1)
         noise, planes = self._shuffle(items) if items.itemsize in _WIDTHS else (0, _shuffled(items))
         size, adler = self._put(0, b"\x78\x01"), 1
@@ -146,7 +151,7 @@ class Encoder:
 
     def plain(self, rows: np.ndarray) -> np.ndarray:
         """Bytes of a chunk, uncompressed, with its fletcher32."""
-        self._grow(rows.nbytes)
+        self._reserve(rows.nbytes)
         size = self._put(0, np.ascontiguousarray(rows).reshape(-1).view(np.uint8))
         size = self._put(size, fletcher32(self._bytes[:size]))
         return self._bytes[:size]
@@ -156,8 +161,9 @@ class Encoder:
         self._bytes[start:stop] = np.frombuffer(data, np.uint8)
         return stop
 
-    def _grow(self, size: int) -> None:
-        if len(self._planes) < size:
+    def _reserve(self, size: int) -> None:
+        size = max(size, _RESERVED)
+        if len(self._planes) != size:
             self._planes = np.empty(size, np.uint8)
             self._bytes = np.empty(most_stored(size), np.uint8)
 
