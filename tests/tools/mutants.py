@@ -33,7 +33,7 @@ COMPILED = ("physics", "effects", "engine")
 NO_TESTS, PASSED = 5, 0
 """Exit codes of pytest."""
 
-HANGS = 20.0
+HANGS = 5.0
 """Times as long as without the change after which tests are taken to hang."""
 
 
@@ -125,7 +125,7 @@ class Bench:
                 self._seconds[key] = time.monotonic() - started
             try:
                 path.write_text(source.replace(mutant.old, mutant.new), encoding="utf-8")
-                code, failed = self.run(files, in_python, HANGS * self._seconds[key] + 60)
+                code, failed = self.run(files, in_python, HANGS * self._seconds[key] + 30)
             finally:
                 path.write_text(source, encoding="utf-8")
                 os.utime(path, times)  # by which numba knows it

@@ -6,8 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from idealgas.engine.epoch import EVENTS_PER_DISC, MOST_CROSSINGS, encounters_per_length, epoch_length
+from idealgas.effects.bundle import Effects
+from idealgas.engine.epoch import (
+    EVENTS_PER_DISC,
+    MOST_CROSSINGS,
+    driving_energy,
+    driving_speed,
+    encounters_per_length,
+    epoch_length,
+    fall_along_sides,
+)
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import MAX_DISPLACEMENT
+from idealgas.physics.periodic import Periodic
+from idealgas.physics.piston import PISTON
 from idealgas.state import Gas
 
 pytestmark = pytest.mark.interpreted
@@ -109,3 +121,20 @@ def test_in_a_narrow_room_only_motion_across_it_counts():
     assert in_a_channel([1.0, 0.0]) > 1e3
     assert in_a_channel([1.0, 1.0]) < 1e-2
     assert in_a_channel([1.0, 1.0], periodic=(False, True)) > 1e2
+
+
+@pytest.mark.parametrize(("x", "y", "fall"), [(True, False, 3.0), (False, True, 4.0), (True, True, 4.0)])
+def test_falls_along_periodic_sides(x, y, fall):
+    sides = Periodic(x, y, 50.0, 50.0, np.zeros((100, 2), np.int32))
+    assert fall_along_sides(Effects(gravity=Gravity(3.0, -4.0), periodic=sides)) == fall
+    assert fall_along_sides(Effects(gravity=Gravity(3.0, -4.0))) == fall_along_sides(Effects(periodic=sides)) == 0.0
+
+
+def test_what_drives_the_discs():
+    """√(5 · 100) by gravity, and the fastest piston; pistons bring M A over the box of 50 by 50."""
+    pistons = np.zeros(2, PISTON).view(np.recarray)
+    pistons.v, pistons.m, pistons.a = (-2.0, 1.0), (3.0, 4.0), (-0.5, 0.25)
+    effects = Effects(gravity=Gravity(3.0, -4.0), piston=pistons)
+    assert driving_speed(gas(), effects) == pytest.approx(np.sqrt(500.0) + 2.0, rel=1e-14)
+    assert driving_energy(gas(), effects) == (1.5 + 1.0) * 50
+    assert driving_speed(gas(), Effects()) == driving_energy(gas(), Effects()) == 0.0

@@ -12,6 +12,7 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.piston import (
     advance_piston,
     collide_with_piston,
+    energy_at_piston,
     is_piston_side,
     misses_piston_until,
     normal_of_piston,
@@ -170,6 +171,14 @@ def test_collision_at_a_given_velocity():
     assert (disc.vx, disc.vy, piston.v, piston.count) == (-1.5, 0.5, -0.25, 0)
     collide_with_piston(disc, 0, piston, Restitution(1.0, 0.5, 0.0, np.array([-9.0])))
     assert disc.vx == -1.5 - 1.5 * (-1.5 + 0.25)
+
+
+@pytest.mark.parametrize(("side", "along"), [(1, -2.0), (3, 3.0), (4, -2.0), (5, 3.0)])
+def test_energy_that_an_elastic_hit_would_not_change(side, along):
+    """Of a disc of mass 2 at (-2, 3): with a mass 4 at V = 1 more by 2; at a given velocity m (v - V)²/2 along it."""
+    disc = body(x=1.0, y=1.0, vx=-2.0, vy=3.0, m=2.0)
+    assert energy_at_piston(disc, 13.0, some_piston(side, v=1.0, m=4.0)) == 15.0
+    assert energy_at_piston(disc, 13.0, some_piston(side, v=1.0, m=0.0)) == (along - 1) ** 2
 
 
 def test_sides():

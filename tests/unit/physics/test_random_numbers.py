@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.physics.random_numbers import GOLDEN, mix, unit_interval
+from idealgas.physics.random_numbers import GOLDEN, disc_uniform, mix, unit_interval
 
 pytestmark = pytest.mark.interpreted
 
@@ -19,3 +19,14 @@ def test_splitmix64_gives_its_published_numbers():
 def test_unit_interval_excludes_zero():
     assert unit_interval(np.uint64(0)) == 2.0**-53
     assert unit_interval(np.uint64(2**64 - 1)) == 1.0
+
+
+def test_each_disc_has_eight_numbers_of_its_own_for_each_event():
+    with np.errstate(over="ignore"):
+        drawn = {
+            disc_uniform(np.uint64(5), disc, np.uint64(event), draw)
+            for disc in range(3)
+            for event in range(3)
+            for draw in range(8)
+        }
+    assert len(drawn) == 72

@@ -8,7 +8,13 @@ from helpers.rounding import body, copy_of, exact, gamma
 from idealgas.physics.disc_disc import collide
 from idealgas.physics.disc_wall import collide_with_wall
 from idealgas.physics.periodic import NO_IMAGES
-from idealgas.physics.restitution import Restitution, record_collision, restitution_factor, wall_restitution_factor
+from idealgas.physics.restitution import (
+    Restitution,
+    end_epoch,
+    record_collision,
+    restitution_factor,
+    wall_restitution_factor,
+)
 
 pytestmark = pytest.mark.interpreted
 
@@ -33,6 +39,8 @@ def test_collisions_are_recorded():
     record_collision(effect, 1, 4.5)
     record_collision(None, 1, 5.5)
     assert effect.last.tolist() == [0.0, 4.5]
+    end_epoch(effect, 6.0)
+    assert effect.last.tolist() == [-6.0, -1.5]
 
 
 def test_discs_part_with_e_times_their_approach():

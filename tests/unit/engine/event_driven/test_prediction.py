@@ -2,9 +2,24 @@
 
 import random
 
+import numpy as np
 import pytest
 
-from idealgas.engine.event_driven.prediction import precedes, wall_rank
+from idealgas.columns import FIRST_SEGMENT, HEAT_BATH
+from idealgas.engine.event_driven.prediction import (
+    PREDICTION,
+    SIDE_OF_BOX,
+    THERMOSTAT,
+    contact_is_next,
+    event_ids,
+    image_precedes,
+    partner_rank,
+    precedes,
+    segment_of,
+    segment_partner,
+    wall_rank,
+)
+from idealgas.jit import aligned
 
 pytestmark = pytest.mark.interpreted
 
@@ -42,3 +57,47 @@ def test_it_is_an_order():
             for c in events:
                 if precedes(*a, *b) and precedes(*b, *c):
                     assert precedes(*a, *c)
+
+
+def test_partners_that_are_walls():
+    """Disc j stands for itself, -1 for none, and numbers below that for segments; their ranks follow the sides'."""
+    for k in (0, 5, 1000):
+        assert segment_of(segment_partner(k)) == k
+        assert segment_partner(k) < -1
+        assert partner_rank(np.array([7, 9]), segment_partner(k)) == wall_rank(FIRST_SEGMENT + k) < wall_rank(2000)
+    assert partner_rank(np.array([7, 9]), 1) == 9
+
+
+def prediction(contact, crossing, code, partner=1):
+    record = aligned(1, PREDICTION)[0]
+    record.contact, record.crossing, record.crossing_code, record.partner = contact, crossing, code, partner
+    return record
+
+
+@pytest.mark.parametrize(
+    ("contact", "crossing", "code", "first", "ids"),
+    [
+        (1.0, 2.0, 0, True, (5, 9)),
+        (2.0, 1.0, 0, False, (-1, 5)),  # into a cell
+        (2.0, 1.0, SIDE_OF_BOX + 3, False, (5, wall_rank(3))),
+        (1.0, 1.0, 0, False, (-1, 5)),  # a cell precedes all
+        (1.0, 1.0, SIDE_OF_BOX + 3, False, (5, wall_rank(3))),  # and a wall a disc
+        (1.0, 1.0, THERMOSTAT, False, (5, wall_rank(HEAT_BATH))),
+    ],
+)
+def test_which_of_two_events_of_a_disc_is_next(contact, crossing, code, first, ids):
+    """Of disc 5 with disc 9, or a crossing."""
+    event = prediction(contact, crossing, code)
+    assert contact_is_next(event, np.array([5, 9]), 0) == first
+    assert event_ids(event, np.array([5, 9]), 0) == ids
+
+
+def test_images_of_one_partner_come_in_the_order_of_the_smaller_id():
+    """Fewer box lengths along x, then y, first; seen from the disc with the larger id all signs are reversed."""
+    for near, far in (((0, 5), (1, 0)), ((-1, 0), (0, 0)), ((0, -1), (0, 0))):
+        for own, other in ((3, 8), (3, wall_rank(6))):
+            assert image_precedes(own, other, near, far)
+            assert not image_precedes(own, other, far, near)
+        assert image_precedes(8, 3, far, near)
+        assert not image_precedes(8, 3, near, far)
+    assert not image_precedes(8, 3, (1, 1), (1, 1))
