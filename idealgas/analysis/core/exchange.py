@@ -41,8 +41,9 @@ def across(log: Log, axis: int) -> Exchange:
 
     In the time L²/2D diffusion spreads by the length L (rms), with the thermal diffusivity or the diffusion coefficient
     D by Enskog's theory: L is that between walls, half of the longest wave, and half of the length if it is periodic.
-    That wave has a correlation time L²/π²D, and densities and temperatures of strips contain all of it. A mixture
-    conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
+    That wave has a correlation time L²/π²D, and densities and temperatures of strips contain all of it, most of all
+    beside walls, where its amplitude is largest: errors there have the fewest degrees of freedom. A mixture conducts
+    heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
     """
     gas, temperature = log.discs, _temperature(log)
     moving = ~are_fixed(gas.mass)
