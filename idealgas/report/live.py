@@ -5,13 +5,14 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from http.server import BaseHTTPRequestHandler
 from pathlib import Path
+from socket import SHUT_RDWR
 from socketserver import ThreadingTCPServer
 from string import Template
-from threading import Lock
+from threading import Lock, Timer
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -44,8 +45,8 @@ POINTS = 128
 POINT_ROWS = 2**14
 """Number of event rows around a point over which the pressure is averaged."""
 
-IDLE = 10.0
-"""Time for which a connection may be silent, s."""
+PATIENCE = 10.0
+"""Time for which a connection may be silent, in which its request must arrive, and its answer be taken, s."""
 
 MEASURING = 0.2
 """Time for new points in an answer, s."""
@@ -223,7 +224,24 @@ class _Handler(BaseHTTPRequestHandler):
 
     server: _Server
     server_version, sys_version = "idealgas", ""
-    timeout = IDLE
+    timeout = PATIENCE  # of each wait for bytes, and of sending an answer
+
+    def setup(self) -> None:
+        """Begin a connection, which ends unless its request is complete in time, however steadily its bytes arrive."""
+        super().setup()
+        self._timer = Timer(self.timeout, self._hang_up)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def parse_request(self) -> bool:
+        """Read the rest of a request."""
+        complete = super().parse_request()
+        self._timer.cancel()
+        return complete
+
+    def _hang_up(self) -> None:
+        with suppress(OSError):  # it has ended
+            self.connection.shutdown(SHUT_RDWR)
 
     def do_GET(self) -> None:
         """Answer a request; other sites whose name leads here get nothing."""

@@ -2,6 +2,7 @@
 
 import socket
 import threading
+import time
 import urllib.error
 import urllib.request
 from contextlib import contextmanager
@@ -136,21 +137,39 @@ def test_a_log_without_events_is_one_line(tmp_path):
     assert "has no events (made with log.events = false)" in error_of("watch", tmp_path / "gas.h5")
 
 
-def test_a_silent_connection_is_closed(finished, monkeypatch):
+@pytest.fixture
+def impatient(finished, monkeypatch):
+    """Address of a server of a page that ends slow connections after 0.1 s."""
     monkeypatch.setattr(live._Handler, "timeout", 0.1)
     with open_log(finished) as log, live._Server(live.Live(log), 0) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
         try:
-            half_open = [socket.create_connection(server.server_address) for _ in range(20)]
-            for connection in half_open:
-                connection.sendall(b"GET / HT")
-            assert [connection.recv(1) for connection in half_open] == [b""] * 20
-            for connection in half_open:
-                connection.close()
+            yield server.server_address
         finally:
             server.shutdown()
             thread.join()
+
+
+def test_a_silent_connection_is_closed(impatient):
+    half_open = [socket.create_connection(impatient) for _ in range(20)]
+    for connection in half_open:
+        connection.sendall(b"GET / HT")
+    assert [connection.recv(1) for connection in half_open] == [b""] * 20
+    for connection in half_open:
+        connection.close()
+
+
+def test_a_connection_that_is_never_silent_is_closed(impatient):
+    """Each byte of its request comes soon after the one before, and the request never ends."""
+
+    def drip(connection):
+        for _ in range(1000):
+            connection.sendall(b"x")
+            time.sleep(0.01)
+
+    with socket.create_connection(impatient) as connection, pytest.raises(ConnectionError):
+        drip(connection)
 
 
 @posix
