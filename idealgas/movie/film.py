@@ -13,7 +13,7 @@ from typing import IO, Unpack
 import numpy as np
 from PIL import Image
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, tends_to_equilibrium
 from idealgas.analysis.core.stream import span
 from idealgas.errors import OutputError, UserError, install
 from idealgas.files import check_output, written
@@ -108,13 +108,19 @@ def animate(
         )
     if (size := look.get("size")) is not None:
         look["size"] = size[0] // 2 * 2, size[1] // 2 * 2
-    painter = Painter(log.scene, log.discs, piston_tracks(log, first, last), thermal, (first, last), some, **look)
+    painter = _painter(log, thermal, (first, last), some, look)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with written(path, kind, force) as part, writer(part, *painter.size, fps) as write:
         for k, state in enumerate(log.frames(times)):
             write(painter.paint(state))
             on_frame(k + 1, number)
     return Film(path, number, fps, first, last)
+
+
+def _painter(log: Log, thermal: float, times: tuple[float, float], some: Sequence[LogState], look: Look) -> Painter:
+    """Painter of the states of a log. thermal: as `rms_speed` of `Painter`."""
+    pistons, maxwell = piston_tracks(log, *times), tends_to_equilibrium(log)
+    return Painter(log.scene, log.discs, pistons, thermal, times, some, maxwell, **look)
 
 
 def paint_frame(
@@ -140,7 +146,7 @@ def paint_frame(
     times = log.start_time, log.end_time
     some = _some_states(log, *times)
     _, thermal = speeds(log, some)
-    painter = Painter(log.scene, log.discs, piston_tracks(log, *times), thermal, times, some, **look)
+    painter = _painter(log, thermal, times, some, look)
     grows = look.get("trails") or look.get("panel") == "left-right"
     for state in log.frames(np.linspace(log.start_time, time, HISTORY) if grows else np.array([time])):
         frame = painter.paint(state)

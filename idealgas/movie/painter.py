@@ -101,6 +101,7 @@ class Painter:
         rms_speed: float,
         times: tuple[float, float] = (0.0, 1.0),
         some: Sequence[LogState] = (),
+        maxwell: bool = True,
         *,
         size: tuple[int, int] | None = None,
         colouring: Colouring = "speed",
@@ -111,8 +112,8 @@ class Painter:
         """Prepare what is the same in all frames.
 
         rms_speed: approximate largest root-mean-square speed of the film, length/time; speeds are those relative to a
-        conserved motion of the whole gas. times: start and end of the film. some: some of its states. The others are
-        described in `Look`.
+        conserved motion of the whole gas. times: start and end of the film. some: some of its states. maxwell:
+        whether speeds are compared with the Maxwell-Boltzmann distribution. The others are described in `Look`.
 
         Raises:
             UserError: if there is no disc for a trail.
@@ -123,7 +124,7 @@ class Painter:
         self._dark = dark
         self._flow = centre_of_mass_velocity(scene, gas)
         self._scene, self._inside, self._gas, self._pistons = scene, walls_inside(scene), gas, pistons
-        self._colouring, self._shows = colouring, panel
+        self._colouring, self._shows, self._maxwell = colouring, panel, maxwell
         self._panel: Panel | None = None
         self._view = view(gas.box, pistons)
         self.size = size or frame_size(self._view, panel != "none")
@@ -227,7 +228,8 @@ class Painter:
         elif self._shows == "left-right":
             self._panel = SidesPanel(axes, self._scene, gas, line, times)
         else:
-            self._panel = SpeedPanel(axes, gas, rms_speed, line, self._shades if self._colouring == "speed" else None)
+            shades = self._shades if self._colouring == "speed" else None
+            self._panel = SpeedPanel(axes, gas, rms_speed, line if self._maxwell else None, shades)
             if self._flow.any():
                 axes.set_xlabel("speed relative to the gas (length/time)")
         axes.grid(linewidth=0.6)

@@ -35,10 +35,13 @@ class Panel(Protocol):
 
 
 class SpeedPanel:
-    """Distribution of the speeds next to the Maxwell-Boltzmann distribution."""
+    """Distribution of the speeds, next to the Maxwell-Boltzmann distribution if they tend to it."""
 
-    def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str, shades: np.ndarray | None) -> None:
-        """Draw the axes. line: colour of the curve. shades: (n, 4), colours of the discs along the axis of speeds."""
+    def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str | None, shades: np.ndarray | None) -> None:
+        """Draw the axes.
+
+        line: colour of the curve, None for no curve. shades: (n, 4), colours of the discs along the axis of speeds.
+        """
         self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0
         self._edges, self._speeds = np.linspace(0, top, BINS + 1), np.linspace(0, top, 200)
@@ -46,8 +49,8 @@ class SpeedPanel:
         highest = 1.8 * self._density(temperature).max()
         axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)", xlabel="speed (length/time)")
         self._bars = _bars(axes, self._edges)
-        (self._curve,) = axes.plot(self._speeds, self._density(1.0), color=line, animated=True)
-        self.handles = [Line2D([], [], color=line, label="Maxwell-Boltzmann")]
+        self._curves = axes.plot(self._speeds, self._density(1.0), color=line, animated=True) if line else []
+        self.handles = [Line2D([], [], color=line, label="Maxwell-Boltzmann")] if line else []
         if shades is not None:
             high = STRIP / (axes.bbox.height * 100 / axes.figure.dpi)
             strip = axes.inset_axes((0, -high, 1, high))
@@ -60,8 +63,9 @@ class SpeedPanel:
         """Bars of the speeds, and the curve at their temperature."""
         here = speed[state.inside]
         self._bars.set_data(np.histogram(here, self._edges)[0] / (max(len(here), 1) * self._edges[1]))
-        self._curve.set_ydata(self._density(state.mean(self._gas.mass * speed**2) / 2))
-        return self._bars, self._curve
+        for curve in self._curves:
+            curve.set_ydata(self._density(state.mean(self._gas.mass * speed**2) / 2))
+        return self._bars, *self._curves
 
     def _density(self, temperature: float) -> np.ndarray:
         """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib import colormaps
 
 from idealgas.analysis.core.bond_order import DENSE, bond_order
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
+from idealgas.analysis.core.ensemble import centre_of_mass_velocity, tends_to_equilibrium
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.style import COLOURS
 from idealgas.analysis.theory.ensemble import classes
@@ -90,7 +90,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         "speed": crossing(gas.box, moving),
         "flow": flow.tolist(),
         "fastest": FASTEST * thermal,
-        "mixes": _mixes(log),
+        "mixes": tends_to_equilibrium(log),
         "brightest": BRIGHTEST * thermal,
         "colours": {"order": _hex(_order_shades()), "species": COLOURS[: len(gas.species_names)]},
         "light": _hex(shades(np.linspace(0, PALEST, SHADES))),
@@ -125,14 +125,6 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
 def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
     """Time that a second of playing takes, in which a typical disc crosses a part of the box."""
     return max(box) / CROSSING / _rms_speed(velocity)
-
-
-def _mixes(log: Log) -> bool:
-    """Whether discs exchange energy, so that their speeds tend to the Maxwell-Boltzmann distribution."""
-    if not log.scene.properties.isolated:
-        return True
-    _, collisions = log.observables["disc_collisions"]
-    return bool(len(collisions) and 2 * collisions[-1] >= len(log.discs))
 
 
 def _rms_speed(velocity: np.ndarray) -> float:

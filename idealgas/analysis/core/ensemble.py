@@ -81,6 +81,14 @@ def column_profiles(log: Log, axis: int) -> list[ColumnProfile]:
     return ensembles.column_profiles(log.scene, log.discs, _spin_energy(log), axis)
 
 
+def tends_to_equilibrium(log: Log) -> bool:
+    """Whether discs exchange energy, so that their speeds tend to the Maxwell-Boltzmann distribution."""
+    if not log.scene.properties.isolated:
+        return True
+    _, collisions = log.observables["disc_collisions"]
+    return bool(len(collisions) and 2 * collisions[-1] >= len(log.discs))
+
+
 def _spin_energy(log: Log) -> float:
     """Energy of the spins of all discs at the start, energy."""
     if log.inertia is None or (spin := log.state_at(log.start_time).angular_velocity) is None:

@@ -21,6 +21,7 @@ from idealgas.movie.layout import LEFT, layout, view
 from idealgas.movie.painter import Painter
 from idealgas.movie.panels import DensityPanel, SidesPanel
 from idealgas.movie.piston_track import PistonTrack
+from idealgas.report.player import player
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
@@ -251,6 +252,21 @@ def test_the_panel_counts_the_discs_on_the_right():
         curve, _ = panel.update(STATE._replace(time=time, position=np.array([[x, 1.0] for x in places])), np.ones(2))
     assert np.array_equal(curve.get_data(), [[0.0, 1.0, 2.0], [0.0, 0.5, 1.0]])
     assert panel.handles[0].get_label() == "equal density"
+
+
+@pytest.mark.parametrize(("y", "compared"), [(5.0, ["Maxwell-Boltzmann"]), (8.0, [])])
+def test_speeds_of_discs_that_never_meet_are_not_compared_with_maxwell_boltzmann(tmp_path, y, compared):
+    """As in the report: two discs that fly towards each other, at one height or at two."""
+    discs = "".join(
+        f"[[disc]]\nposition = [{x}, {height}]\nvelocity = [{v}, 0]\nradius = 0.5\n"
+        for x, height, v in ((2, 5, 1), (8, y, -1))
+    )
+    simulate(parse_scene(f"box.size = [10, 10]\nrun.until = 10\n{discs}"), tmp_path / "two.h5")
+    with open_log(tmp_path / "two.h5") as log:
+        painter = film._painter(log, 1.0, (0.0, 10.0), [], {})
+        painter.paint(log.state_at(9.0))
+        assert [handle.get_label() for handle in painter._panel.handles] == compared
+        assert player(log).head["mixes"] == bool(compared)
 
 
 def test_the_density_is_that_of_the_strips():
