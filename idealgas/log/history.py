@@ -123,19 +123,32 @@ class LogHistory(LogHeader):
             last.append(self.checkpoints.times[-1].item())
         if len(self):
             last.append(self._times((len(self) - 1) // self._block * self._block)[-1].item())
+        elif not (self.has_events or self.complete):
+            last += self._sample_times("observables", 1)[-1:].tolist()
         end = self.summary.get("end_time", max(last))
         if end < max(last):
             raise DamageError(self.path, f"summary/value: end_time {end:g} (allowed from {max(last):g} on)")
         return end
 
+    def _sample_times(self, table: str, step: int) -> np.ndarray:
+        """Times of each `step`-th row of a table of samples; none for a missing table."""
+        path = next((f"{table}/{name}" for name in self._file.names(table) if name.endswith("/time")), None)
+        times = self._file.column(path, step) if path else np.empty(0)
+        if self.complete and len(times) and times[-1] > self.end_time:
+            raise DamageError(self.path, f"{path}: {times[-1]:g} (allowed up to {self.end_time:g}, the end)")
+        return times
+
     @cached_property
     def counts(self) -> dict[str, int]:
         """Numbers of `events`, `disc_collisions` and `trials` up to the end of the log.
 
-        Without event rows they are those of the last checkpoint.
+        Without event rows they are those of the last sample.
         """
         if self.complete:
             return {name: self.summary[name] for name in COUNTS}
+        if not self.has_events:
+            samples = {name: self._file.column(f"observables/{name}/value") for name in COUNTS}
+            return {name: int(values[-1]) if len(values) else 0 for name, values in samples.items()}
         last = self.checkpoints[-1] if len(self.checkpoints) else None
         events, collisions, trials = (int(last.values[name]) if last else 0 for name in COUNTS)
         if (first := last.row if last else 0) < len(self):

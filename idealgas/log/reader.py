@@ -160,14 +160,6 @@ class Log(LogHistory):
         """(S,) times of the snapshots, which `log.snapshot_every` adds to the file as in H5MD."""
         return self._sample_times("particles", 1)
 
-    def _sample_times(self, table: str, step: int) -> np.ndarray:
-        """Times of each `step`-th row of a table of samples; none for a missing table."""
-        path = next((f"{table}/{name}" for name in self._file.names(table) if name.endswith("/time")), None)
-        times = self._file.column(path, step) if path else np.empty(0)
-        if self.complete and len(times) and times[-1] > self.end_time:
-            raise DamageError(self.path, f"{path}: {times[-1]:g} (allowed up to {self.end_time:g}, the end)")
-        return times
-
     def flights(
         self, edges: ArrayLike | None = None, *, discs: ArrayLike | None = None, columns: Sequence[str] | None = None
     ) -> Iterator[Flights]:

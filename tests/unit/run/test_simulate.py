@@ -23,6 +23,20 @@ def run(path, scene):
     return summary, open_log(path)
 
 
+@pytest.mark.parametrize("events", ["true", "false"])
+def test_an_interrupted_log_ends_where_its_run_did(tmp_path, events):
+    """Also without event rows, where the last checkpoint lies before."""
+    scene = load_scene(CONFIGS / "quickstart.toml", [f"log.events={events}"])
+    summary = simulate(scene, tmp_path / "run.h5", interrupted=lambda: True)
+    with open_log(tmp_path / "run.h5") as log:
+        assert not log.complete
+        assert log.checkpoints.times[-1] < summary.end_time
+        assert (log.end_time, log.counts) == (
+            summary.end_time,
+            {"events": summary.events, "disc_collisions": summary.disc_collisions, "trials": 0},
+        )
+
+
 @pytest.mark.slow
 def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
     """It leaves a core to the log; what the log holds is the same."""
