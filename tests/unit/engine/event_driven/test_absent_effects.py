@@ -30,34 +30,21 @@ MARKERS = {
 read in those of others, and steering none, as it happens between epochs."""
 
 PROGRAM = """
-import functools, json, sys
-from numba import extending
-
-called = set()
-overload = extending.overload
-
-def watched(name, **options):
-    def decorate(choose):
-        @functools.wraps(choose)
-        def chosen(*types):
-            function = choose(*types)
-            called.add((function.__module__, function.__name__))
-            return function
-        return overload(name, **options)(chosen)
-    return decorate
-
-extending.overload = watched  # before the first entry point is compiled
-from idealgas.engine.event_driven.kernel import advance_events
+import gc, json, sys
 from idealgas.bench.effects import effect_scene
+from idealgas.engine.event_driven.kernel import advance_events
+from idealgas.jit import EntryPoint
 from idealgas.run.simulate import simulate
 
+called = set()
 if sys.argv[2] != "none":
     sys.setprofile(lambda frame, event, _: called.add((frame.f_globals.get("__name__"), frame.f_code.co_name)))
 simulate(effect_scene(None, 300) if sys.argv[2] == "none" else effect_scene(sys.argv[2], 4000), sys.argv[1])
 sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
-signatures = advance_events.compiled.signatures if hasattr(advance_events, "compiled") else []
-types = [str(kind) for kind in signatures[0][3].types] if signatures else []
+compiled = [keys for each in gc.get_objects() if isinstance(each, EntryPoint) for keys in each.reached.values()]
+names |= {".".join(key.split(".")[-2:]) for keys in compiled for key in keys}
+types = [str(kind) for signature in getattr(advance_events, "reached", ()) for kind in signature[3].types]
 print(json.dumps([sorted(names), types]))
 """
 

@@ -1,0 +1,343 @@
+"""Compilation, in one place: `njit` and parts of what it compiles, prefetching, aligned memory.
+
+numba's own cache looks only at the source file of an entry point and would serve outdated code when a function in
+another file changes. Here machine code is cached with digests of all that it was made of, see `dependencies`.
+
+numba is imported when the first entry point is called: commands that compile nothing start without it. Of numba this
+uses, beyond what is documented: the options `_nrt` and `no_cfunc_wrapper`; a dispatcher's `compile` and `_cache`, which
+are replaced; `CompileResult._reduce`, `_rebuild` and `serialize.dumps`, with which numba's cache stores results.
+"""
+
+import os
+import pickle
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache, cached_property, update_wrapper, wraps
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from idealgas.errors import UserError
+from idealgas.jit import files
+from idealgas.jit.dependencies import Part, copied, digest, fill, is_ours, names_of, part_of, reached
+
+INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+if INTERPRETED:
+    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
+
+CACHE_LINE = 64  # bytes
+
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
+"""Without numba's runtime, arrays are not reference-counted, and none can be made: the caller keeps them alive.
+
+Counting takes an atomic operation wherever LLVM cannot prove it needless, and makes the event loop five times slower.
+"""
+_PART: dict[str, Any] = {"no_cpython_wrapper": True, **_OPTIONS}
+_INLINE: dict[str, Any] = {"forceinline": True, **_PART}
+
+_NEEDLESS = {
+    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables",
+    "FindLiterallyCalls", "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "AnnotateTypes",
+    "DumpParforDiagnostics", "NopythonRewrites",
+}  # fmt: skip
+"""Passes of numba's compiler over what functions here do not contain. All passes together take most of the time."""
+
+_declared: list[Callable[[], object]] = []
+"""Declarations to numba, made before an entry point is compiled or loaded."""
+_compiling: list[tuple[str, set[str]]] = []
+"""Keys of the functions that are being compiled, callers first, each with the keys of all parts that it reaches."""
+_lock = threading.RLock()
+_local = threading.local()
+_seconds = 0.0
+
+
+def compile_seconds() -> float:
+    """Seconds that this process has spent on compiling entry points or loading their machine code."""
+    return _seconds
+
+
+class _Function(Part):
+    """A function that is compiled where a compiled one calls it.
+
+    Attributes:
+        reached: keys of the parts from which it is made, for each set of types of its arguments.
+    """
+
+    def __init__(self, function: Any, **options: Any) -> None:
+        super().__init__(function, **options)
+        self.reached: dict[tuple, set[str]] = {}
+        self.is_named(function)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """Numba's dispatcher of the function."""
+        import numba
+
+        with _lock:
+            self._copy = copied(self.py_func)
+            compiled = numba.njit(self._copy, **self.options, **_pipeline())
+            self._compile, compiled.compile = compiled.compile, self.compile
+            return compiled
+
+    def compile(self, signature: Any) -> Any:
+        """Compile for types of arguments, unless that is done, and record which parts are reached.
+
+        numba calls this for every call of the function that it finds in another one.
+        """
+        from numba import types
+
+        kinds = tuple(map(types.unliteral, signature))  # else there would be machine code for each constant
+        with _lock:
+            if kinds not in self.reached:
+                if not self.calls.isdisjoint(key for key, _ in _compiling):
+                    raise TypeError(f"{self.key}: functions that call each other in a circle cannot be compiled")
+                fill(self._copy, self.names)
+                keys = {self.key}
+                _compiling.append((self.key, keys))
+                try:
+                    self._compile(kinds)
+                finally:
+                    _compiling.pop()
+                self.reached[kinds] = keys
+            if _compiling:
+                _compiling[-1][1].update(self.reached[kinds])
+            return self._compile(kinds)
+
+
+class EntryPoint(_Function):
+    """A function that is compiled when it is first called: without fastmath and without the GIL, cached on disk.
+
+    Where another compiled function calls it, it is not inlined: numba would inherit `forceinline` from there.
+    """
+
+    def __init__(self, function: Callable) -> None:
+        """Take the function in Python."""
+        super().__init__(function, forceinline=False, **_OPTIONS)
+        self.is_named(self)
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the machine code, or the function itself in a block of `in_python`."""
+        return (self.py_func if getattr(_local, "in_python", False) else self.compiled)(*arguments)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """Numba's dispatcher of the function."""
+        with _lock:
+            _declare()
+            compiled = super().compiled
+            if is_ours(self.key):
+                compiled._cache = _Stored(self.name)
+            return compiled
+
+    def compile(self, signature: Any) -> Any:
+        """Compile for types of arguments or load the machine code, and measure the time."""
+        global _seconds
+        with _lock:
+            before, started = _seconds, time.perf_counter()
+            try:
+                _declare()
+                return super().compile(signature)
+            except (OSError, RuntimeError, ValueError) as error:  # which callers take for errors of a file they read
+                raise UserError(f"compilation failed: {' '.join(str(error).split())}") from error
+            finally:
+                _seconds = before + time.perf_counter() - started  # with that of entry points called by this one
+
+
+class _Stored:
+    """Machine code of an entry point on disk, as the cache of numba's dispatcher."""
+
+    cache_path = None
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """Return what was compiled for types of arguments, or None if nothing that is up to date can be loaded."""
+        from numba.core.compiler import CompileResult
+
+        target.refresh()
+        with suppress(Exception):  # damaged files raise almost anything
+            keys, code = files.load(self._name, _described(signature), digest)
+            result = CompileResult._rebuild(target, *pickle.loads(code))
+            _compiling[-1][1].update(keys)
+            return result
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Store what was compiled for types of arguments, if the disk takes it."""
+        from numba.core.serialize import dumps
+
+        if not result.library.has_dynamic_globals:
+            digests = {key: digest(key) for key in reached(_compiling[-1][1])}
+            with suppress(OSError):
+                files.save(self._name, _described(signature), digests, dumps(result._reduce()))
+
+
+def _described(types: Any) -> str:
+    """Describe types of arguments, with the names of the fields of tuples."""
+    return " ".join(f"{kind} {getattr(kind, 'fields', '')} {_described(getattr(kind, 'types', ()))}" for kind in types)
+
+
+@cache
+def _pipeline() -> dict[str, Any]:
+    """Option with numba's usual passes, less those over what functions here do not contain."""
+    from numba.core.compiler import CompilerBase, DefaultPassBuilder
+
+    class Short(CompilerBase):
+        def define_pipelines(self) -> list[Any]:
+            passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+            passes.passes = [each for each in passes.passes if each[0].__name__ not in _NEEDLESS]
+            passes.finalize()
+            return [passes]
+
+    return {"pipeline_class": Short}
+
+
+def _declare() -> None:
+    """Declare to numba what was declared since the last call."""
+    while _declared:
+        _declared.pop(0)()
+
+
+def njit(function: Callable) -> Any:
+    """Make a function an entry point of compiled code, see `EntryPoint`."""
+    return function if INTERPRETED else EntryPoint(function)
+
+
+@contextmanager
+def in_python(little: bool) -> Iterator[None]:
+    """Call entry points that have little to do as functions of Python, with the same results bit for bit.
+
+    Where numba is not loaded yet, that takes less time than to load it.
+    """
+    _local.in_python = little and "numba" not in sys.modules
+    try:
+        yield
+    finally:
+        _local.in_python = False
+
+
+def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:
+    """Decorate a function that declares something to numba, to be called before the first entry point is compiled."""
+    Part(declare, declare.__module__, chooses=True)
+    _declared.append(declare)
+    return declare
+
+
+def inline(function: Callable) -> Any:
+    """Compile a small function that LLVM inserts into the entry points that call it; in Python it stays as it is."""
+    _Function(function, **_INLINE)
+    return function
+
+
+def noinline(function: Callable) -> Any:
+    """Compile a long or rarely called function as part of its entry points; in Python it stays as it is."""
+    _Function(function, forceinline=False, **_PART)
+    return function
+
+
+def overload(function: Callable) -> Callable:
+    """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls.
+
+    For a function of another package, such as an operator, it is asked only if an argument is of a type of this one.
+    """
+    ours = is_ours(function.__module__)
+    target = part_of(function) or Part(function) if ours else None
+    if target is not None:
+        target.is_named(function)
+
+    def decorate(choose: Callable) -> Callable:
+        Part(choose, target.key if target is not None else choose.__module__, chooses=True)
+
+        @wraps(choose)
+        def chosen(*types: Any) -> FunctionType | None:
+            allowed = ours or any(is_ours(type(each).__module__) for each in types)
+            choice = choose(*types) if allowed else None
+            return choice and fill(copied(choice), names_of(choice))
+
+        @_declared.append
+        def declare() -> None:
+            from numba.extending import overload
+
+            overload(function, jit_options={**_INLINE, **_pipeline()})(chosen)
+
+        return choose
+
+    return decorate
+
+
+class _Intrinsic(Part):
+    """Instructions of LLVM that a function writes, as numba's `intrinsic` takes it."""
+
+    def __init__(self, function: Callable) -> None:
+        super().__init__(function, chooses=True)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """Numba's intrinsic."""
+        from numba.extending import intrinsic
+
+        return intrinsic(self.py_func)
+
+
+def intrinsic(function: Callable) -> Callable:
+    """Decorate a function that numba's `intrinsic` takes: compiled code calls it, Python cannot."""
+
+    def declared(*arguments: Any) -> Any:
+        raise TypeError(f"{function.__name__} is for compiled code only")
+
+    _Intrinsic(function).is_named(declared)
+    return declared
+
+
+def prefetch(array: Any, row: Any) -> None:
+    """Prefetch the memory of a row, as it will be read soon; does nothing in Python."""
+
+
+def prefetch_next_line(array: Any, row: Any) -> None:
+    """Prefetch the memory one cache line after a row, as it will be written soon; does nothing in Python.
+
+    Stores take effect in order: while one waits for memory that is not in a cache, all later ones wait too.
+    """
+
+
+def _prefetch(distance: int, for_writing: int) -> Callable:
+    """Function of an intrinsic that prefetches what lies at a distance (bytes) from a row of an array."""
+
+    def fetch(typing: Any, array: Any, row: Any) -> Any:
+        from llvmlite import ir
+        from numba import types
+
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            i32, byte = ir.IntType(32), ir.IntType(8).as_pointer()
+            values = context.make_array(array)(context, builder, arguments[0])
+            if array.ndim == 1 and array.layout == "C":
+                start = builder.bitcast(builder.gep(values.data, [arguments[1]]), byte)
+            else:
+                offset = builder.mul(builder.extract_value(values.strides, 0), arguments[1])
+                start = builder.gep(builder.bitcast(values.data, byte), [offset])
+            address = builder.gep(start, [ir.IntType(64)(distance)])
+            kind = ir.FunctionType(ir.VoidType(), [byte, i32, i32, i32])
+            function = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
+            builder.call(function, [address, i32(for_writing), i32(3), i32(1)])  # into all cache levels, data
+            return context.get_dummy_value()
+
+        return types.void(array, types.intp), code
+
+    return fetch
+
+
+_Intrinsic(_prefetch(0, 0)).is_named(prefetch)
+_Intrinsic(_prefetch(CACHE_LINE, 1)).is_named(prefetch_next_line)
+
+
+def aligned(n: int, dtype: np.dtype) -> Any:
+    """Array of n zeros in cache lines that nothing else is in; a record array if the dtype is structured."""
+    raw = np.zeros((-(-n * dtype.itemsize // CACHE_LINE) + 1) * CACHE_LINE, np.uint8)
+    start = -raw.__array_interface__["data"][0] % CACHE_LINE
+    kind: Any = np.recarray if dtype.names else np.ndarray
+    return kind(n, dtype, raw, start)
