@@ -3,11 +3,13 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from idealgas import cooling
+from idealgas.analysis.cooling import _law_error, _moments
 from idealgas.errors import NotApplicableError
 
 GAS = """
@@ -90,3 +92,22 @@ def test_a_gas_that_cools_more_slowly_than_by_theory_differs_from_it(make):
 def test_refused(make, overrides, why):
     with pytest.raises(NotApplicableError, match=why):
         cooling(make("run.collisions_per_disc=0.1", *overrides))
+
+
+def test_moments_of_few_discs():
+    """Of masses 1 at ±(3, 0) and ±(0, 1): Σ v²/D = 20/6, a₂ = (8/6) ⟨v⁴⟩/2⟨v²⟩² - 1 with 41 and 5; spins of I = 0.5."""
+    velocity = np.array([[3.0, 0], [-3, 0], [0, 1], [0, -1]])
+    gas = SimpleNamespace(mass=np.ones(4), velocity=velocity)
+    kept = SimpleNamespace(conserves_momentum=(True, True))
+    scene = SimpleNamespace(properties=kept, run=SimpleNamespace(method="event_driven"))
+    log = SimpleNamespace(discs=gas, scene=scene, inertia=np.full(4, 0.5))
+    state = SimpleNamespace(velocity=velocity, angular_velocity=np.array([2.0, 0, 0, -2]))
+    temperature, spin, cumulant = _moments(log, state, 6)
+    assert (temperature, spin) == (pytest.approx(20 / 6), 1.0)
+    assert cumulant == pytest.approx(8 / 6 * 41 / 50 - 1)
+
+
+def test_the_error_of_haffs_law():
+    """dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ, with 1 + t/τ = √(T₀/T)."""
+    law = np.array([4.0, 1.0, 0.25])
+    assert _law_error(law, 0.1) == pytest.approx([0.0, 0.2 * 0.5 * 1.0, 0.2 * 0.75 * 0.25])
