@@ -217,6 +217,15 @@ def test_impact_parameters_are_uniform():
 
 
 @pytest.mark.interpreted
+def test_a_pair_as_fast_as_the_reference_speed_is_always_accepted():
+    gas = gas_of(BOX, [(5, 5), (5, 5)], [(1.0, 0.0), (-1.0, 0.0)], 0.1)
+    for v_ref, least, most in ((2.0 * (1 + 1e-9), 50, 50), (8.0, 120, 320)):  # a quarter of them: 200 ± 24
+        made = simulation(gas, v_ref=v_ref)
+        record(made, Stop(events=50))
+        assert least <= made.counters.trials <= most
+
+
+@pytest.mark.interpreted
 def test_pairs_of_the_largest_discs_are_accepted_for_certain():
     """Of radii 0.1, 0.3 and 0.2 these have the reach 0.5: with it and v_ref no other pair is accepted more often."""
     gas = gas_of(BOX, np.full((3, 2), 5.0), [(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)], [0.1, 0.3, 0.2])

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from helpers.support import record
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
+from idealgas.physics.gravity import Gravity
 from idealgas.run.effects import make_effects
 from idealgas.scene import parse_scene
 from idealgas.state import Gas
@@ -85,6 +87,31 @@ def test_a_later_stop_in_the_same_epoch_is_another(method):
     assert on_the_way.finished(Stop(time=2.0))
     assert not on_the_way.finished(Stop(time=5.0))
     assert rows + run(on_the_way, Stop(time=5.0)) == run(at_once, Stop(time=5.0))
+
+
+@methods
+def test_limits_count_from_time_0_through_all_calls(method):
+    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
+    made = Simulation(gas_of((10, 10), *discs), method())
+    for stop in (Stop(disc_collisions=2), Stop(disc_collisions=5)):
+        run(made, stop)
+        assert made.counters.disc_collisions == stop.disc_collisions
+    for events in (made.counters.events + 3, made.counters.events + 5):
+        run(made, Stop(events=events))
+        assert made.counters.events == events
+
+
+@methods
+def test_epochs_end_at_changes_and_time_counts_from_the_start_of_the_run(method):
+    """The pull changes at t = 3, one after the start at t = 2; from there the disc falls to y = 5 + 1 - 2 · 1/2."""
+    effects = Effects(gravity=Gravity(0.0, 0.0), schedule=((3.0, 0, 1, -2.0),))
+    made = Simulation(gas_of((10, 10), (5, 5, 0, 1, 1)), method(), effects, time=2.0)
+    assert (made.length, made.effects.gravity.y) == (1.0, 0.0)
+    run(made, Stop(time=4.0))
+    assert (made.reached, made.effects.gravity.y) == (4.0, -2.0)
+    end = made.state()[0]
+    assert end.position.tolist() == [[5.0, 6.0]]
+    assert end.velocity.tolist() == [[0.0, -1.0]]
 
 
 def run_rows(rows, events):

@@ -117,6 +117,17 @@ def test_a_head_on_collision_is_found_at_the_end_of_a_step():
 
 
 @pytest.mark.interpreted
+@pytest.mark.usefixtures("uncompiled")
+def test_discs_that_both_move_are_listed_in_time():
+    """They are a gap and a half of the skin apart at first, and no pair: each flies three quarters of it."""
+    skin = make_nearby(gas_of(BOX, [(2.0, 4.0), (8.0, 4.0)], 0.0, 0.25), (False, False)).skin
+    dt, away = skin / 40, 0.25 + 0.75 * skin
+    gas = gas_of(BOX, [(5.0 - away, 4.0), (5.0 + away, 4.0)], [(1.0, 0.0), (-1.0, 0.0)], 0.25)
+    rows = record(Simulation(gas, TimeDriven(dt)), Stop(disc_collisions=1))
+    assert rows.time == pytest.approx([31 * dt] * 2, rel=1e-12)  # after 30 steps they touch
+
+
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("place", "velocity", "side"),
     [((0.4, 4), (-1, 0), 0), ((0.4, 4), (1, 0), -1), ((9.6, 4), (1, 0), 1), ((9.6, 4), (-1, 0), -1),
