@@ -8,8 +8,8 @@ or text has one of them.
 
 Each change is made in a copy of the repository, and the tests of its module run there until one fails: the files
 called `test_MODULE.py`, or the folder of this name. With `--wide` those in the folder of `tests/unit` that mirrors the
-package follow. Laws, effects and engine are not compiled (NUMBA_DISABLE_JIT=1, only tests marked `interpreted`), unless
-`--compiled` is given. A change is caught if a test fails that passes without it.
+package follow. Tests marked `interpreted` run first, without compiling, then all; of laws, effects and engine only the
+former, unless `--compiled` is given. A change is caught if a test fails that passes without it.
 """
 
 import argparse
@@ -22,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -98,10 +99,10 @@ class Bench:
 
     def run(self, arguments: list[str], interpreted: bool, limit: float | None = None) -> tuple[int, str]:
         """Exit code of pytest, and the test that fails; a test that takes longer than the limit fails."""
-        environment = os.environ | {"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        environment = os.environ | {"PYTHONPATH": str(self.folder)}
         marker = ["-m", "interpreted and not long and not slow"] if interpreted else []
         environment |= {"NUMBA_DISABLE_JIT": "1"} if interpreted else {}
-        command = [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", "-p", "no:randomly", *marker]
+        command = [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *marker]
         try:
             done = subprocess.run(
                 [*command, *arguments], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=limit
@@ -115,9 +116,10 @@ class Bench:
         """The test that fails with a change; empty if none does."""
         path = self.folder / mutant.path
         source, times = path.read_text(encoding="utf-8"), (path.stat().st_atime, path.stat().st_mtime)
-        in_python = Path(mutant.path).parts[1] in COMPILED and not self.compiled
-        for files in stages(mutant, self.folder, self.wide):
-            key = tuple(files)
+        compiles = self.compiled or Path(mutant.path).parts[1] not in COMPILED
+        modes = (True, False) if compiles else (True,)
+        for files, in_python in product(stages(mutant, self.folder, self.wide), modes):
+            key = (*files, str(in_python))
             if key not in self._seconds:
                 started = time.monotonic()
                 code, failed = self.run(files, in_python)

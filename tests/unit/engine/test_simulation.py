@@ -102,6 +102,7 @@ def test_limits_count_from_time_0_through_all_calls(method):
 
 
 @methods
+@pytest.mark.usefixtures("uncompiled")
 def test_epochs_end_at_changes_and_time_counts_from_the_start_of_the_run(method):
     """The pull changes at t = 3, one after the start at t = 2; from there the disc falls to y = 5 + 1 - 2 · 1/2."""
     effects = Effects(gravity=Gravity(0.0, 0.0), schedule=((3.0, 0, 1, -2.0),))

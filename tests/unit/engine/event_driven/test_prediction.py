@@ -21,7 +21,7 @@ from idealgas.engine.event_driven.prediction import (
 )
 from idealgas.jit import aligned
 
-pytestmark = pytest.mark.interpreted
+pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:overflow encountered")]
 
 
 def test_the_order_of_simultaneous_events():
