@@ -23,9 +23,8 @@ def _to_left(wall: Any) -> float:
     return (wall.end[0] - wall.start[0]) * outward[1] - (wall.end[1] - wall.start[1]) * outward[0]
 
 
-def _passage(wall: Any, species: str) -> int:
-    if not wall.lets_pass(species):
-        return law.SOLID
+def _passage(wall: Any) -> int:
+    """How a wall lets those discs pass that it does."""
     if wall.permeable_from is None:
         return law.OPEN
     return law.FROM_LEFT if _to_left(wall) > 0 else law.FROM_RIGHT
@@ -52,8 +51,12 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 def _make(tables: Tables, start: Start) -> law.Permeable:
     gas = start.gas
-    passage = [[_passage(wall, name) for name in gas.species_names] for wall in tables.walls]
-    return law.Permeable(gas.species.astype(np.uint16), np.array(passage, np.uint8))
+    names = np.array(gas.species_names)
+    passage = np.full((len(tables.walls), len(names)), law.SOLID, np.uint8)
+    for wall, row in zip(tables.walls, passage, strict=True):
+        if wall.is_permeable:
+            row[slice(None) if wall.permeable_to is None else np.isin(names, wall.permeable_to)] = _passage(wall)
+    return law.Permeable(gas.species.astype(np.uint16), passage)
 
 
 def _door(x: float, height: float) -> str:

@@ -174,6 +174,7 @@ class WallGauge:
     def faces(self, edges: np.ndarray) -> list[Face]:
         """Faces of sides that are not periodic and of wall segments; edges: (B + 1,), times between the blocks."""
         found = []
+        solids = any(self._log.scene.solids.walls.values())
         for k, wall in enumerate(number_walls(self._log.scene)):
             if wall.radius or (k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]):
                 continue
@@ -185,7 +186,7 @@ class WallGauge:
                 names = [f"{wall.name}, {name}" for name in self._looks(k, wall)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
-                if any(self._log.scene.solids.walls.values()) and not push.any():  # it looks into a solid
+                if solids and not push.any():  # it looks into a solid
                     continue
                 found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
         return found

@@ -25,3 +25,14 @@ def test_a_column_of_four_discs(make, sides):
     for estimate in (*gas.density[: len(warm)], *warm):
         assert abs(estimate.deviation) < 4
         print(estimate)
+
+
+def test_there_is_no_theory_of_many_kinds(make):
+    """The time of that of fixed energy grows as their square: 16 kinds have one, 17 have none."""
+    kinds = "".join(f', {{ name = "k{k}", count = 1, radius = 0.0{k}, temperature = 1 }}' for k in range(10, 26))
+    laws = [
+        ProfileAnalysis.measure(make("run.until=300", f"species=[{text[2:]}]"), bins=2).law
+        for text in (kinds, kinds + ', { name = "x", count = 1, radius = 0.026, temperature = 1 }')
+    ]
+    assert laws[0].startswith("barometric at fixed energy")
+    assert laws[1] is None

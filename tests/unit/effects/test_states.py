@@ -8,6 +8,7 @@ import pytest
 from idealgas.effects.bundle import energy_parts
 from idealgas.effects.vibration import reach
 from idealgas.initial.build import make_gas
+from idealgas.physics.permeable import FROM_LEFT, FROM_RIGHT, OPEN, SOLID
 from idealgas.physics.stress import COLLISIONAL, KINETIC
 from idealgas.run.effects import make_effects
 from idealgas.run.energy import energy_of
@@ -148,3 +149,25 @@ def test_kinetic_energy_and_its_account_at_time_0():
     assert (energy.kinetic, energy.given, energy.lost, energy.balance) == (7.625, 0.0, 0.0, 7.625)
     assert np.all(effects.thermostat.time > 0)
     assert effects.thermal.temperature.tolist() == [2.0, -1.0, -1.0, -1.0]
+
+
+def test_walls_let_species_pass_as_their_tables_say():
+    """A wall upwards: from the left is from its left; downwards, from its right. The sides of the box are no walls."""
+    walls = """
+    species = [
+        { name = "a", count = 1, radius = 0.1, temperature = 1 },
+        { name = "b", count = 1, radius = 0.1, temperature = 1 },
+    ]
+    wall = [
+        { from = [4, 1], to = [4, 7] },
+        { from = [4, 1], to = [4, 7], permeable_to = ["b"] },
+        { from = [4, 1], to = [4, 7], permeable_from = "left" },
+        { from = [4, 7], to = [4, 1], permeable_from = "left", permeable_to = ["a"] },
+    ]
+    """
+    gas, effects = made(walls)
+    names = dict(enumerate(gas.species_names))
+    passes = {name: effects.permeable.passage[:, k].tolist() for k, name in names.items()}
+    assert passes["a"] == [SOLID, SOLID, FROM_LEFT, FROM_RIGHT]
+    assert passes["b"] == [SOLID, OPEN, FROM_LEFT, SOLID]
+    assert effects.permeable.species.tolist() == gas.species.tolist()
