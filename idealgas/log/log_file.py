@@ -24,8 +24,10 @@ from idealgas.log.hdf5.commit import Commit, commit_of, table_of
 from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
-_CACHED = 8
-"""Number of chunks of events in the cache, and half the number of small chunks of other tables."""
+_CACHED = 64
+"""Number of chunks of events in the cache, up to 64 MiB: several analyses read a log of half a million rows once."""
+_CACHED_OTHERS = 16
+"""Number of small chunks of other tables in the cache."""
 _SMALL = 2**20
 """Largest size of a small chunk, bytes."""
 ATTEMPTS = 10
@@ -64,7 +66,7 @@ class LogFile:
         self._opened: list[Any] = []
         weakref.finalize(self, _close_all, self._opened)  # before Python ends: HDF5 ends later, and then reads no more
         self._events = lru_cache(_CACHED)(self._chunk)
-        self._others = lru_cache(2 * _CACHED)(self._chunk)
+        self._others = lru_cache(_CACHED_OTHERS)(self._chunk)
         keep_freed_memory()
         try:
             self._read(self._open)

@@ -13,6 +13,8 @@ Inference, 2002), so that the error contains how uncertain the order of a short 
 """
 
 import math
+import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -36,6 +38,10 @@ LEAST = 1e-150
 """Change of a series, in its own unit, whose square may be rounded to 0."""
 
 
+FEW = 150
+"""Number of fits that take less time in NumPy than loading numba."""
+
+
 class Model(NamedTuple):
     """Autoregressive model of order p of a series of n samples.
 
@@ -48,13 +54,6 @@ class Model(NamedTuple):
     noise: float
     covariance: np.ndarray
     variance_of_log: float
-
-    def covariances(self, length: int) -> np.ndarray:
-        """Autocovariances (length,) of the process from lag 0 on."""
-        known = self.covariance[:length]
-        found = np.append(known, np.zeros(length - len(known)))
-        _go_on(self.coefficients, found)
-        return found
 
 
 class Spread(NamedTuple):
@@ -74,7 +73,22 @@ class Process:
 
     def covariances(self, length: int) -> np.ndarray:
         """Autocovariances (length,) from lag 0 on, averaged over the models."""
-        return np.asarray(sum(w * m.covariances(length) for m, w in zip(self.models, self.weights, strict=True)))
+        return np.asarray(
+            sum(w * each for w, each in zip(self.weights, self.covariances_of_models(length), strict=True))
+        )
+
+    def covariances_of_models(self, length: int) -> np.ndarray:
+        """Autocovariances (models, length) from lag 0 on by each model."""
+        found = np.zeros((len(self.models), length))
+        for model, row in zip(self.models, found, strict=True):
+            known = model.covariance[:length]
+            row[: len(known)] = known
+        if _is_worth_loading():
+            for model, row in zip(self.models, found, strict=True):
+                _go_on(model.coefficients, row)
+        else:
+            _go_on_together([model.coefficients for model in self.models], found)
+        return found
 
     def spread(self, number: int | None = None) -> Spread:
         """Standard error of the mean of so many successive samples, by default of all of the series.
@@ -82,8 +96,7 @@ class Process:
         If the spectrum at frequency 0 is known as well as from ν independent samples, the mean, which was subtracted,
         has taken one of them: Bessel's correction has ν in place of n.
         """
-        found = [variance_of_mean(model.covariances(number or self.length))[-1] for model in self.models]
-        logs = np.log(found)
+        logs = np.log(variance_of_mean(self.covariances_of_models(number or self.length))[:, -1])
         middle = float(self.weights @ logs)
         doubt = np.array([model.variance_of_log for model in self.models]) + (logs - middle) ** 2
         samples = max(2 / float(self.weights @ doubt), 2.0)
@@ -91,9 +104,9 @@ class Process:
 
 
 def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
-    """Variance (n,) of the mean of 1 to n successive samples from autocovariances (n,) at lags 0 to n - 1."""
-    n = np.arange(1, len(covariance) + 1)
-    return np.asarray((2 * np.cumsum(np.cumsum(covariance)) - n * covariance[0]) / n**2)
+    """Variance (…, n) of the mean of 1 to n successive samples from autocovariances (…, n) at lags 0 to n - 1."""
+    n = np.arange(1, covariance.shape[-1] + 1)
+    return np.asarray((2 * np.cumsum(np.cumsum(covariance, axis=-1), axis=-1) - n * covariance[..., :1]) / n**2)
 
 
 def error_of_mean(series: np.ndarray, number: int | None = None, memory: float = 0.0) -> Spread:
@@ -163,26 +176,36 @@ def changes(series: np.ndarray) -> bool:
 
 
 def process_of(series: np.ndarray) -> Process:
-    """Process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2."""
-    models, n = tuple(_models(series.reshape(len(series), -1))), series.size
-    orders, noise = np.arange(len(models)), np.array([model.noise for model in models])
-    criterion = n * np.log(noise) + 2 * (orders + 1) * n / np.maximum(n - orders - 2, 0.5)
-    weight = np.exp((criterion.min() - criterion) / 2)
-    kept = np.flatnonzero(weight >= LEAST_WEIGHT)
-    return Process(tuple(models[p] for p in kept), weight[kept] / weight[kept].sum(), len(series))
+    """Process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2.
 
-
-def _models(series: np.ndarray) -> list[Model]:
-    """Models of M series (n, M) of mean 0, of orders 0 to n/8 or, if they are long, 20 log₁₀ n."""
+    The models have orders from 0 to n/8 or, if the series are long, 20 log₁₀ n.
+    """
+    global _fits
+    _fits += 1
     length, n = len(series), series.size
     most = min(length // 8, int(20 * math.log10(length)))
     coefficients = np.zeros((most + 1, most))
     noise, covariance, doubt = np.zeros((3, most + 1))
-    found = _fit(np.array(series, float), np.array(series, float), coefficients, noise, covariance, doubt)
-    return [
+    forward, backward = np.array([series.reshape(length, -1)] * 2, float)
+    fit = _fit if _is_worth_loading() else _fit_in_numpy
+    number = fit(forward, backward, coefficients, noise, covariance, doubt)
+    orders = np.arange(number)
+    criterion = n * np.log(noise[:number]) + 2 * (orders + 1) * n / np.maximum(n - orders - 2, 0.5)
+    weight = np.exp((criterion.min() - criterion) / 2)
+    kept = np.flatnonzero(weight >= LEAST_WEIGHT)
+    models = tuple(
         Model(coefficients[p, :p], noise[p], covariance[: p + 1] * n / (n - p), 2 / n + 4 * doubt[p] / n)
-        for p in range(found)
-    ]
+        for p in kept.tolist()
+    )
+    return Process(models, weight[kept] / weight[kept].sum(), length)
+
+
+_fits = 0
+
+
+def _is_worth_loading() -> bool:
+    """Whether compiled functions are used, whose numbers are the same bit for bit: a few fits do not load numba."""
+    return _fits > FEW or "numba" in sys.modules
 
 
 @njit
@@ -240,3 +263,58 @@ def _go_on(coefficients, covariance):
         for j in range(p):
             total += coefficients[j] * covariance[k - 1 - j]
         covariance[k] = total
+
+
+def _fit_in_numpy(
+    forward: np.ndarray,
+    backward: np.ndarray,
+    coefficients: np.ndarray,
+    noise: np.ndarray,
+    covariance: np.ndarray,
+    doubt: np.ndarray,
+) -> int:
+    """Do what `_fit` does; sums are those of `cumsum`, which adds one number after the other."""
+    products, others = np.empty((2, *forward.shape))
+    left = (forward * forward / forward.size).cumsum()[-1]
+    least, rest, certainty = NOISE * left, np.float64(1.0), 0.0
+    covariance[0] = left
+    for p in range(len(noise)):
+        if p > 0:
+            ahead, behind = forward[p:], backward[p - 1 : -1]
+            one, other = products[p:], others[p:]  # in place, as there may be many series
+            both = np.multiply(ahead, behind, out=one).cumsum(out=one.reshape(-1))[-1]
+            np.multiply(ahead, ahead, out=one)
+            one += np.multiply(behind, behind, out=other)
+            power = one.cumsum(out=one.reshape(-1))[-1]
+            reflection = 2 * both / power if power > 0 else 0.0
+            certainty += rest * rest / left
+            before = coefficients[p - 1, : p - 1]
+            coefficients[p, : p - 1] = before - reflection * before[::-1]
+            coefficients[p, p - 1] = reflection
+            covariance[p] = np.append(reflection * left, before * covariance[p - 1 : 0 : -1]).cumsum()[-1]
+            rest = np.subtract.accumulate(np.append(1.0 - reflection, coefficients[p, : p - 1]))[-1]
+            left *= 1 - reflection * reflection
+            np.multiply(reflection, ahead, out=one)
+            ahead -= np.multiply(reflection, behind, out=other)
+            backward[p:] = np.subtract(behind, one, out=one)
+        if left <= least:
+            return p
+        noise[p] = left
+        with np.errstate(divide="ignore"):
+            doubt[p] = left * certainty / (rest * rest)
+    return len(noise)
+
+
+def _go_on_together(coefficients: Sequence[np.ndarray], covariance: np.ndarray) -> None:
+    """Do what `_go_on` does, for several models with their autocovariances (models, n)."""
+    orders = np.array([*map(len, coefficients), 0])  # sums over rows of two columns or more are in their order
+    most, n = int(orders.max()), covariance.shape[1]
+    weights = np.zeros((most, len(orders)))
+    found = np.zeros((most + n, len(orders)))  # with zeros before lag 0
+    for k, known in enumerate(coefficients):
+        weights[most - len(known) :, k] = known[::-1]
+    found[most:, :-1] = covariance.T
+    for lag in range(int(orders[:-1].min()) + 1, n):
+        total = np.add.reduce((weights * found[lag : lag + most])[::-1], axis=0)
+        np.copyto(found[most + lag], total, where=orders < lag)
+    covariance[:] = found[most:, :-1].T

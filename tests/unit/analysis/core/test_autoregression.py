@@ -78,10 +78,24 @@ def test_variance_of_mean_sums_all_covariances():
 def test_covariances_follow_the_model():
     process = autoregression.process_of(series_of([0.5, 0.3], 500, np.random.default_rng(3)))
     model = process.models[-1]
-    found, p = model.covariances(50), len(model.coefficients)
+    found, p = process.covariances_of_models(50)[-1], len(model.coefficients)
     for k in range(p + 1, 50):
         assert found[k] == pytest.approx(model.coefficients @ found[k - p : k][::-1])
-    assert model.covariances(2) == pytest.approx(found[:2])
+    assert process.covariances_of_models(2)[-1] == pytest.approx(found[:2])
+
+
+@pytest.mark.parametrize(("length", "members"), [(2, 1), (16, 1), (250, 1), (60, 7)])
+@pytest.mark.parametrize("memory", [0.0, 0.9])
+def test_numpy_and_compiled_functions_have_the_same_numbers(monkeypatch, length, members, memory):
+    random = np.random.default_rng(7)
+    series = np.transpose([series_of([memory], length, random) for _ in range(members)])
+    processes = []
+    for compiled in (False, True):
+        monkeypatch.setattr(autoregression, "_is_worth_loading", lambda compiled=compiled: compiled)
+        process = autoregression.process_of(series - series.mean())
+        numbers = [process.weights, process.covariances(length), *(np.hstack(model) for model in process.models)]
+        processes.append(([number.tolist() for number in numbers], process.spread(), process.spread(1)))
+    assert processes[0] == processes[1]
 
 
 def test_short_and_constant_series():
