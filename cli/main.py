@@ -5,6 +5,7 @@ starts with an underscore, and this one, are not commands. Commands that analyse
 the analyses.
 """
 
+import gc
 import logging
 import os
 import signal
@@ -80,6 +81,7 @@ class Commands(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program."""
         set_up_streams()
+        gc.set_threshold(100_000, 50, 50)  # imports make many objects that stay, and search them again and again
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it looks for them in all installed packages
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
         return super().main(*args, **options)

@@ -213,7 +213,9 @@ class FlightReader:
             yield self._flights(self._join.states(some), np.full(len(some), self._edges[-1]), None)
 
     def cut(self, flights: Arrays) -> Iterator[Arrays]:
-        """Yield the pieces between edges of a batch of uncut flights, in batches."""
+        """Yield the pieces between edges of a batch of uncut flights, in batches, with the columns of this reader."""
+        kept = {"disc", "block", "start", "end", "partner", *self._made}
+        flights = {name: values for name, values in flights.items() if name in kept}
         edges, last = self._edges, flights["block"]
         before = np.flatnonzero(flights["start"] < edges[last])
         if len(before) == 0:

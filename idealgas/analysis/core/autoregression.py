@@ -38,8 +38,8 @@ LEAST = 1e-150
 """Change of a series, in its own unit, whose square may be rounded to 0."""
 
 
-FEW = 150
-"""Number of fits that take less time in NumPy than loading numba."""
+FEW = 2**14
+"""Number of samples whose models NumPy finds in much less time than loading numba takes."""
 
 
 class Model(NamedTuple):
@@ -180,8 +180,8 @@ def process_of(series: np.ndarray) -> Process:
 
     The models have orders from 0 to n/8 or, if the series are long, 20 log₁₀ n.
     """
-    global _fits
-    _fits += 1
+    global _fitted
+    _fitted += series.size
     length, n = len(series), series.size
     most = min(length // 8, int(20 * math.log10(length)))
     coefficients = np.zeros((most + 1, most))
@@ -200,12 +200,12 @@ def process_of(series: np.ndarray) -> Process:
     return Process(models, weight[kept] / weight[kept].sum(), length)
 
 
-_fits = 0
+_fitted = 0
 
 
 def _is_worth_loading() -> bool:
-    """Whether compiled functions are used, whose numbers are the same bit for bit: a few fits do not load numba."""
-    return _fits > FEW or "numba" in sys.modules
+    """Whether compiled functions are used, whose numbers are the same bit for bit."""
+    return _fitted > FEW or "numba" in sys.modules
 
 
 @njit
@@ -274,18 +274,13 @@ def _fit_in_numpy(
     doubt: np.ndarray,
 ) -> int:
     """Do what `_fit` does; sums are those of `cumsum`, which adds one number after the other."""
-    products, others = np.empty((2, *forward.shape))
     left = (forward * forward / forward.size).cumsum()[-1]
     least, rest, certainty = NOISE * left, np.float64(1.0), 0.0
     covariance[0] = left
     for p in range(len(noise)):
         if p > 0:
             ahead, behind = forward[p:], backward[p - 1 : -1]
-            one, other = products[p:], others[p:]  # in place, as there may be many series
-            both = np.multiply(ahead, behind, out=one).cumsum(out=one.reshape(-1))[-1]
-            np.multiply(ahead, ahead, out=one)
-            one += np.multiply(behind, behind, out=other)
-            power = one.cumsum(out=one.reshape(-1))[-1]
+            both, power = (ahead * behind).cumsum()[-1], (ahead * ahead + behind * behind).cumsum()[-1]
             reflection = 2 * both / power if power > 0 else 0.0
             certainty += rest * rest / left
             before = coefficients[p - 1, : p - 1]
@@ -294,9 +289,7 @@ def _fit_in_numpy(
             covariance[p] = np.append(reflection * left, before * covariance[p - 1 : 0 : -1]).cumsum()[-1]
             rest = np.subtract.accumulate(np.append(1.0 - reflection, coefficients[p, : p - 1]))[-1]
             left *= 1 - reflection * reflection
-            np.multiply(reflection, ahead, out=one)
-            ahead -= np.multiply(reflection, behind, out=other)
-            backward[p:] = np.subtract(behind, one, out=one)
+            forward[p:], backward[p:] = ahead - reflection * behind, behind - reflection * ahead
         if left <= least:
             return p
         noise[p] = left

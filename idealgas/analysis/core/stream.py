@@ -72,22 +72,23 @@ def stream(
     for tally in tallies:
         tally.begin(gas, edges)
     cutting = [tally for tally in tallies if tally.cut]
+    cutter = FlightReader(log, edges, columns=tuple({name for tally in cutting for name in tally.columns}))
     done, rows = 0, log.row_at(edges[-1], "right") - log.row_at(edges[0], "right")
     for flights in reader.whole():
         whole = moving(reader.batch(flights)) if len(cutting) < len(tallies) else None
         for tally in tallies:
             if whole is not None and not tally.cut:
                 tally.add(whole)
-        for pieces in reader.cut(flights) if cutting else ():
-            some = moving(reader.batch(pieces))
+        for pieces in cutter.cut(flights) if cutting else ():
+            some = moving(cutter.batch(pieces))
             for tally in cutting:
                 tally.add(some)
         done += len(flights["disc"])
         if progress is not None:
             progress(done, rows)
     for flights in reader.open() if cutting else ():
-        for pieces in reader.cut(flights):
-            some = moving(reader.batch(pieces))
+        for pieces in cutter.cut(flights):
+            some = moving(cutter.batch(pieces))
             for tally in cutting:
                 tally.add(some)
     for tally in tallies:
