@@ -105,6 +105,13 @@ def logs(tmp_path_factory):
 # ── names ──
 
 
+def test_linear_algebra_takes_one_thread_unless_another_number_is_set():
+    name = "OPENBLAS_NUM_THREADS"
+    show = f"import idealgas, sys; print(os.environ['{name}'], 'numpy' in sys.modules)"
+    assert python(f"import os; os.environ.pop('{name}', None); {show}") == "1 False\n"
+    assert python(f"import os; os.environ['{name}'] = '3'; {show}") == "3 False\n"
+
+
 def test_dir_shows_every_name():
     assert dir(idealgas) == sorted({*idealgas.__all__, *registry.names()})
     functions = {
