@@ -34,7 +34,7 @@ from idealgas.physics.disc_disc import contact_time
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_after, time_to_plane, velocity_after
-from idealgas.physics.periodic import boundary_crossings_along, images_between, images_to_wall, is_periodic
+from idealgas.physics.periodic import images_between, images_to_wall, is_periodic
 from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import is_piston_side, piston_contact, stop_contact
 from idealgas.physics.shear import crossing_time
@@ -55,7 +55,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
         along_y = side >= 2
         if is_piston_side(side, effects.piston):
             best = piston_event(disc, i, side, effects.piston, effects.gravity, best)
-        elif not boundary_crossings_along(effects.periodic, disc, along_y)[1]:
+        elif not is_periodic(effects.periodic, along_y):
             time = side_time(disc, side, length_y if along_y else length_x, effects.shear, effects)
             if time < best[0]:
                 best = (time, WALL, i, side, 0, 0)
@@ -176,8 +176,8 @@ def boundary_crossing_event(record, i, periodic, gravity, now, best):
     """
     if periodic is not None:
         for axis in range(2):
-            crossings, is_periodic = boundary_crossings_along(periodic, record[i], axis == 1)
-            if is_periodic:
+            if is_periodic(periodic, axis == 1):
+                crossings = record[i].crossed_y if axis == 1 else record[i].crossed_x
                 length = periodic.Ly if axis == 1 else periodic.Lx
                 time, forward = boundary_crossing_along(record[i], axis == 1, crossings, length, gravity, now)
                 if time < best[0]:

@@ -19,74 +19,54 @@ def batch_capacity(batch):
 
 
 @inline
-def write_position(column, row, disc):
-    """Write a disc's position (length) into a row, where the batch has positions."""
-    if column is not None:
-        column[row, 0] = disc.x
-        column[row, 1] = disc.y
-
-
-@inline
-def write_spin(column, row, own, rotation):
-    """Write a disc's angular velocity (1/time) into a row, where discs spin."""
-    if rotation is not None:
-        column[row] = rotation.omega[U(own)]
-
-
-@inline
-def write_image(column, row, own, periodic):
-    """Write a disc's image (box lengths along x and y) into a row, where sides are periodic."""
-    if periodic is not None:
-        column[row, 0] = periodic.image[U(own), 0]
-        column[row, 1] = periodic.image[U(own), 1]
-
-
-@inline
-def write_event(batch, row, time, own, partner, kind, disc, effects):
-    """Write one disc's row of an event: its state after the event."""
+def write_event(batch, row, time, own, partner, kind, disc, position, rotation, periodic):
+    """Write one disc's row of an event: its state after the event, with what the batch has columns for."""
     u = U(row)
     batch.time[u] = time
     batch.disc[u] = own
     batch.partner[u] = partner
     batch.kind[u] = kind
-    write_position(batch.position, u, disc)
     batch.velocity[u, 0] = disc.vx
     batch.velocity[u, 1] = disc.vy
-    write_spin(batch.angular_velocity, u, own, effects.rotation)
-    write_image(batch.image, u, own, effects.periodic)
+    if position is not None:
+        position[u, 0] = disc.x
+        position[u, 1] = disc.y
+    if rotation is not None:
+        batch.angular_velocity[u] = rotation.omega[U(own)]
+    if periodic is not None:
+        batch.image[u, 0] = periodic.image[U(own), 0]
+        batch.image[u, 1] = periodic.image[U(own), 1]
 
 
 @inline
-def fetch_column(column, row):
-    """Prefetch the memory of a column's next rows, if the batch has the column."""
-    if column is not None:
-        prefetch_next_line(column, row)
-
-
-@inline
-def fetch_next_rows(batch, row):
+def fetch_next_rows(batch, row, position, angular_velocity, image, trial):
     """Prefetch the memory of the next rows, so that the next pair is written sooner."""
-    fetch_column(batch.time, row)
-    fetch_column(batch.disc, row)
-    fetch_column(batch.partner, row)
-    fetch_column(batch.kind, row)
-    fetch_column(batch.position, row)
-    fetch_column(batch.velocity, row)
-    fetch_column(batch.angular_velocity, row)
-    fetch_column(batch.image, row)
-    fetch_column(batch.trial, row)
+    prefetch_next_line(batch.time, row)
+    prefetch_next_line(batch.disc, row)
+    prefetch_next_line(batch.partner, row)
+    prefetch_next_line(batch.kind, row)
+    prefetch_next_line(batch.velocity, row)
+    if position is not None:
+        prefetch_next_line(position, row)
+    if angular_velocity is not None:
+        prefetch_next_line(angular_velocity, row)
+    if image is not None:
+        prefetch_next_line(image, row)
+    if trial is not None:
+        prefetch_next_line(trial, row)
 
 
 @inline
 def write_pair(batch, row, time, record, ids, i, j, effects):
     """Write both rows of a collision of discs i and j, that of the smaller id first."""
     if batch is not None:
-        fetch_next_rows(batch, U(row))
+        fetch_next_rows(batch, U(row), batch.position, batch.angular_velocity, batch.image, batch.trial)
         a, b = (i, j) if ids[U(i)] < ids[U(j)] else (j, i)
         a_id = np.int64(ids[U(a)])
         b_id = np.int64(ids[U(b)])
-        write_event(batch, row, time, a_id, b_id, DISC, record[U(a)], effects)
-        write_event(batch, row + 1, time, b_id, a_id, DISC, record[U(b)], effects)
+        position, rotation, periodic = batch.position, effects.rotation, effects.periodic
+        write_event(batch, row, time, a_id, b_id, DISC, record[U(a)], position, rotation, periodic)
+        write_event(batch, row + 1, time, b_id, a_id, DISC, record[U(b)], position, rotation, periodic)
         return 2
     return 0
 
@@ -103,6 +83,7 @@ def write_trial(batch, row, trial):
 def write_hit(batch, row, time, own, partner, kind, disc, effects):
     """Write the row of an event of one disc; partner: -1 - k for wall k, or BATH."""
     if batch is not None:
-        write_event(batch, row, time, np.int64(own), partner, kind, disc, effects)
+        rotation, periodic = effects.rotation, effects.periodic
+        write_event(batch, row, time, np.int64(own), np.int64(partner), kind, disc, batch.position, rotation, periodic)
         return 1
     return 0

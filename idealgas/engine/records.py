@@ -68,16 +68,6 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 
 @inline
-def reload(disc, own, position, velocity):
-    """Make a disc's record that of local time 0, of the positions and velocities (N, 2) by id; own: the disc's id."""
-    disc.x, disc.y = position[own, 0], position[own, 1]
-    disc.vx, disc.vy = velocity[own, 0], velocity[own, 1]
-    disc.t = 0.0
-    disc.crossed_x = disc.crossed_y = 0
-    disc.count = 0
-
-
-@inline
 def check_clock(time, now, events_at_this_time, n):
     """Number of events in a row at one instant, after an event at local time `time` that follows one at `now`.
 
@@ -118,9 +108,10 @@ def synchronise(record, ids, time, gravity, periodic, flow, absorbing, position,
     for i in range(record.shape[0]):
         disc = record[U(i)]
         own = U(ids[U(i)])
-        if not has_left(disc, absorbing):
+        if absorbing is None or not has_left(disc, absorbing):
             advance(disc, time, gravity)
-            wrap(disc, own, periodic)
+            if periodic is not None:
+                wrap(disc, own, periodic)
         position[own, 0], position[own, 1] = disc.x, disc.y
         velocity[own, 0], velocity[own, 1] = disc.vx, disc.vy
 

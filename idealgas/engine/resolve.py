@@ -16,7 +16,7 @@ from idealgas.physics.permeable import passage_of
 from idealgas.physics.piston import advance_piston, collide_with_piston, energy_at_piston, normal_of_piston
 from idealgas.physics.restitution import record_collision
 from idealgas.physics.shear import add_flow, cross, enter_common_frame, leave_common_frame
-from idealgas.physics.stress import flights_to, record_collision_stress, record_flight, record_hit
+from idealgas.physics.stress import record_collision_stress, record_flight, record_hit
 from idealgas.physics.thermal import is_thermal
 from idealgas.physics.thermostat import andersen_collision
 from idealgas.physics.vibration import side_velocity
@@ -43,67 +43,67 @@ def add_energy(sums, k, energy):
 
 
 @inline
-def energy_of_pair(a, b, a_id, b_id, rotation, dissipated):
-    """Kinetic energy of two discs, spins included, where losses are recorded; else 0."""
-    if dissipated is not None:
-        return energy_of(a, a_id, rotation) + energy_of(b, b_id, rotation)
-    return 0.0
-
-
-@inline
-def record_wall_energy(wall, given, lost, effects):
+def record_wall_energy(wall, given, lost, wall_energy, dissipated, thermal):
     """Record the energies that a wall gave to a disc and that were lost; a thermal wall loses none."""
-    add_energy(effects.wall_energy, wall, given)
-    if not is_thermal(effects.thermal, wall):
-        add_energy(effects.dissipated, 1 + wall, lost)
+    if wall_energy is not None:
+        add(wall_energy[U(wall)], given)
+    if dissipated is not None and not is_thermal(thermal, wall):
+        add(dissipated[U(1 + wall)], lost)
 
 
 @inline
-def finish(disc, own, time, effects):
+def finish(disc, own, time, restitution, periodic):
     """Wrap a disc's record after an event, store the time of the collision, and count the event."""
-    wrap(disc, own, effects.periodic)
-    record_collision(effects.restitution, own, time)
+    if periodic is not None:
+        wrap(disc, own, periodic)
+    if restitution is not None:
+        record_collision(restitution, own, time)
     disc.count += np.uint32(1)
 
 
 @inline
 def resolve_pair(a, b, a_id, b_id, time, images, effects):
     """Collide two discs at a local time."""
-    flights = flights_to(effects.flow, a, b, time)
+    flights = (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
     before = a.vx, a.vy, b.vx, b.vy
-    enter_common_frame(a, b, effects.shear, images)
-    energy = energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
-    collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
-    energy -= energy_of_pair(a, b, a_id, b_id, effects.rotation, effects.dissipated)
-    add_energy(effects.dissipated, 0, energy)
-    leave_common_frame(a, b, effects.shear, images)
-    record_work_of_images(a, b, before, effects.shear, images, effects)
+    collide_and_record(a, b, a_id, b_id, images, before, effects.shear, effects.dissipated, effects)
     record_collision_stress(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
-    finish(a, a_id, time, effects)
-    finish(b, b_id, time, effects)
+    finish(a, a_id, time, effects.restitution, effects.periodic)
+    finish(b, b_id, time, effects.restitution, effects.periodic)
 
 
 @inline
-def record_work_of_images(a, b, before, shear, images, effects):
-    """Record the work that the moving image of a partner does in a collision through the sheared top of the box.
+def collide_and_record(a, b, a_id, b_id, images, before, shear, dissipated, effects):
+    """Collide two discs whose records are at the time of contact, and record the energy that is lost.
 
-    before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time. The work is u times the momentum that
-    passes the top.
+    Through sheared sides they collide in the frame half-way between both. The moving image of a partner beyond the top
+    does work, u times the momentum that passes the top, which is recorded too. before: velocities (a_vx, a_vy, b_vx,
+    b_vy) before the collision, length/time.
     """
-    if shear is None:
-        return
-    if images[1] != 0:
-        to_a, to_b = a.m * (a.vx - before[0]), b.m * (b.vx - before[2])
-        add_energy(effects.wall_energy, TOP, 0.5 * shear.speed * images[1] * (to_a - to_b))
+    if shear is not None:
+        enter_common_frame(a, b, shear, images)
+    energy = 0.0
+    if dissipated is not None:
+        energy = energy_of(a, a_id, effects.rotation) + energy_of(b, b_id, effects.rotation)
+    collide(a, b, a_id, b_id, effects.restitution, effects.rotation, effects.periodic, images)
+    if dissipated is not None:
+        energy -= energy_of(a, a_id, effects.rotation) + energy_of(b, b_id, effects.rotation)
+        add(dissipated[U(0)], energy)
+    if shear is not None:
+        leave_common_frame(a, b, shear, images)
+        if images[1] != 0:
+            to_a, to_b = a.m * (a.vx - before[0]), b.m * (b.vx - before[2])
+            add_energy(effects.wall_energy, TOP, 0.5 * shear.speed * images[1] * (to_a - to_b))
 
 
 @inline
-def arrive(disc, time, effects):
+def arrive(disc, time, flow, gravity):
     """Move a disc's record to the local time at which it meets a wall or the heat bath."""
-    record_flight(effects.flow, disc, time, effects.gravity)
-    advance(disc, time, effects.gravity)
+    if flow is not None:
+        record_flight(flow, disc, time, gravity)
+    advance(disc, time, gravity)
 
 
 @inline
@@ -117,8 +117,8 @@ def bounce(disc, own, nx, ny, wall, time, effects):
     vy = disc.vy
     collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
     energy -= energy_of(disc, own, effects.rotation)
-    record_wall_energy(wall, -energy, energy, effects)
-    finish(disc, own, time, effects)
+    record_wall_energy(wall, -energy, energy, effects.wall_energy, effects.dissipated, effects.thermal)
+    finish(disc, own, time, effects.restitution, effects.periodic)
     return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
 
@@ -128,10 +128,10 @@ def absorb(disc, own, wall, time, effects):
 
     The wall takes its whole energy and momentum.
     """
-    finish(disc, own, time, effects)
+    finish(disc, own, time, effects.restitution, effects.periodic)
     place = place_in_space(disc, own, effects.periodic)
     energy = energy_of(disc, own, effects.rotation) + potential_energy(disc.m, place, effects.gravity)
-    record_wall_energy(wall, -energy, 0.0, effects)
+    record_wall_energy(wall, -energy, 0.0, effects.wall_energy, effects.dissipated, effects.thermal)
     return -(disc.m * disc.vx), -(disc.m * disc.vy)
 
 
@@ -148,10 +148,8 @@ def meet_segment(disc, own, nx, ny, segment, segments, at_end, time, absorbing, 
 
 
 @inline
-def bounce_off_side(disc, own, nx, ny, side, time, vibration, effects):
+def bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects):
     """Reflect or emit a disc at a side of the box, which may vibrate; see `bounce`."""
-    if vibration is None:
-        return bounce(disc, own, nx, ny, side, time, effects)
     speed = side_velocity(vibration, side, time)
     before = energy_of(disc, own, effects.rotation)
     vx = disc.vx
@@ -163,27 +161,32 @@ def bounce_off_side(disc, own, nx, ny, side, time, vibration, effects):
     lost -= energy_of(disc, own, effects.rotation)
     disc.vx += speed * nx
     disc.vy += speed * ny
-    record_wall_energy(side, energy_of(disc, own, effects.rotation) - before, lost, effects)
-    finish(disc, own, time, effects)
+    given = energy_of(disc, own, effects.rotation) - before
+    record_wall_energy(side, given, lost, effects.wall_energy, effects.dissipated, effects.thermal)
+    finish(disc, own, time, effects.restitution, effects.periodic)
     return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
 
 @inline
 def resolve_side(disc, own, side, time, effects):
     """Collide a disc with a side of the box at a local time, or let it cross a sheared one."""
-    arrive(disc, time, effects)
-    meet_side(disc, own, side, time, effects.shear, effects)
+    arrive(disc, time, effects.flow, effects.gravity)
+    meet_side(disc, own, side, time, effects.shear, effects.vibration, effects.flow, effects)
 
 
 @inline
-def meet_side(disc, own, side, time, shear, effects):
+def meet_side(disc, own, side, time, shear, vibration, flow, effects):
     """Do the work of `resolve_side` for a record at the time of contact."""
     if shear is not None:
         cross_side(disc, own, side, shear, effects)
         return
     nx, ny = inward_normal(side)
-    px, py = bounce_off_side(disc, own, nx, ny, side, time, effects.vibration, effects)
-    record_hit(effects.flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
+    if vibration is not None:
+        px, py = bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects)
+    else:
+        px, py = bounce(disc, own, nx, ny, side, time, effects)
+    if flow is not None:
+        record_hit(flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
 
 
 @inline
@@ -206,7 +209,7 @@ def face_of(wall, left):
 def resolve_segment(disc, own, segment, time, images, segments, effects):
     """Collide a disc with a wall inside the box at a local time; return the kind of the event."""
     if segments is not None:
-        arrive(disc, time, effects)
+        arrive(disc, time, effects.flow, effects.gravity)
         passage = passage_of(effects.permeable, own, segment)
         nx, ny, at_end, tx, ty, left = wall_frame(
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
@@ -223,7 +226,7 @@ def resolve_piston(disc, own, k, time, piston, effects):
     """Collide a disc with piston k at a local time; return the number of the piston among the walls."""
     if piston is not None:
         p = piston[U(k)]
-        arrive(disc, time, effects)
+        arrive(disc, time, effects.flow, effects.gravity)
         advance_piston(p, time)
         energy = energy_of(disc, own, effects.rotation)
         loss = energy_at_piston(disc, energy, p)
@@ -232,8 +235,9 @@ def resolve_piston(disc, own, k, time, piston, effects):
         vy = disc.vy
         collide_with_piston(disc, own, p, effects.restitution)
         after = energy_of(disc, own, effects.rotation)
-        record_wall_energy(p.wall, after - energy, loss - energy_at_piston(disc, after, p), effects)
-        finish(disc, own, time, effects)
+        loss -= energy_at_piston(disc, after, p)
+        record_wall_energy(p.wall, after - energy, loss, effects.wall_energy, effects.dissipated, effects.thermal)
+        finish(disc, own, time, effects.restitution, effects.periodic)
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         face = np.int64(p.wall)
         if p.outward == 0.0:
@@ -257,7 +261,7 @@ def resolve_stop(k, time, piston):
 def resolve_thermostat_collision(disc, own, time, thermostat, effects):
     """Give a disc a new velocity from the heat bath at a local time; no contact duration begins."""
     if thermostat is not None:
-        arrive(disc, time, effects)
+        arrive(disc, time, effects.flow, effects.gravity)
         energy = energy_of(disc, own, effects.rotation)
         andersen_collision(disc, own, thermostat, effects.rotation)
         add_flow(disc, effects.shear)

@@ -34,17 +34,10 @@ def relative_motion(a, b, gravity, periodic, images):
         y += gravity.y * ahead
         vx += gravity.x * (a_dt - b_dt)
         vy += gravity.y * (a_dt - b_dt)
-    x, y = shift_by_images(x, y, periodic, images)
-    x, vx = less_offset_of_images(x, vx, time, periodic, images)
-    return time, x, y, vx, vy
-
-
-@inline
-def less_offset_of_images(x, vx, time, periodic, images):
-    """Relative position and velocity along x at a local time, less those of images that shear moves."""
     if periodic is not None:
-        return less_offset(x, vx, time, periodic.shear, images)
-    return x, vx
+        x, y = shift_by_images(x, y, periodic, images)
+        x, vx = less_offset(x, vx, time, periodic.shear, images)
+    return time, x, y, vx, vy
 
 
 @inline
@@ -114,19 +107,13 @@ def changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     factor = restitution_factor(restitution, a_id, b_id, time)
     before = a.vx, b.vx
-    enter_frame_of_images(a, b, periodic, images)
+    if periodic is not None:
+        enter_common_frame(a, b, periodic.shear, images)
     a_vx, a_vy, b_vx, b_vy = velocities_after(a, b, x, y, vx, vy, factor)
     unchanged = (a_vx == a.vx) & (a_vy == a.vy) & (b_vx == b.vx) & (b_vy == b.vy)
     if periodic is not None:
         set_velocities_along_x(a, b, periodic.shear, before)
     return unchanged
-
-
-@inline
-def enter_frame_of_images(a, b, periodic, images):
-    """Give two records velocities in the frame in which they collide through sheared sides."""
-    if periodic is not None:
-        enter_common_frame(a, b, periodic.shear, images)
 
 
 @inline
@@ -153,8 +140,10 @@ def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
 
     Where sides are sheared, their velocities are those of the common frame.
     """
-    x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
-    x, _ = less_offset_of_images(x, a.vx, a.t, periodic, images)
+    x, y = a.x - b.x, a.y - b.y
+    if periodic is not None:
+        x, y = shift_by_images(x, y, periodic, images)
+        x, _ = less_offset(x, a.vx, a.t, periodic.shear, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     factor = restitution_factor(restitution, a_id, b_id, a.t)

@@ -71,7 +71,7 @@ def reflected_velocity(disc, own, nx, ny, restitution):
 @inline
 def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
     """Change the velocity and spin of a disc that touches a wall at rest, which has the number `wall`."""
-    if is_thermal(thermal, wall):
+    if thermal is not None and is_thermal(thermal, wall):
         emit(disc, own, nx, ny, wall, thermal, rotation)
         return
     if rotation is not None:

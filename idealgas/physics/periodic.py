@@ -82,8 +82,8 @@ def images_to_wall(periodic, disc, image):
 
 @inline
 def shift_by_images(x, y, periodic, images):
-    """A relative position (x, y), length, less the given numbers of box lengths."""
-    if periodic is not None:
+    """A relative position (x, y), length, less the given numbers of box lengths, which are mostly 0."""
+    if periodic is not None and (images[0] != 0 or images[1] != 0):
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y
 
@@ -163,11 +163,3 @@ def place_in_space(disc, own, periodic):
             disc.y + periodic.image[U(own), 1] * periodic.Ly,
         )
     return disc.x, disc.y
-
-
-@inline
-def boundary_crossings_along(periodic, disc, along_y):
-    """Boundary crossings of a disc along an axis since its record's time, and whether that axis is periodic."""
-    if periodic is not None:
-        return (disc.crossed_y, periodic.y) if along_y else (disc.crossed_x, periodic.x)
-    return np.int16(0), False

@@ -135,21 +135,11 @@ def record_flight(flow, disc, time, gravity):
 
 
 @inline
-def flights_to(flow, a, b, time):
-    """Flights of two discs up to a local time; zeros if stress is not recorded.
-
-    Returns their durations (a, b), time, and the velocities (a_vx, a_vy, b_vx, b_vy) at their start, length/time.
-    """
-    if flow is not None:
-        return (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
-    return (0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
-
-
-@inline
 def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
     """Record the collision of two discs at their contact, if stress is recorded.
 
-    flights: result of `flights_to`. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    flights: durations of the flights (a, b) up to the contact, time, and velocities (a_vx, a_vy, b_vx, b_vy) at their
+    start, length/time. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
     """
     if flow is not None:
         number, terms = flow.buffer.number, flow.buffer.terms

@@ -141,33 +141,11 @@ def order_by_cell(position: np.ndarray, cells: Cells) -> np.ndarray:
 
 
 @inline
-def has_coarse(coarse):
-    """Whether some discs are in coarse cells."""
-    return coarse is not None
-
-
-@inline
-def is_large(coarse, disc):
-    """Whether a disc is in coarse cells."""
-    if coarse is not None:
-        return disc.r > coarse.limit
-    return False
-
-
-@inline
 def own_cells(cells, coarse, disc):
     """The cells that a disc is in."""
     if coarse is not None:
-        return coarse.cells if is_large(coarse, disc) else cells
+        return coarse.cells if disc.r > coarse.limit else cells
     return cells
-
-
-@inline
-def clear_cells(cells, coarse):
-    """Remove all discs from their cells."""
-    cells.head[:] = -1
-    if coarse is not None:
-        coarse.cells.head[:] = -1
 
 
 @inline
@@ -179,24 +157,11 @@ def find_cell(cells, i, disc):
 
 
 @inline
-def cell_index(cells, i):
-    """Index of disc i's cell."""
+def enter(cells, i):
+    """Insert disc i at the head of its cell's list; without branches: where there is no other disc, i stands for it."""
     link = cells.link[U(i)]
-    return np.int64(link.row) * cells.columns + np.int64(link.column)
-
-
-@inline
-def is_in_ring(cells, link):
-    """Whether a disc's cell is one of the ring around the box."""
-    column, row = np.int64(link.column), np.int64(link.row)
-    return (column < 1) | (column > cells.columns - 2) | (row < 1) | (row > cells.rows - 2)
-
-
-@inline
-def enter(cells, i, cell):
-    """Insert disc i at the head of a cell's list; without branches: where there is no other disc, i stands for it."""
+    cell = np.int64(link.row) * cells.columns + np.int64(link.column)
     head = cells.head[U(cell)]
-    link = cells.link[U(i)]
     cells.link[U(head if head >= 0 else i)].previous = i
     link.next = head
     link.previous = -1
@@ -204,9 +169,10 @@ def enter(cells, i, cell):
 
 
 @inline
-def leave(cells, i, cell):
-    """Remove disc i from a cell's list; without branches, see `enter`."""
+def leave(cells, i):
+    """Remove disc i from its cell's list; without branches, see `enter`."""
     link = cells.link[U(i)]
+    cell = np.int64(link.row) * cells.columns + np.int64(link.column)
     before = link.previous
     behind = link.next
     cells.link[U(behind if behind >= 0 else i)].previous = before

@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import cell_index, is_large, own_cells
+from idealgas.engine.event_driven.cells import own_cells
 from idealgas.engine.event_driven.neighbours import neighbours, new_neighbours
 from idealgas.engine.event_driven.prediction import (
+    FIRST_WALL_SEGMENT,
     NO_CONTACT,
     SIDE_OF_BOX,
     image_precedes,
     images_of,
     partner_rank,
     precedes,
-    segment_partner,
 )
-from idealgas.engine.event_driven.state import copy_image, image_of
 from idealgas.engine.event_driven.wall_cells import images_to_item
 from idealgas.jit import inline, noinline
 from idealgas.physics.arc import misses_wall, wall_contact
@@ -28,17 +27,10 @@ U = np.uintp
 def images_to(state, k, has_images, record, i, j, periodic):
     """Numbers of box lengths (x, y) between the records of disc i and of disc j, which is candidate k."""
     if periodic is not None:
-        image = image_of(state.images, k) if has_images else NO_IMAGES
+        seen = state.images[U(k)]
+        image = (np.int64(seen.x), np.int64(seen.y)) if has_images else NO_IMAGES
         return images_between(periodic, record[U(i)], record[U(j)], image)
     return NO_IMAGES
-
-
-@inline
-def store_images(prediction, images, periodic):
-    """Store in a prediction the numbers of box lengths (x, y) to the partner, where sides are periodic."""
-    if periodic is not None:
-        prediction.image_x = images[0]
-        prediction.image_y = images[1]
 
 
 @inline
@@ -48,11 +40,12 @@ def store_contact(state, record, i, j, k, has_images, time, periodic):
     prediction.contact = time
     prediction.partner = j
     prediction.partner_count = record[U(j)].count
-    store_images(prediction, images_to(state, k, has_images, record, i, j, periodic), periodic)
+    if periodic is not None:
+        prediction.image_x, prediction.image_y = images_to(state, k, has_images, record, i, j, periodic)
 
 
 @inline
-def filter_colliding(record, state, count, has_images, i, effects):
+def filter_colliding(record, state, count, has_images, i, gravity, periodic):
     """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
 
     Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
@@ -65,38 +58,15 @@ def filter_colliding(record, state, count, has_images, i, effects):
         j = candidates[U(k)]
         behind = state.cells.link[U(j)].next
         candidates[U(count)] = behind
-        copy_image(state.images, count, k, has_images)
-        count += 1 if behind >= 0 else 0
-        images = images_to(state, k, has_images, record, i, j, effects.periodic)
         candidates[U(kept)] = j
-        copy_image(state.images, kept, k, has_images)
-        kept += 1 if will_collide(disc, record[U(j)], effects.gravity, effects.periodic, images) else 0
+        images = images_to(state, k, has_images, record, i, j, periodic)
+        if periodic is not None and has_images:
+            state.images[U(count)] = state.images[U(k)]
+            state.images[U(kept)] = state.images[U(k)]
+        count += 1 if behind >= 0 else 0
+        kept += 1 if will_collide(disc, record[U(j)], gravity, periodic, images) else 0
         k += 1
     return kept
-
-
-@inline
-def predict_disc_contact(record, ids, state, count, has_images, i, now, effects):
-    """Store disc i's earliest contact among the candidates and the further discs of their cells.
-
-    Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
-    """
-    count = filter_colliding(record, state, count, has_images, i, effects)
-    disc = record[U(i)]
-    best = state.prediction[U(i)].contact
-    chosen = -1
-    tied = False
-    for k in range(count):
-        j = state.candidates[U(k)]
-        images = images_to(state, k, has_images, record, i, j, effects.periodic)
-        time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
-        tied |= time == best
-        chosen = k if time < best else chosen
-        best = min(time, best)
-    if tied | (best <= now):
-        predict_tied_contact(record, ids, state, count, has_images, i, effects)
-    elif chosen >= 0:
-        store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
 
 
 @inline
@@ -116,7 +86,7 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
 def predict_tied_contact(record, ids, state, count, has_images, i, effects):
     """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
 
-    It does the work of `predict_disc_contact`, and leaves out collisions that would change no digit of a velocity.
+    It leaves out collisions that would change no digit of a velocity.
     """
     prediction = state.prediction[U(i)]
     own = np.int64(ids[U(i)])
@@ -131,60 +101,68 @@ def predict_tied_contact(record, ids, state, count, has_images, i, effects):
             store_contact(state, record, i, j, k, has_images, time, effects.periodic)
 
 
+@noinline
+def predict_segment_contact(record, ids, state, i, segments, periodic, effects):
+    """Store disc i's contact with a wall segment of its cell if that is its earliest."""
+    disc, own, prediction = record[U(i)], np.int64(ids[U(i)]), state.prediction[U(i)]
+    cells = own_cells(state.cells, state.coarse, disc)
+    walls = own_walls(state.walls, state.coarse_walls, state.coarse, disc)
+    link = cells.link[U(i)]
+    cell = U(np.int64(link.row) * cells.columns + np.int64(link.column))
+    for entry in range(walls.start[cell], walls.start[cell + U(1)]):
+        k = walls.item[U(entry)]
+        images = images_to_item(walls, U(entry), disc, periodic)
+        if misses_wall(disc, k, segments, effects.arcs, effects.gravity, periodic, images):
+            continue
+        passage = passage_of(effects.permeable, own, k)
+        time = wall_contact(
+            disc, own, k, segments, effects.arcs, passage, effects.gravity, effects.restitution, periodic, images
+        )
+        partner = FIRST_WALL_SEGMENT - k
+        if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
+            prediction.contact = time
+            prediction.partner = partner
+            if periodic is not None:
+                prediction.image_x, prediction.image_y = images
+
+
 @inline
 def own_walls(walls, coarse_walls, coarse, disc):
     """Wall segments by cell, of the cells that a disc is in."""
     if coarse is not None:
-        return coarse_walls if is_large(coarse, disc) else walls
+        return coarse_walls if disc.r > coarse.limit else walls
     return walls
 
 
 @inline
-def predict_segment_contact(record, ids, state, i, segments, effects):
-    """Store disc i's contact with a wall segment of its cell if that is its earliest."""
-    if segments is not None:
-        cell = U(cell_index(own_cells(state.cells, state.coarse, record[U(i)]), i))
-        walls = own_walls(state.walls, state.coarse_walls, state.coarse, record[U(i)])
-        first, last = walls.start[cell], walls.start[cell + U(1)]
-        if first < last:
-            predict_entry_contacts(
-                record[U(i)], ids, state.prediction[U(i)], np.int64(ids[U(i)]), walls, first, last, effects
-            )
-
-
-@noinline
-def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effects):
-    """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
-    for entry in range(first, last):
-        k = walls.item[U(entry)]
-        images = images_to_item(walls, U(entry), disc, effects.periodic)
-        if misses_wall(disc, k, effects.segments, effects.arcs, effects.gravity, effects.periodic, images):
-            continue
-        passage = passage_of(effects.permeable, own, k)
-        segments, arcs = effects.segments, effects.arcs
-        time = wall_contact(
-            disc, own, k, segments, arcs, passage, effects.gravity, effects.restitution, effects.periodic, images
-        )
-        partner = segment_partner(k)
-        if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
-            prediction.contact = time
-            prediction.partner = partner
-            store_images(prediction, images, effects.periodic)
-
-
-@inline
-def predict_contact(record, ids, state, i, crossing_code, now, effects):
+def predict_contact(record, ids, state, i, crossing_code, now, segments, effects):
     """Find disc i's earliest contact with a disc in its own cell or the eight around it, or with a wall segment.
 
     crossing_code: direction in which it has just crossed into its cell, see PREDICTION: then the contact found before
     stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
+    Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
     """
+    disc, prediction = record[U(i)], state.prediction[U(i)]
     if crossing_code < SIDE_OF_BOX:
-        count, has_images = new_neighbours(state, i, record[U(i)], crossing_code, effects.periodic)
+        count, has_images = new_neighbours(state, state.coarse, i, disc, crossing_code, effects.periodic)
     else:
-        prediction = state.prediction[U(i)]
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-        count, has_images = neighbours(state, i, record[U(i)], effects.periodic)
-    predict_disc_contact(record, ids, state, count, has_images, i, now, effects)
-    predict_segment_contact(record, ids, state, i, effects.segments, effects)
+        count, has_images = neighbours(state, state.coarse, i, disc, effects.periodic)
+    count = filter_colliding(record, state, count, has_images, i, effects.gravity, effects.periodic)
+    best = prediction.contact
+    chosen = -1
+    tied = False
+    for k in range(count):
+        j = state.candidates[U(k)]
+        images = images_to(state, k, has_images, record, i, j, effects.periodic)
+        time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
+        tied |= time == best
+        chosen = k if time < best else chosen
+        best = min(time, best)
+    if tied | (best <= now):
+        predict_tied_contact(record, ids, state, count, has_images, i, effects)
+    elif chosen >= 0:
+        store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
+    if segments is not None:
+        predict_segment_contact(record, ids, state, i, segments, effects.periodic, effects)

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import cell_index, enter, find_cell, is_in_ring, leave, own_cells
+from idealgas.engine.event_driven.cells import enter, find_cell, leave, own_cells
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX, THERMOSTAT
 from idealgas.jit import inline
 from idealgas.physics.disc_wall import arrival_delay
 from idealgas.physics.gravity import acceleration_along
 from idealgas.physics.motion import NEVER, position_after, time_after, time_to_plane, velocity_after
-from idealgas.physics.periodic import boundary_crossings_along, is_periodic
+from idealgas.physics.periodic import is_periodic
 from idealgas.physics.piston import is_piston_side
 from idealgas.physics.shear import crossing_time
 from idealgas.physics.vibration import is_vibrating, misses_side_until, vibrating_contact
@@ -64,131 +64,105 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
 
 
 @inline
-def crossing_along(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, gravity):
-    """Next cell crossing or side contact along one axis, with or without gravity; see `straight_crossing`."""
-    if gravity is not None:
-        pull = acceleration_along(gravity, along_y)
-        if pull != 0.0:  # else the path along this axis is straight, and both laws give the same bits
-            return accelerated_crossing(
-                disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull
-            )
-    return straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic)
-
-
-@inline
-def axis_crossing(disc, link, along_y, cells, now, effects):
+def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, piston, vibration):
     """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
 
-    The time is NEVER at the side of a piston, where contacts belong to it, and at a vibrating side.
+    The time is NEVER at the side of a piston, where contacts belong to it, and at a vibrating side. A disc reaches a
+    sheared side when its centre does.
     """
     cell = np.int64(link.row) if along_y else np.int64(link.column)
     size = cells.height if along_y else cells.width
     across = cells.rows if along_y else cells.columns
     length = cells.Ly if along_y else cells.Lx
-    boundary_crossings, is_periodic = boundary_crossings_along(effects.periodic, disc, along_y)
-    time, forward, at_side = crossing_along(
-        disc, along_y, cell, size, across, length, boundary_crossings, is_periodic, now, effects.gravity
-    )
+    crossings, is_periodic = np.int16(0), False
+    if periodic is not None:
+        crossings = disc.crossed_y if along_y else disc.crossed_x
+        is_periodic = periodic.y if along_y else periodic.x
+    if gravity is not None and acceleration_along(gravity, along_y) != 0.0:
+        pull = acceleration_along(gravity, along_y)
+        time, forward, at_side = accelerated_crossing(
+            disc, along_y, cell, size, across, length, crossings, is_periodic, now, pull
+        )
+    else:  # without acceleration along this axis both laws give the same bits
+        time, forward, at_side = straight_crossing(disc, along_y, cell, size, across, length, crossings, is_periodic)
     side = (2 if along_y else 0) + (1 if forward else 0)
-    time = crossing_if_sheared(time, disc, at_side, side, length, effects.shear)
-    if at_side and (is_piston_side(side, effects.piston) or is_vibrating(effects.vibration, side)):
+    if shear is not None and at_side:
+        time = crossing_time(disc, side, length)
+    if piston is not None and at_side and is_piston_side(side, piston):
+        time = NEVER
+    if vibration is not None and at_side and is_vibrating(vibration, side):
         time = NEVER
     return time, forward, at_side
 
 
 @inline
-def crossing_if_sheared(time, disc, at_side, side, length, shear):
-    """Local time at which a disc's centre crosses a side of the box if it is sheared; else the given time."""
-    if shear is not None:
-        return crossing_time(disc, side, length) if at_side else time
-    return time
-
-
-@inline
-def predict_crossing(record, ids, state, i, now, effects):
+def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects):
     """Store in disc i's prediction the time and kind of its next cell crossing, side or thermostat collision."""
     disc = record[U(i)]
-    own = ids[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
-    x_time, right, x_side = axis_crossing(disc, cells.link[U(i)], False, cells, now, effects)
-    y_time, up, y_side = axis_crossing(disc, cells.link[U(i)], True, cells, now, effects)
+    link = cells.link[U(i)]
+    x_time, right, x_side = axis_crossing(
+        disc, link, False, cells, now, effects.gravity, effects.periodic, effects.shear, effects.piston, vibration
+    )
+    y_time, up, y_side = axis_crossing(
+        disc, link, True, cells, now, effects.gravity, effects.periodic, effects.shear, effects.piston, vibration
+    )
     along_y = y_time < x_time  # either is as likely: to branch on it would take 7 % of all time
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)
     prediction = state.prediction[U(i)]
     prediction.crossing = min(x_time, y_time)
     prediction.crossing_code = y_code if along_y else x_code
-    keep_vibrating_contact_if_earlier(prediction, disc, own, state.cells, effects.vibration, effects)
-    keep_thermostat_collision_if_earlier(prediction, own, effects.thermostat)
-
-
-@inline
-def keep_vibrating_contact_if_earlier(prediction, disc, own, cells, vibration, effects):
-    """Store a disc's next contact with a vibrating side in its prediction if it precedes its crossing."""
     if vibration is not None:
-        for side in range(4):
-            if is_vibrating(vibration, side) and not is_periodic(effects.periodic, side >= 2):
-                length = cells.Ly if side >= 2 else cells.Lx
-                if misses_side_until(disc, vibration[U(side)], side, length, effects.gravity, prediction.crossing):
-                    continue
-                time = vibrating_contact(disc, vibration[U(side)], side, length, effects.gravity)
-                code = SIDE_OF_BOX + side
-                if (time < prediction.crossing) | ((time == prediction.crossing) & (code < prediction.crossing_code)):
-                    prediction.crossing = time
-                    prediction.crossing_code = code
+        keep_vibrating_contact_if_earlier(prediction, disc, state.cells, vibration, effects)
+    if thermostat is not None and thermostat.time[U(ids[U(i)])] < prediction.crossing:
+        prediction.crossing = thermostat.time[U(ids[U(i)])]
+        prediction.crossing_code = THERMOSTAT
 
 
 @inline
-def keep_thermostat_collision_if_earlier(prediction, own, thermostat):
-    """Store a disc's next thermostat collision in its prediction if it precedes its crossing."""
-    if thermostat is not None:
-        time = thermostat.time[U(own)]
-        if time < prediction.crossing:
-            prediction.crossing = time
-            prediction.crossing_code = THERMOSTAT
-
-
-@inline
-def is_thermostat_collision(crossing_code, thermostat):
-    """Whether a disc's crossing is a thermostat collision."""
-    if thermostat is not None:
-        return crossing_code == THERMOSTAT
-    return False
-
-
-@inline
-def wrap_cell(disc, link, cells, along_y, periodic):
-    """Wrap the column or row of a disc that crossed a periodic side, and count the boundary crossing."""
-    if periodic is not None and is_in_ring(cells, link):
-        if along_y:
-            cross_boundary = 1 if link.row > cells.rows - 2 else -1
-            link.row -= cross_boundary * (cells.rows - 2)
-            disc.crossed_y += np.int16(cross_boundary)
-        else:
-            cross_boundary = 1 if link.column > cells.columns - 2 else -1
-            link.column -= cross_boundary * (cells.columns - 2)
-            disc.crossed_x += np.int16(cross_boundary)
+def keep_vibrating_contact_if_earlier(prediction, disc, cells, vibration, effects):
+    """Store a disc's next contact with a vibrating side in its prediction if it precedes its crossing."""
+    for side in range(4):
+        if is_vibrating(vibration, side) and not is_periodic(effects.periodic, side >= 2):
+            length = cells.Ly if side >= 2 else cells.Lx
+            if misses_side_until(disc, vibration[U(side)], side, length, effects.gravity, prediction.crossing):
+                continue
+            time = vibrating_contact(disc, vibration[U(side)], side, length, effects.gravity)
+            code = SIDE_OF_BOX + side
+            if (time < prediction.crossing) | ((time == prediction.crossing) & (code < prediction.crossing_code)):
+                prediction.crossing = time
+                prediction.crossing_code = code
 
 
 @inline
 def move_to_cell(record, state, i, shear):
     """Move disc i to the list of the cell of its position after an event at a sheared side."""
     if shear is not None:
-        leave(state.cells, i, cell_index(state.cells, i))
+        leave(state.cells, i)
         find_cell(state.cells, i, record[U(i)])
-        enter(state.cells, i, cell_index(state.cells, i))
+        enter(state.cells, i)
 
 
 @inline
 def cross_cell(record, state, i, crossing_code, periodic):
-    """Move disc i from its cell's list to that of the next cell; crossing_code: direction, see PREDICTION."""
+    """Move disc i from its cell's list to that of the next cell; crossing_code: direction, see PREDICTION.
+
+    A disc that crosses a periodic side enters the cell at the opposite one, and its crossing is counted.
+    """
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     link = cells.link[U(i)]
-    leave(cells, i, cell_index(cells, i))
+    leave(cells, i)
     forward = 1 if crossing_code & 1 else -1
     upwards = forward if crossing_code >= 2 else 0
     link.row += upwards
     link.column += forward - upwards
-    wrap_cell(disc, link, cells, crossing_code >= 2, periodic)
-    enter(cells, i, cell_index(cells, i))
+    if periodic is not None:
+        if (link.row < 1) | (link.row > cells.rows - 2):
+            link.row -= upwards * (cells.rows - 2)
+            disc.crossed_y += np.int16(upwards)
+        if (link.column < 1) | (link.column > cells.columns - 2):
+            link.column -= forward * (cells.columns - 2)
+            disc.crossed_x += np.int16(forward)
+    enter(cells, i)

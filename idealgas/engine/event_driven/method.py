@@ -81,7 +81,8 @@ class EventDriven(Method):
         walls, coarse_walls = self._wall_cells(effects)
         self._state = self._state._replace(walls=walls, coarse_walls=coarse_walls)
         position, velocity = (np.require(array, np.float64, ("C", "W")) for array in (gas.position, gas.velocity))
-        place(self.discs.record, self.discs.id, position, velocity, self._state, effects.absorbing)
+        state = self._state
+        place(self.discs.record, self.discs.id, position, velocity, state, state.coarse, effects.absorbing)
         self._state.unpredicted[0] = True
         slabs = self._shared.number
         self._decomposition = (

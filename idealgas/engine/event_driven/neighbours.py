@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from idealgas.engine.event_driven.cells import has_coarse, is_large
 from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 from idealgas.engine.event_driven.state import record_image
 from idealgas.jit import inline, noinline
@@ -97,24 +96,17 @@ def append_line(state, count, column, row, along_y):
     return count
 
 
-@inline
-def append_coarse(state, coarse, i, disc, crossing_code, periodic):
-    """Make the first discs near a large disc, or the first large ones near a small disc, the candidates.
-
-    crossing_code: direction in which the disc has just crossed into its cell: only those that came within reach then.
-    SIDE_OF_BOX for all. Returns their number, 0 without coarse cells.
-    """
-    if coarse is not None:
-        return append_coarse_cells(state, coarse, i, disc, crossing_code, periodic)
-    return 0
-
-
 @noinline
 def append_coarse_cells(state, coarse, i, disc, crossing_code, periodic):
-    """Do the work of `append_coarse`: small and large discs are near in adjacent coarse cells, large ones in two."""
+    """Make the first discs near a large disc, or the first large ones near a small disc, the candidates.
+
+    Small and large discs are near in adjacent coarse cells, large ones in two. crossing_code: direction in which the
+    disc has just crossed into its cell: only those that came within reach then. SIDE_OF_BOX for all. Returns their
+    number.
+    """
     link = state.cells.link[U(i)]
     column, row = np.int64(link.column), np.int64(link.row)
-    if is_large(coarse, disc):
+    if disc.r > coarse.limit:
         count = append_coarse_block(state, coarse, 0, True, column, row, 1, crossing_code, periodic)
         return append_coarse_block(state, coarse, count, False, column, row, 2, crossing_code, periodic)
     if crossing_code < SIDE_OF_BOX:
@@ -158,24 +150,27 @@ def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
         for column in range((x - 1) * size + 1, x * size + 1):
             j = cells.head[U(row * cells.columns + column)]
             state.candidates[U(count)] = j
-            record_image(state.images, count, image_x, image_y)
+            if periodic is not None:
+                record_image(state.images, count, image_x, image_y)
             count += 1 if j >= 0 else 0
     return count
 
 
 @inline
-def neighbours(state, i, disc, periodic):
+def neighbours(state, coarse, i, disc, periodic):
     """Make the first discs of disc i's own cell and of the eight around it the candidates.
 
     Returns their number, and whether their images are recorded: else all are seen as they are in the box.
     """
-    count = append_coarse(state, state.coarse, i, disc, SIDE_OF_BOX, periodic)
-    if is_large(state.coarse, disc):
-        return count, True
+    count = 0
+    if coarse is not None:
+        count = append_coarse_cells(state, coarse, i, disc, SIDE_OF_BOX, periodic)
+        if disc.r > coarse.limit:
+            return count, True
     link = state.cells.link[U(i)]
     column = np.int64(link.column) - 1
     row = np.int64(link.row) - 1
-    if periodic is not None and (has_coarse(state.coarse) or not is_inside(state.cells, column, row, 3, 3)):
+    if periodic is not None and (coarse is not None or not is_inside(state.cells, column, row, 3, 3)):
         for line in range(3):
             count = append_wrapped_line(
                 state.cells, state.candidates, state.images, count, column, row + line, False, periodic
@@ -187,21 +182,23 @@ def neighbours(state, i, disc, periodic):
 
 
 @inline
-def new_neighbours(state, i, disc, crossing_code, periodic):
+def new_neighbours(state, coarse, i, disc, crossing_code, periodic):
     """Make the first discs of the three cells that came within reach of disc i the candidates; see `neighbours`.
 
     crossing_code: direction in which it crossed into its cell, see PREDICTION.
     """
-    count = append_coarse(state, state.coarse, i, disc, crossing_code, periodic)
-    if is_large(state.coarse, disc):
-        return count, True
+    count = 0
+    if coarse is not None:
+        count = append_coarse_cells(state, coarse, i, disc, crossing_code, periodic)
+        if disc.r > coarse.limit:
+            return count, True
     forward = 1 if crossing_code & 1 else -1
     along_y = crossing_code >= 2
     link = state.cells.link[U(i)]
     column = np.int64(link.column) + (-1 if along_y else forward)
     row = np.int64(link.row) + (forward if along_y else -1)
     columns, rows = (3, 1) if along_y else (1, 3)
-    if periodic is not None and (has_coarse(state.coarse) or not is_inside(state.cells, column, row, columns, rows)):
+    if periodic is not None and (coarse is not None or not is_inside(state.cells, column, row, columns, rows)):
         cells, images = state.cells, state.images
         return append_wrapped_line(cells, state.candidates, images, count, column, row, not along_y, periodic), True
     return append_line(state, count, column, row, not along_y), False

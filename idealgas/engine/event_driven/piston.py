@@ -2,21 +2,13 @@
 
 import numpy as np
 
-from idealgas.engine.event_driven.prediction import NO_CONTACT, SIDE_OF_BOX, precedes, wall_rank
+from idealgas.engine.event_driven.prediction import FIRST_WALL, NO_CONTACT, SIDE_OF_BOX, precedes
 from idealgas.engine.event_driven.scheduler import update
 from idealgas.jit import inline
 from idealgas.physics.absorbing import has_left
 from idealgas.physics.piston import misses_piston_until, piston_contact, stop_contact
 
 U = np.uintp
-
-
-@inline
-def is_piston(i, ids, piston):
-    """Whether leaf i of the schedule is that of a piston."""
-    if piston is not None:
-        return i >= ids.shape[0]
-    return False
 
 
 @inline
@@ -29,7 +21,7 @@ def keep_if_earlier(record, ids, prediction, j, piston, effects):
     time = piston_contact(record[U(j)], piston, effects.gravity)
     earlier = time < prediction.contact
     if time == prediction.contact:
-        rank = wall_rank(piston.wall)
+        rank = np.int64(FIRST_WALL + piston.wall)
         earlier = precedes(np.int64(ids[U(j)]), rank, np.int64(ids[U(prediction.partner)]), rank)
     if earlier:
         prediction.contact = time

@@ -33,12 +33,10 @@ NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is
 U = np.uintp  # unsigned: negative indices need not be checked for
 
 FIRST_WALL = -(1 << 31)
+"""Rank of wall 0 among a disc's partners, which are walls before discs; wall k has the rank FIRST_WALL + k."""
 
-
-@inline
-def wall_rank(wall):
-    """Rank of a wall among a disc's partners: before all discs, in order of wall number."""
-    return FIRST_WALL + wall
+FIRST_WALL_SEGMENT = -2
+"""What stands for wall segment 0 among the partners of a prediction; segment k is FIRST_WALL_SEGMENT - k."""
 
 
 @inline
@@ -60,18 +58,6 @@ def image_precedes(own, other, images, others):
 
 
 @inline
-def segment_partner(segment):
-    """Number that stands for a wall segment among the partners of a prediction."""
-    return -2 - segment
-
-
-@inline
-def segment_of(partner):
-    """Number of the wall segment that a prediction's partner stands for."""
-    return -2 - partner
-
-
-@inline
 def images_of(prediction):
     """Numbers of box lengths (x, y) between a disc's record and its partner."""
     return np.int64(prediction.image_x), np.int64(prediction.image_y)
@@ -82,16 +68,7 @@ def partner_rank(ids, partner):
     """Rank of a disc's partner in the order of simultaneous events: its id, or the rank of a wall."""
     if partner >= 0:
         return np.int64(ids[U(partner)])
-    return np.int64(wall_rank(FIRST_SEGMENT + segment_of(partner)))
-
-
-@inline
-def predict_nothing(prediction):
-    """Store that a disc has no events."""
-    prediction.contact = NO_CONTACT
-    prediction.partner = -1
-    prediction.crossing = NEVER
-    prediction.crossing_code = SIDE_OF_BOX
+    return np.int64(FIRST_WALL + FIRST_SEGMENT + (FIRST_WALL_SEGMENT - partner))
 
 
 @inline
@@ -105,7 +82,8 @@ def contact_is_next(prediction, ids, i):
     if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i >= ids.shape[0]:
         return False
     own = np.int64(ids[U(i)])
-    return precedes(own, partner_rank(ids, prediction.partner), own, wall_rank(prediction.crossing_code - SIDE_OF_BOX))
+    side = np.int64(FIRST_WALL + (prediction.crossing_code - SIDE_OF_BOX))
+    return precedes(own, partner_rank(ids, prediction.partner), own, side)
 
 
 @inline
@@ -115,7 +93,7 @@ def event_ids(prediction, ids, i):
     Leaves beyond the discs are pistons': they meet a disc in their contact, a side of the box in their crossing.
     """
     contact = contact_is_next(prediction, ids, i)
-    side = np.int64(wall_rank(prediction.crossing_code - SIDE_OF_BOX))
+    side = np.int64(FIRST_WALL + (prediction.crossing_code - SIDE_OF_BOX))
     if i >= ids.shape[0]:
         return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), side)
     own = np.int64(ids[U(i)])

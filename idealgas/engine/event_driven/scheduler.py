@@ -96,21 +96,12 @@ def comes_first(predictions, ids, i, j):
     return precedes(a, b, c, d)
 
 
-@inline
-def resolve_group(tree, predictions, ids, group, parent):
-    """Make the winner of a group the first, in the order of ids, of those with the earliest time."""
-    first = np.int64(-1)
-    for node in range(group, min(group + 8, parent)):
-        if tree.time[U(node)] == tree.time[U(parent)]:
-            i = np.int64(tree.winner[U(node)])
-            if first < 0 or comes_first(predictions, ids, i, first):
-                first = i
-    tree.winner[U(parent)] = first
-
-
 @noinline
 def resolve_path(tree, predictions, ids, i, time):
-    """Resolve ties in the groups of disc i on all levels whose earliest event is at a time."""
+    """Resolve ties in the groups of disc i on all levels whose earliest event is at a time.
+
+    The winner of a group becomes the first, in the order of ids, of those with this time.
+    """
     group = np.int64(i)
     base = 0
     for level in range(1, tree.start.shape[0]):
@@ -119,7 +110,13 @@ def resolve_path(tree, predictions, ids, i, time):
         base = tree.start[U(level)]
         parent = base + offset
         if tree.time[U(parent)] == time:
-            resolve_group(tree, predictions, ids, group, parent)
+            first = np.int64(-1)
+            for node in range(group, min(group + 8, parent)):
+                if tree.time[U(node)] == time:
+                    other = np.int64(tree.winner[U(node)])
+                    if first < 0 or comes_first(predictions, ids, other, first):
+                        first = other
+            tree.winner[U(parent)] = first
         group = parent
 
 
@@ -177,21 +174,10 @@ def update(tree, predictions, ids, i):
 
 
 @inline
-def root_of(tree):
-    """Node of the next event."""
-    return tree.start[U(tree.start.shape[0] - 1)]
-
-
-@inline
-def next_time(tree):
-    """Local time of the next event."""
-    return tree.time[U(root_of(tree))]
-
-
-@inline
-def next_disc(tree):
-    """Index of the disc with the next event, or with one of several simultaneous next events."""
-    return np.int64(tree.winner[U(root_of(tree))])
+def next_event(tree):
+    """Local time of the next event, and index of its disc, or of the disc with one of several simultaneous events."""
+    root = tree.start[U(tree.start.shape[0] - 1)]
+    return tree.time[U(root)], np.int64(tree.winner[U(root)])
 
 
 @inline
@@ -200,15 +186,6 @@ def has_other_event(tree, predictions, i, j, time):
     prediction = predictions[U(j)]
     same = (prediction.partner == i) & (prediction.contact == time) & (prediction.crossing > time)
     return (tree.time[U(j)] == time) & (not same)
-
-
-@inline
-def is_resolved(tree, time):
-    """Whether a removed event at a time was the first of the simultaneous ones.
-
-    It was if no other one is left in the tree, or if ties at this time are resolved.
-    """
-    return (next_time(tree) != time) | (tree.tie_time[0] == time)
 
 
 @noinline
@@ -220,7 +197,7 @@ def resolve_ties(tree, predictions, ids, i, j):
     push(tree, predictions, ids, i)
     if j >= 0:
         push(tree, predictions, ids, j)
-    time = next_time(tree)
+    time, _ = next_event(tree)
     tree.tie_time[0] = time
     parents = tree.start[1]
     for offset in range(parents >> 3):

@@ -11,7 +11,6 @@ from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.jit import aligned, inline
-from idealgas.physics.periodic import NO_IMAGES
 
 IMAGE = np.dtype([("x", "i4"), ("y", "i4")], align=True)  # box lengths, along x and along y
 
@@ -67,22 +66,6 @@ def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effect
 
 @inline
 def record_image(images, k, x, y):
-    """Store the image (x, y) in which candidate k is seen, where sides are periodic."""
-    if images is not None:
-        images[np.uintp(k)].x = x
-        images[np.uintp(k)].y = y
-
-
-@inline
-def copy_image(images, to, k, has_images):
-    """Store for candidate `to` the image in which candidate k is seen, where sides are periodic and it has one."""
-    if images is not None and has_images:
-        images[np.uintp(to)] = images[np.uintp(k)]
-
-
-@inline
-def image_of(images, k):
-    """Image (x, y) in which candidate k is seen, in box lengths; zeros without periodic sides."""
-    if images is not None:
-        return np.int64(images[np.uintp(k)].x), np.int64(images[np.uintp(k)].y)
-    return NO_IMAGES
+    """Store the image (x, y) in which candidate k is seen."""
+    images[np.uintp(k)].x = x
+    images[np.uintp(k)].y = y

@@ -9,7 +9,7 @@ and one thread repeats it. The rows that an event reads and writes are in engine
 import numpy as np
 
 from idealgas.engine.event_driven.prediction import contact_is_next
-from idealgas.engine.event_driven.scheduler import next_disc, next_time, push
+from idealgas.engine.event_driven.scheduler import next_event
 from idealgas.engine.parallel.atomics import add, load, store, wait
 from idealgas.engine.parallel.subdomain import (
     ABORTED,
@@ -30,50 +30,25 @@ from idealgas.engine.parallel.subdomain import (
     clock_word,
     has_message,
     lock_word,
-    migrate,
     publish_clock,
     receive,
     try_lock,
     unlock,
 )
-from idealgas.engine.records import check_clock
 from idealgas.jit import inline
 
 U = np.uintp
 
 
 @inline
-def next_event(record, ids, state, until, sub):
-    """Index of the disc with the next event up to a time, or DONE; for a subdomain, one that may happen, or ABORTED."""
-    if sub is not None:
-        return wait_for_event(record, ids, state, until, sub)
-    if next_time(state.tree) > until:
-        return np.int64(DONE)
-    return next_disc(state.tree)
+def is_owned(state, i, sub):
+    """Whether this thread owns disc i."""
+    return sub.low <= state.cells.link[U(i)].row < sub.high
 
 
 @inline
-def push_to_owner(ids, state, i, sub):
-    """Schedule disc i's next event in the thread that owns the disc."""
-    if sub is not None and not sub.low <= state.cells.link[U(i)].row < sub.high:
-        migrate(ids, state, i, sub)
-    else:
-        push(state.tree, state.prediction, ids, i)
-
-
-@inline
-def if_owned(state, j, sub):
-    """Disc j if this thread owns it, else -1; j: -1 for no disc."""
-    if sub is not None and j >= 0 and not sub.low <= state.cells.link[U(j)].row < sub.high:
-        return np.int64(-1)
-    return j
-
-
-@inline
-def count_simultaneous(time, now, events_at_this_time, n, sub):
-    """Time of the latest event, after one at `time`, and number of consecutive events then; n: number of discs."""
-    if sub is None:
-        return time, check_clock(time, now, events_at_this_time, n)
+def count_simultaneous(time, now, events_at_this_time, sub):
+    """Time of the latest event, after one at `time`, and number of consecutive events then."""
     check_rows(time, sub)
     if time < now:  # the clock was set back
         return now, events_at_this_time
@@ -97,10 +72,9 @@ def check_rows(time, sub):
 @inline
 def finish(sub, reached):
     """End a thread's work; if it did not reach its limit, abort that of all others."""
-    if sub is not None:
-        unlock(sub)
-        if not reached:
-            abort(sub, FULL)
+    unlock(sub)
+    if not reached:
+        abort(sub, FULL)
 
 
 @inline
@@ -147,7 +121,7 @@ def depth_of(ids, state, i, where, sub):
     prediction = state.prediction[U(i)]
     if contact_is_next(prediction, ids, i):
         j = prediction.partner
-        if j >= 0 and sub.low <= state.cells.link[U(j)].row < sub.high:
+        if j >= 0 and is_owned(state, j, sub):
             first = min(first, np.int64(state.cells.link[U(j)].row))
             last = max(last, np.int64(state.cells.link[U(j)].row))
     elif prediction.crossing_code == 2:
@@ -298,9 +272,8 @@ def wait_for_event(record, ids, state, until, sub):
     while load(sub.words, FLAG) == 0:
         if has_message(sub):
             receive(ids, state, until, sub)
-        time = next_time(state.tree)
+        time, i = next_event(state.tree)
         if time <= until:
-            i = next_disc(state.tree)
             decision = may_happen(record, ids, state, i, time, sub)
             if decision != 0:
                 return i if decision == 1 else np.int64(ABORTED)

@@ -9,7 +9,6 @@ from helpers.rounding import body, gamma
 from idealgas.physics.periodic import (
     NO_IMAGES,
     Periodic,
-    boundary_crossings_along,
     enter_opposite_side,
     images_between,
     images_to_wall,
@@ -109,13 +108,11 @@ def test_images_are_counted_from_the_records():
     assert images_between(periodic, b, a, (0, 0)) == (-2, 4)
     assert images_to_wall(periodic, b, (-1, 1)) == (-1, 4)
     assert shift_by_images(1.0, 2.0, periodic, (1, -2)) == (1.0 - LX, 2.0 + 2 * LY)
-    assert [boundary_crossings_along(periodic, a, along_y) for along_y in (False, True)] == [(2, True), (-1, True)]
 
 
 def test_without_joined_sides_there_are_none():
     assert images_between(None, body(), body(), (1, 0)) == images_to_wall(None, body(), (1, 0)) == NO_IMAGES
     assert shift_by_images(1.0, 2.0, None, (1, 1)) == (1.0, 2.0)
-    assert boundary_crossings_along(None, body(), True) == (0, False)
     assert periodic_axes(None) == (False, False)
     assert periodic_axes(sides(x=False)) == (False, True)
     assert [is_periodic(sides(x=False), along_y) for along_y in (False, True)] == [False, True]

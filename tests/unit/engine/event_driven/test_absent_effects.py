@@ -14,7 +14,7 @@ pytestmark = pytest.mark.slow
 
 MARKERS = {
     "gravity": {"crossings.accelerated_crossing", "motion.time_to_plane", "wall.accelerated_body_delay"},
-    "periodic sides": {"periodic.images_between", "state.image_of", "periodic.wrapped"},
+    "periodic sides": {"periodic.images_between", "state.record_image", "periodic.wrapped"},
     "sheared sides": {"shear.cross", "shear.crossing_time", "neighbours.append_sheared_row"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "arcs": {"arc.arc_contact", "arc.arc_frame"},

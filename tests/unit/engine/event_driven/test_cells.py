@@ -1,19 +1,21 @@
 """Cells: how many there are, which one a position belongs to, and the lists of their discs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from helpers.rounding import body
 
 from idealgas.engine.event_driven.cells import (
-    cell_index,
     cell_of,
     discs_per_cell,
     enter,
     find_cell,
-    is_in_ring,
     leave,
     make_cells,
 )
+from idealgas.engine.event_driven.crossings import cross_cell
+from idealgas.physics.periodic import Periodic
 
 pytestmark = pytest.mark.interpreted
 
@@ -56,12 +58,8 @@ def test_the_cell_of_a_position(place, column, row):
     cells = make_cells(100, (10.0, 5.0), 0.62, 0.1)._replace(columns=7, rows=6, width=2.0, height=1.25)
     find_cell(cells, 3, body(x=place[0], y=place[1]))
     link = cells.link[3]
-    assert (link.column, link.row, cell_index(cells, 3)) == (column, row, row * 7 + column)
+    assert (link.column, link.row) == (column, row)
     assert [found.tolist() for found in cell_of(np.array([place]), cells)] == [[column], [row]]
-    assert not is_in_ring(cells, link)
-    for ring in ((0, 1), (6, 1), (1, 0), (1, 5)):
-        link.column, link.row = ring
-        assert is_in_ring(cells, link)
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 0, 2), (1, 2, 0)])
@@ -77,12 +75,40 @@ def test_discs_enter_and_leave_a_cell(order):
             before, i = i, cells.link[i].next
         return found
 
-    enter(cells, 3, 5)
-    for i in range(3):
-        enter(cells, i, 6)
-    assert (discs(5), discs(6)) == ([3], [2, 1, 0])
+    other, cell = 1 * cells.columns + 1, 1 * cells.columns + 2
+    cells.link.row[:4] = 1
+    cells.link.column[:4] = 2, 2, 2, 1
+    for i in (3, 0, 1, 2):
+        enter(cells, i)
+    assert (discs(other), discs(cell)) == ([3], [2, 1, 0])
     left = [2, 1, 0]
     for i in order:
-        leave(cells, i, 6)
+        leave(cells, i)
         left.remove(i)
-        assert (discs(5), discs(6)) == ([3], left)
+        assert (discs(other), discs(cell)) == ([3], left)
+
+
+@pytest.mark.parametrize(
+    ("code", "start", "end", "crossed"),
+    [
+        (0, (3, 2), (2, 2), (0, 0)),
+        (3, (3, 2), (3, 3), (0, 0)),
+        (0, (1, 2), (5, 2), (-1, 0)),  # through the left side
+        (1, (5, 2), (1, 2), (1, 0)),
+        (2, (3, 1), (3, 4), (0, -1)),
+        (3, (3, 4), (3, 1), (0, 1)),
+    ],
+)
+def test_a_disc_crosses_into_the_next_cell(code, start, end, crossed):
+    """Of five columns and four rows; through a periodic side into the cell at the opposite one."""
+    cells = make_cells(4, (10.0, 5.0), 0.62, 0.1)._replace(columns=7, rows=6)
+    sides = Periodic(True, True, 10.0, 5.0, np.zeros((4, 2), np.int32))
+    state, record = SimpleNamespace(cells=cells, coarse=None), [body()] * 4
+    link = cells.link[3]
+    link.column, link.row = start
+    enter(cells, 3)
+    record[3].crossed_x = record[3].crossed_y = 0
+    cross_cell(record, state, 3, code, sides)
+    assert (link.column, link.row) == end
+    assert (record[3].crossed_x, record[3].crossed_y) == crossed
+    assert np.flatnonzero(cells.head >= 0).tolist() == [end[1] * 7 + end[0]]

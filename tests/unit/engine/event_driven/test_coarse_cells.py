@@ -6,7 +6,7 @@ from helpers.rounding import body
 from helpers.support import record, same_rows
 
 from idealgas.engine.brute_force import BruteForce
-from idealgas.engine.event_driven.cells import is_large, make_levels
+from idealgas.engine.event_driven.cells import make_levels, own_cells
 from idealgas.engine.event_driven.method import EventDriven, expected_threads
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
@@ -59,8 +59,9 @@ def test_only_discs_that_are_far_larger_have_coarse_cells():
     assert fine.width * coarse.ratio == pytest.approx(coarse.cells.width)
     assert fine.width >= 0.012
     assert 0.006 < coarse.limit < 0.5
-    assert [is_large(coarse, body(r=r)) for r in (0.006, coarse.limit, 0.5)] == [False, False, True]
-    assert not is_large(None, body(r=0.5))
+    for r, cells in ((0.006, fine), (coarse.limit, fine), (0.5, coarse.cells)):
+        assert own_cells(fine, coarse, body(r=r)) is cells
+    assert own_cells(fine, None, body(r=0.5)) is fine
     assert fine.link is coarse.cells.link
     wide, narrow = (make_levels(radius, (side, side), 0.4)[1].cells for side in (4.04, 4.07))
     assert (wide.columns, narrow.columns) == (9, 10)  # eight cells of 0.506 need 4.048

@@ -7,6 +7,8 @@ import pytest
 
 from idealgas.columns import FIRST_SEGMENT, HEAT_BATH
 from idealgas.engine.event_driven.prediction import (
+    FIRST_WALL,
+    FIRST_WALL_SEGMENT,
     PREDICTION,
     SIDE_OF_BOX,
     THERMOSTAT,
@@ -15,9 +17,6 @@ from idealgas.engine.event_driven.prediction import (
     image_precedes,
     partner_rank,
     precedes,
-    segment_of,
-    segment_partner,
-    wall_rank,
 )
 from idealgas.jit import aligned
 
@@ -26,13 +25,13 @@ pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:overfl
 
 def test_the_order_of_simultaneous_events():
     events = [
-        (0, wall_rank(0)),
-        (0, wall_rank(2)),
+        (0, FIRST_WALL + 0),
+        (0, FIRST_WALL + 2),
         (0, 1),
         (0, 7),
-        (1, wall_rank(3)),
+        (1, FIRST_WALL + 3),
         (1, 2),
-        (5, wall_rank(1)),
+        (5, FIRST_WALL + 1),
         (5, 6),
     ]
     for k, first in enumerate(events):
@@ -44,14 +43,14 @@ def test_the_order_of_simultaneous_events():
 
 
 def test_no_event_precedes_itself():
-    for event in ((0, 1), (1, 0), (3, wall_rank(2))):
+    for event in ((0, 1), (1, 0), (3, FIRST_WALL + 2)):
         assert not precedes(*event, *event)
     assert not precedes(4, 2, 2, 4)
 
 
 def test_it_is_an_order():
     draw = random.Random(1)
-    events = [(draw.randrange(6), draw.choice([wall_rank(draw.randrange(4)), draw.randrange(6)])) for _ in range(12)]
+    events = [(draw.randrange(6), draw.choice([FIRST_WALL + draw.randrange(4), draw.randrange(6)])) for _ in range(12)]
     for a in events:
         for b in events:
             for c in events:
@@ -62,9 +61,9 @@ def test_it_is_an_order():
 def test_partners_that_are_walls():
     """Disc j stands for itself, -1 for none, and numbers below that for segments; their ranks follow the sides'."""
     for k in (0, 5, 1000):
-        assert segment_of(segment_partner(k)) == k
-        assert segment_partner(k) < -1
-        assert partner_rank(np.array([7, 9]), segment_partner(k)) == wall_rank(FIRST_SEGMENT + k) < wall_rank(2000)
+        rank = partner_rank(np.array([7, 9]), FIRST_WALL_SEGMENT - k)
+        assert FIRST_WALL_SEGMENT - k < -1
+        assert rank == FIRST_WALL + FIRST_SEGMENT + k < FIRST_WALL + 2000
     assert partner_rank(np.array([7, 9]), 1) == 9
 
 
@@ -79,10 +78,10 @@ def prediction(contact, crossing, code, partner=1):
     [
         (1.0, 2.0, 0, True, (5, 9)),
         (2.0, 1.0, 0, False, (-1, 5)),  # into a cell
-        (2.0, 1.0, SIDE_OF_BOX + 3, False, (5, wall_rank(3))),
+        (2.0, 1.0, SIDE_OF_BOX + 3, False, (5, FIRST_WALL + 3)),
         (1.0, 1.0, 0, False, (-1, 5)),  # a cell precedes all
-        (1.0, 1.0, SIDE_OF_BOX + 3, False, (5, wall_rank(3))),  # and a wall a disc
-        (1.0, 1.0, THERMOSTAT, False, (5, wall_rank(HEAT_BATH))),
+        (1.0, 1.0, SIDE_OF_BOX + 3, False, (5, FIRST_WALL + 3)),  # and a wall a disc
+        (1.0, 1.0, THERMOSTAT, False, (5, FIRST_WALL + HEAT_BATH)),
     ],
 )
 def test_which_of_two_events_of_a_disc_is_next(contact, crossing, code, first, ids):
@@ -95,7 +94,7 @@ def test_which_of_two_events_of_a_disc_is_next(contact, crossing, code, first, i
 def test_images_of_one_partner_come_in_the_order_of_the_smaller_id():
     """Fewer box lengths along x, then y, first; seen from the disc with the larger id all signs are reversed."""
     for near, far in (((0, 5), (1, 0)), ((-1, 0), (0, 0)), ((0, -1), (0, 0))):
-        for own, other in ((3, 8), (3, wall_rank(6))):
+        for own, other in ((3, 8), (3, FIRST_WALL + 6)):
             assert image_precedes(own, other, near, far)
             assert not image_precedes(own, other, far, near)
         assert image_precedes(8, 3, far, near)

@@ -5,14 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from idealgas.engine.event_driven.prediction import PREDICTION, SIDE_OF_BOX, precedes, wall_rank
+from idealgas.engine.event_driven.prediction import FIRST_WALL, PREDICTION, SIDE_OF_BOX, precedes
 from idealgas.engine.event_driven.scheduler import (
     NO_TIE,
     clear,
     has_other_event,
-    is_resolved,
     make_tree,
-    next_disc,
+    next_event,
     push,
     remove,
     resolve_ties,
@@ -26,18 +25,17 @@ pytestmark = pytest.mark.interpreted
 @njit
 def enter(tree, predictions, ids, i):
     """The next disc after disc i's event was entered in place of another, found as the kernel and `receive` do it."""
-    before = tree.time[next_disc(tree)]
+    before, _ = next_event(tree)
     update(tree, predictions, ids, i)
-    first = next_disc(tree)
-    time = tree.time[first]
+    time, first = next_event(tree)
     if time < before:
         tree.tie_time[0] = NO_TIE
     remove(tree, predictions, ids, first)
-    if is_resolved(tree, time):
+    if next_event(tree)[0] != time or tree.tie_time[0] == time:
         push(tree, predictions, ids, first)
     else:
         resolve_ties(tree, predictions, ids, first, -1)
-    return next_disc(tree)
+    return next_event(tree)[1]
 
 
 def first_by_sorting(entries, ids):
@@ -50,7 +48,7 @@ def first_by_sorting(entries, ids):
         if side is not None and side < SIDE_OF_BOX:
             event = (-1, own)
         else:
-            event = (own, wall_rank(side - SIDE_OF_BOX) if partner is None else int(ids[partner]))
+            event = (own, FIRST_WALL + side - SIDE_OF_BOX if partner is None else int(ids[partner]))
         if best is None or time < best[0] or (time == best[0] and precedes(*event, *best[1])):
             best = (time, event, i)
     return best[2]
