@@ -51,8 +51,12 @@ def test_the_motion_of_the_whole_gas_is_not_in_its_temperature(tmp_path):
     simulate(parse_scene(half + piston), tmp_path / "piston.h5")
     with open_log(tmp_path / "piston.h5") as log:
         assert info(log)["gas"]["packing_fraction"] == pytest.approx(math.pi * 0.5 / 40, rel=1e-14)
+    fixed = half.replace("mass = 3 },", "mass = 3 }, { position = [7, 4], radius = 1, fixed = true },")
+    simulate(parse_scene(fixed), tmp_path / "fixed.h5")
+    with open_log(tmp_path / "fixed.h5") as log:
+        assert info(log)["gas"]["packing_fraction"] == pytest.approx(math.pi * 0.5 / (80 - math.pi), rel=1e-12)
 
 
 def test_how_often_v_ref_was_raised():
-    log = SimpleNamespace(observables={"v_ref": (None, np.array([2.0, 2.0, 3.0, 3.0, 5.0]))})
+    log = SimpleNamespace(observables={"v_ref": (None, np.array([2.0, 2.0, 2.0, 2.0, 3.0, 5.0]))})
     assert _reference_speed(log) == {"v_ref": {"start": 2.0, "end": 5.0, "raises": 2}}

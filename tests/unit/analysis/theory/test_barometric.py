@@ -1,9 +1,13 @@
 """Columns of few discs at fixed energy against integrals over the energy surface that can be done by hand."""
 
+import math
+
 import numpy as np
 import pytest
 
-from idealgas.analysis.theory.barometric import barometric_temperature, fixed_energy_column
+from idealgas.analysis.theory.barometric import barometric_temperature, column_rates, fixed_energy_column
+
+pytestmark = pytest.mark.interpreted
 
 PULL = 0.7
 
@@ -41,3 +45,16 @@ def test_many_discs_below_a_lid_are_a_barometric_column():
     for m, found in zip(mass, fixed_energy_column(energy, 8000, mass, number, PULL, height), strict=True):
         assert found.temperature == pytest.approx(t, rel=10 / 4000)
         assert found.density == pytest.approx(np.exp(-m * PULL * found.above / t), rel=50 / 8000)
+
+
+def test_rates_of_a_column_that_hardly_falls():
+    """One disc meets no other, and the sides of its room of 9.8 by 4.8 at the rate n⟨v⟩/π of their length."""
+    one = column_rates(2.0, np.array([3.0]), np.array([0.1]), np.array([1.0]), 1e-9, 10.0, 5.0)
+    assert (one.pairs, one.per_disc.tolist()) == (0.0, [0.0])
+    flux = math.sqrt(math.pi * 2 / (2 * 3)) / math.pi / (9.8 * 4.8)
+    assert one.hits == pytest.approx(flux * 2 * (9.8 + 4.8), rel=2e-3)  # of 2000 layers
+    two = column_rates(2.0, np.array([3.0]), np.array([0.1]), np.array([2.0]), 1e-9, 10.0, 5.0)
+    assert two.hits == pytest.approx(2 * one.hits, rel=1e-12)
+    rate = 2 * 0.2 * math.sqrt(math.pi * 2 / 3) / (9.8 * 4.8)  # 2σ⟨v_rel⟩/A with the other one
+    assert two.per_disc[0] == pytest.approx(rate, rel=3e-3)
+    assert two.pairs == pytest.approx(two.per_disc[0], rel=1e-14)
