@@ -31,6 +31,7 @@ def test_two_discs_that_leave_and_one_that_does_not(tmp_path):
     assert found.per_path.value == pytest.approx(2 / (6.9 + 6.9 + 12), rel=1e-12)
     assert found.per_path.standard_error == pytest.approx(found.per_path.value / math.sqrt(2), rel=1e-12)
     assert found.mean_time.value == pytest.approx((6.9 + 3.45 + 12) / 2, rel=1e-12)
+    assert found.mean_time.standard_error == pytest.approx(found.mean_time.value / math.sqrt(2), rel=1e-12)
     assert found.left.tolist() == [3 - (t >= 3.45) - (t >= 6.9) for t in found.time.tolist()]
     assert found.mean_time.theory is None  # for discs of one speed only
     assert found.caveats == (BILLIARD,)
