@@ -147,12 +147,18 @@ def small_disk(folder: Path, kilobytes: int) -> Iterator[Callable[[int], None]]:
         subprocess.run(["umount", folder], check=True)
 
 
+MEASURE = """
+import os, subprocess, sys
+child = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, usage = os.wait4(child.pid, 0)
+print(usage.ru_maxrss)
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
+"""Program that runs a command from a process of its own: Linux counts for a child what its parent has at the fork."""
+
+
 def code_errors_and_memory(*arguments: object, cwd: Path) -> tuple[int, str, int]:
     """Exit code of a command in a folder, its standard error, and the most memory that it took, bytes."""
-    command = [sys.executable, "-m", "idealgas", *map(str, arguments)]
-    child = subprocess.Popen(command, cwd=cwd, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    with child.stderr as stream:
-        errors = stream.read()
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    return child.returncode, errors, usage.ru_maxrss * 1024
+    command = [sys.executable, "-c", MEASURE, sys.executable, "-m", "idealgas", *map(str, arguments)]
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+    return done.returncode, done.stderr, int(done.stdout) * 1024

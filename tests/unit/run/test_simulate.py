@@ -219,6 +219,6 @@ species = [{{name = "gas", count = {count}, radius = 0.5, temperature = 1}}]
 run.events = 20_000
 run.threads = 1
 """)
-        code, errors, memory = code_errors_and_memory("run", path.name, cwd=tmp_path)
+        code, errors, memory = code_errors_and_memory("run", path.name, "-o", "run.h5", "--force", cwd=tmp_path)
         assert code == 0, errors
     assert 0.5e9 < memory < 1e9
