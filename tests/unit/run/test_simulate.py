@@ -211,7 +211,7 @@ def test_a_gate_opens_on_time(tmp_path):
 @pytest.mark.slow
 def test_two_million_discs_take_less_than_a_gigabyte(tmp_path):
     """The state, its checkpoint and the check of the last state at once; compiling, done before, takes 0.1 GB more."""
-    for side, count in (("100", 1_000), ("4000", 2_000_000)):
+    for side, count in (("400", 20_000), ("4000", 2_000_000)):
         path = tmp_path / f"{count}.toml"
         path.write_text(f"""
 box.size = [{side}, {side}]
