@@ -101,22 +101,40 @@ def predict_tied_contact(record, ids, state, count, has_images, i, effects):
             store_contact(state, record, i, j, k, has_images, time, effects.periodic)
 
 
-@noinline
-def predict_segment_contact(record, ids, state, i, segments, periodic, effects):
+@inline
+def own_walls(walls, coarse_walls, coarse, disc):
+    """Wall segments by cell, of the cells that a disc is in."""
+    if coarse is not None:
+        return coarse_walls if disc.r > coarse.limit else walls
+    return walls
+
+
+@inline
+def predict_segment_contact(record, ids, state, i, effects):
     """Store disc i's contact with a wall segment of its cell if that is its earliest."""
-    disc, own, prediction = record[U(i)], np.int64(ids[U(i)]), state.prediction[U(i)]
+    disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     walls = own_walls(state.walls, state.coarse_walls, state.coarse, disc)
     link = cells.link[U(i)]
     cell = U(np.int64(link.row) * cells.columns + np.int64(link.column))
-    for entry in range(walls.start[cell], walls.start[cell + U(1)]):
+    first, last = walls.start[cell], walls.start[cell + U(1)]
+    if first < last:  # seldom: to call a function for every disc would take a third of the time
+        own, prediction = np.int64(ids[U(i)]), state.prediction[U(i)]
+        predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effects.periodic, effects)
+
+
+@noinline
+def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, periodic, effects):
+    """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
+    for entry in range(first, last):
         k = walls.item[U(entry)]
         images = images_to_item(walls, U(entry), disc, periodic)
-        if misses_wall(disc, k, segments, effects.arcs, effects.gravity, periodic, images):
+        if misses_wall(disc, k, effects.segments, effects.arcs, effects.gravity, periodic, images):
             continue
         passage = passage_of(effects.permeable, own, k)
+        segments, arcs = effects.segments, effects.arcs
         time = wall_contact(
-            disc, own, k, segments, effects.arcs, passage, effects.gravity, effects.restitution, periodic, images
+            disc, own, k, segments, arcs, passage, effects.gravity, effects.restitution, periodic, images
         )
         partner = FIRST_WALL_SEGMENT - k
         if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
@@ -124,14 +142,6 @@ def predict_segment_contact(record, ids, state, i, segments, periodic, effects):
             prediction.partner = partner
             if periodic is not None:
                 prediction.image_x, prediction.image_y = images
-
-
-@inline
-def own_walls(walls, coarse_walls, coarse, disc):
-    """Wall segments by cell, of the cells that a disc is in."""
-    if coarse is not None:
-        return coarse_walls if disc.r > coarse.limit else walls
-    return walls
 
 
 @inline
@@ -165,4 +175,4 @@ def predict_contact(record, ids, state, i, crossing_code, now, segments, effects
     elif chosen >= 0:
         store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
     if segments is not None:
-        predict_segment_contact(record, ids, state, i, segments, effects.periodic, effects)
+        predict_segment_contact(record, ids, state, i, effects)
