@@ -82,8 +82,8 @@ def images_to_wall(periodic, disc, image):
 
 @inline
 def shift_by_images(x, y, periodic, images):
-    """A relative position (x, y), length, less the given numbers of box lengths, which are mostly 0."""
-    if periodic is not None and (images[0] != 0 or images[1] != 0):
+    """A relative position (x, y), length, less the given numbers of box lengths."""
+    if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y
 
