@@ -5,7 +5,7 @@ another file changes. Here machine code is cached with digests of all that it wa
 
 numba is imported when the first entry point is called: commands that compile nothing start without it. Of numba this
 uses, beyond what is documented: the options `_nrt` and `no_cfunc_wrapper`; a dispatcher's `compile` and `_cache`, which
-are replaced; `CompileResult._reduce`, `_rebuild` and `serialize.dumps`, with which numba's cache stores results.
+are replaced, and `overloads`; `CompileResult._reduce`, `_rebuild`, `serialize.dumps`, as in its own cache.
 """
 
 import os
@@ -24,6 +24,7 @@ import numpy as np
 from idealgas.errors import UserError
 from idealgas.jit import files
 from idealgas.jit.dependencies import Part, copied, digest, fill, is_ours, names_of, part_of, reached
+from idealgas.jit.trial import leave_out
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 if INTERPRETED:
@@ -93,13 +94,10 @@ class _Function(Part):
         kinds = tuple(map(types.unliteral, signature))  # else there would be machine code for each constant
         with _lock:
             if kinds not in self.reached:
-                if not self.calls.isdisjoint(key for key, _ in _compiling):
-                    raise TypeError(f"{self.key}: functions that call each other in a circle cannot be compiled")
-                fill(self._copy, self.names)
                 keys = {self.key}
                 _compiling.append((self.key, keys))
                 try:
-                    self._compile(kinds)
+                    self._obtain(kinds)
                 finally:
                     _compiling.pop()
                 self.reached[kinds] = keys
@@ -107,12 +105,21 @@ class _Function(Part):
                 _compiling[-1][1].update(self.reached[kinds])
             return self._compile(kinds)
 
+    def _obtain(self, kinds: tuple) -> None:
+        """Compile, unless nothing is done for these types of arguments."""
+        if not isinstance(self, EntryPoint):  # which is called by Python too
+            with suppress(Exception):
+                _compiling[-1][1].update(leave_out(self, kinds))
+                return
+        callers = self.mentions.intersection(key for key, _ in _compiling[:-1])
+        if callers and not self.calls.isdisjoint(callers):
+            raise TypeError(f"{self.key}: functions that call each other in a circle cannot be compiled")
+        fill(self._copy, self.names)
+        self._compile(kinds)
+
 
 class EntryPoint(_Function):
-    """A function that is compiled when it is first called: without fastmath and without the GIL, cached on disk.
-
-    Where another compiled function calls it, it is not inlined: numba would inherit `forceinline` from there.
-    """
+    """A function that is compiled when it is first called: without fastmath and without the GIL, cached on disk."""
 
     def __init__(self, function: Callable) -> None:
         """Take the function in Python."""
