@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from helpers.support import gas_of
 
 from idealgas.analysis.pressure.measure import PAIRS, pressure
-from idealgas.analysis.pressure.routes import WALLS
+from idealgas.analysis.pressure.routes import WALLS, _across, _average, _on_sides, _reach
+from idealgas.analysis.theory.values import Theory
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
@@ -59,6 +61,18 @@ def test_every_route(make):
     for route in found.routes:
         assert route.pressure.value == pytest.approx(route.compressibility_factor.value * ideal, rel=1e-12)
     assert pairs > 0
+
+
+def test_rooms_and_shares_of_sides():
+    """What centres reach; flows over the axes with walls; forces of an axis on both of its sides; means of theories."""
+    gas = gas_of((10, 8), [(1, 1), (2, 2)], 0.0, [0.5, 0.25])
+    assert _reach(gas).tolist() == [[9.0, 7.0], [9.5, 7.5]]
+    flow = np.array([[1.0, 2.0], [3.0, 4.0]])
+    assert [_across(flow, sides).tolist() for sides in ((False, False), (True, False))] == [[3.0, 7.0], [2.0, 4.0]]
+    assert _on_sides(flow).tolist() == [[1.0, 3.0], [1.0, 3.0], [2.0, 4.0], [2.0, 4.0]]
+    parts = (Theory(1.0, 0.1, "a"), 0.25), (Theory(3.0, 0.5, "b"), 0.75)
+    assert _average(parts) == Theory(2.5, pytest.approx(0.4), "a")
+    assert _average((*parts, (None, 0.0))) is None
 
 
 def test_pressures_of_two_discs_in_lanes(lanes):
