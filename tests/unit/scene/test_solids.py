@@ -62,6 +62,12 @@ def test_areas_of_arcs_and_of_nested_curves():
     assert scene(ring).solids.area == pytest.approx(100 - 16 * math.pi + 4 * math.pi, rel=1e-14)
 
 
+def test_a_circle_of_two_unequal_arcs_has_its_area():
+    a, b, small, large = ([5 + 3 * math.cos(t), 5 + 3 * math.sin(t)] for t in (0.3, 2.0, 1.15, 1.15 + math.pi))
+    found = scene(walls("inside", [(a, b), (b, a)], [small, large]))
+    assert found.solids.area == pytest.approx(9 * math.pi, rel=1e-12)
+
+
 def test_the_ray_through_a_corner():
     """Points level with corners count as all others do."""
     diamond = scene(walls("inside", [([2, 5], [5, 2]), ([5, 2], [8, 5]), ([8, 5], [5, 8]), ([5, 8], [2, 5])]))
