@@ -58,12 +58,13 @@ def filter_colliding(record, state, count, has_images, i, gravity, periodic):
         j = candidates[U(k)]
         behind = state.cells.link[U(j)].next
         candidates[U(count)] = behind
-        candidates[U(kept)] = j
-        images = images_to(state, k, has_images, record, i, j, periodic)
         if periodic is not None and has_images:
             state.images[U(count)] = state.images[U(k)]
-            state.images[U(kept)] = state.images[U(k)]
         count += 1 if behind >= 0 else 0
+        images = images_to(state, k, has_images, record, i, j, periodic)
+        candidates[U(kept)] = j
+        if periodic is not None and has_images:
+            state.images[U(kept)] = state.images[U(k)]
         kept += 1 if will_collide(disc, record[U(j)], gravity, periodic, images) else 0
         k += 1
     return kept
