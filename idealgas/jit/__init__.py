@@ -10,11 +10,10 @@ are replaced, and `overloads`; `CompileResult._reduce`, `_rebuild`, `serialize.d
 
 import os
 import pickle
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, cached_property, update_wrapper, wraps
 from types import FunctionType
 from typing import Any
@@ -52,7 +51,6 @@ _declared: list[Callable[[], object]] = []
 _compiling: list[tuple[str, set[str]]] = []
 """Keys of the functions that are being compiled, callers first, each with the keys of all parts that it reaches."""
 _lock = threading.RLock()
-_local = threading.local()
 _seconds = 0.0
 
 
@@ -128,8 +126,8 @@ class EntryPoint(_Function):
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the machine code, or the function itself in a block of `in_python`."""
-        return (self.py_func if getattr(_local, "in_python", False) else self.compiled)(*arguments)
+        """Call the machine code."""
+        return self.compiled(*arguments)
 
     @cached_property
     def compiled(self) -> Any:
@@ -213,19 +211,6 @@ def _declare() -> None:
 def njit(function: Callable) -> Any:
     """Make a function an entry point of compiled code, see `EntryPoint`."""
     return function if INTERPRETED else EntryPoint(function)
-
-
-@contextmanager
-def in_python(little: bool) -> Iterator[None]:
-    """Call entry points that have little to do as functions of Python, with the same results bit for bit.
-
-    Where numba is not loaded yet, that takes less time than to load it.
-    """
-    _local.in_python = little and "numba" not in sys.modules
-    try:
-        yield
-    finally:
-        _local.in_python = False
 
 
 def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:
