@@ -65,7 +65,7 @@ class Join:
         """Return where the states before and after event rows are.
 
         Args:
-            disc: (n,), disc of each row, n > 0.
+            disc: (n,), disc of each row.
 
         Returns:
             (n,), index of the state of the disc before each row; the discs that have rows; index of the last state of
@@ -73,13 +73,14 @@ class Join:
         """
         order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # in linear time, by radix
         ordered = disc[order]
-        first = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1]))  # row of each disc
-        state = self.discs + order
-        before = np.append(0, state[:-1])
+        is_first = np.ones(len(disc), np.bool_)  # row of its disc
+        is_first[1:] = ordered[1:] != ordered[:-1]
+        first, state = np.flatnonzero(is_first), self.discs + order
+        before = np.roll(state, 1)
         before[first] = ordered[first]
         previous = np.empty_like(before)
         previous[order] = before
-        return previous, ordered[first], state[np.append(first[1:], len(disc)) - 1]
+        return previous, ordered[first], state[np.append(first, len(disc))[1:] - 1]
 
     def states(self, discs: np.ndarray) -> Arrays:
         """Latest states of some discs."""
