@@ -293,5 +293,5 @@ class TimeDriven(Method):
         )  # fmt: skip
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap of a collision, divided by the sum of the radii: in this epoch or, at its start, the last."""
+        """Deepest overlap in a collision of this epoch (at its start: of the last one), over the sum of the radii."""
         return self._overlap if self._step[0].number == 0 else float(self._deepest[0])

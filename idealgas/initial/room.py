@@ -99,7 +99,7 @@ def for_kernels(room: Room) -> Room:
 
 
 def _numbers(walls: Sequence[Any]) -> np.ndarray:
-    """Start, end, radius and arc of each wall as numbers (W, 12)."""
+    """Return the start, end, radius and arc of each wall as a row of an array (W, 12)."""
     rows = [(*wall.start, *wall.end, wall.radius, *(wall.arc or NO_ARC)) for wall in walls]
     return np.array(rows, float).reshape(-1, 12)
 

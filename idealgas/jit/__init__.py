@@ -277,7 +277,7 @@ class _Intrinsic(Part):
 
 
 def intrinsic(function: Callable) -> Callable:
-    """Decorate a function that numba's `intrinsic` takes: compiled code calls it, Python cannot."""
+    """Decorate the implementation of an intrinsic of numba, which only compiled code can call."""
 
     def declared(*arguments: Any) -> Any:
         raise TypeError(f"{function.__name__} is for compiled code only")

@@ -28,7 +28,7 @@ class _Argument(int):
 
 
 def leave_out(part: Part, kinds: tuple) -> set[str]:
-    """Let numba write down what a function returns for types of arguments, if it does nothing.
+    """Replace calls of a function by its result, if it does nothing for these types of arguments.
 
     Returns:
         The keys of the functions that were run in the trial.

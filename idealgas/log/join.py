@@ -54,12 +54,12 @@ class Join:
         if number > self._room:
             self._make_room(number)
         previous, discs, newest = self._places(rows["disc"])
-        found = {}
+        before = {}
         for name, values in self._states.items():
             values[self.discs : self.discs + number] = rows[name]
-            found[name] = values.take(previous, axis=0)
+            before[name] = values.take(previous, axis=0)
             values[discs] = values.take(newest, axis=0)
-        return found | {"disc": rows["disc"]}
+        return before | {"disc": rows["disc"]}
 
     def _places(self, disc: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return where the states before and after event rows are.

@@ -95,8 +95,8 @@ def animate(
     writer = gif_writer if gif else partial(mp4_writer, ffmpeg())
     check_shown(log, look.get("colouring"))
     first, latest = span(log, start, end)
-    some = _some_states(log, first, latest)
-    typical, thermal = speeds(log, some)
+    states = _some_states(log, first, latest)
+    typical, thermal = speeds(log, states)
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     if gif:
@@ -108,7 +108,7 @@ def animate(
         )
     if (size := look.get("size")) is not None:
         look["size"] = size[0] // 2 * 2, size[1] // 2 * 2
-    painter = _painter(log, thermal, (first, last), some, look)
+    painter = _painter(log, thermal, (first, last), states, look)
     times = np.minimum(first + np.arange(number) * (speed / fps), last)
     with written(path, kind, force) as part, writer(part, *painter.size, fps) as write:
         for k, state in enumerate(log.frames(times)):
@@ -117,10 +117,10 @@ def animate(
     return Film(path, number, fps, first, last)
 
 
-def _painter(log: Log, thermal: float, times: tuple[float, float], some: Sequence[LogState], look: Look) -> Painter:
+def _painter(log: Log, thermal: float, times: tuple[float, float], states: Sequence[LogState], look: Look) -> Painter:
     """Painter of the states of a log. thermal: as `rms_speed` of `Painter`."""
     pistons, maxwell = piston_tracks(log, *times), tends_to_equilibrium(log)
-    return Painter(log.scene, log.discs, pistons, thermal, times, some, maxwell, **look)
+    return Painter(log.scene, log.discs, pistons, thermal, times, states, maxwell, **look)
 
 
 def paint_frame(
@@ -144,9 +144,9 @@ def paint_frame(
             f"{log.path}: no state at t = {time:g}: the log covers t = {log.start_time:g} to {log.end_time:g}"
         )
     times = log.start_time, log.end_time
-    some = _some_states(log, *times)
-    _, thermal = speeds(log, some)
-    painter = _painter(log, thermal, times, some, look)
+    states = _some_states(log, *times)
+    _, thermal = speeds(log, states)
+    painter = _painter(log, thermal, times, states, look)
     grows = look.get("trails") or look.get("panel") == "left-right"
     for state in log.frames(np.linspace(log.start_time, time, HISTORY) if grows else np.array([time])):
         frame = painter.paint(state)
@@ -174,10 +174,10 @@ def _some_states(log: Log, first: float, last: float) -> list[LogState]:
     return list(log.frames(np.linspace(first, last, 5)))
 
 
-def speeds(log: Log, some: Sequence[LogState]) -> tuple[float, float]:
+def speeds(log: Log, states: Sequence[LogState]) -> tuple[float, float]:
     """Largest root-mean-square speed of states, and the same relative to a conserved motion of the whole gas."""
     typical, thermal = (
-        max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in some)
+        max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in states)
         for u in (0.0, centre_of_mass_velocity(log))
     )
     return float(typical), float(thermal)

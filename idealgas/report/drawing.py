@@ -68,7 +68,7 @@ class Frame(NamedTuple):
 
 
 def is_drawable(figure: Figure) -> bool:
-    """Whether a figure has only panels, and these only what this module draws."""
+    """Whether this module can draw everything in a figure."""
     others = (part for ax in figure.axes for part in (*ax.texts, *ax.images, *ax.tables, *ax.artists, *ax.child_axes))
     collections = (part for ax in figure.axes for part in ax.collections)
     known = all(isinstance(part, LineCollection | PolyCollection) for part in collections)
@@ -120,14 +120,14 @@ def _ticks(axis: Axis) -> list[tuple[float, str]]:
     """Places of ticks within the limits of an axis and their labels; those of minor ticks are mostly empty."""
     low, high = sorted(axis.get_view_interval())
     margin = 1e-9 * (high - low)
-    found = []
+    ticks = []
     for places, formatter in (
         (axis.get_majorticklocs(), axis.get_major_formatter()),
         (axis.get_minorticklocs(), axis.get_minor_formatter()),
     ):
         labels = [_label(text) for text in formatter.format_ticks(places.tolist())]
-        found += [(x, text) for x, text in zip(places, labels, strict=True) if low - margin <= x <= high + margin]
-    return found
+        ticks += [(x, text) for x, text in zip(places, labels, strict=True) if low - margin <= x <= high + margin]
+    return ticks
 
 
 def _label(text: str) -> str:

@@ -23,7 +23,7 @@ def html_pictures(figure: Figure, caption: str, key: str) -> str:
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
     with rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
         drawn = _drawn(figure, panels, key) if is_drawable(figure) else _drawn_by_matplotlib(figure, panels, key)
-    pictures = (_svg(panel, *one) for panel, one in zip(panels, drawn, strict=True))
+    pictures = (_svg(panel, *drawing) for panel, drawing in zip(panels, drawn, strict=True))
     return f"<figure>{''.join(pictures)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 

@@ -166,7 +166,7 @@ def _events(log: Log, first: float, last: float, start: int, state: LogState) ->
     }
     tick, disc, velocity = _ticks(columns["time"], first, last), columns["disc"].astype("<u4"), columns["velocity"]
     steps = np.diff(tick, prepend=tick.dtype.type(0))
-    found = {
+    data = {
         "event_step": np.minimum(steps, LEAP).astype("<u2"),
         "event_leap": steps[steps >= LEAP],
         "event_disc": disc.astype("<u2") if len(log.discs) <= 2**16 else disc,
@@ -175,11 +175,11 @@ def _events(log: Log, first: float, last: float, start: int, state: LogState) ->
     if log.has_positions:
         time = tick / TICKS * (last - first)
         rows = _unreached(log, state, time, disc, velocity, columns["position"])
-        found |= {"place_row": rows.astype("<u4"), "place": columns["position"][rows]}
+        data |= {"place_row": rows.astype("<u4"), "place": columns["position"][rows]}
     if log.escapes:
         left = np.concatenate([block.kind for block in blocks]) == Kind.ESCAPED if blocks else []
         velocity[left] = np.nan
-    return found
+    return data
 
 
 def _unreached(

@@ -71,7 +71,7 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
         if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs have no such key
-            # Many such walls meet, and their numbers would cover each other.
+            # Solids have many short walls, whose numbers would overlap in a picture.
             label = ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))

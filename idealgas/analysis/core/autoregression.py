@@ -79,16 +79,16 @@ class Process:
 
     def covariances_of_models(self, length: int) -> np.ndarray:
         """Autocovariances (models, length) from lag 0 on by each model."""
-        found = np.zeros((len(self.models), length))
-        for model, row in zip(self.models, found, strict=True):
+        covariances = np.zeros((len(self.models), length))
+        for model, row in zip(self.models, covariances, strict=True):
             known = model.covariance[:length]
             row[: len(known)] = known
         if _is_worth_loading():
-            for model, row in zip(self.models, found, strict=True):
+            for model, row in zip(self.models, covariances, strict=True):
                 _go_on(model.coefficients, row)
         else:
-            _go_on_together([model.coefficients for model in self.models], found)
-        return found
+            _go_on_together([model.coefficients for model in self.models], covariances)
+        return covariances
 
     def spread(self, number: int | None = None) -> Spread:
         """Standard error of the mean of so many successive samples, by default of all of the series.
@@ -303,11 +303,11 @@ def _go_on_together(coefficients: Sequence[np.ndarray], covariance: np.ndarray) 
     orders = np.array([*map(len, coefficients), 0])  # sums over rows of two columns or more are in their order
     most, n = int(orders.max()), covariance.shape[1]
     weights = np.zeros((most, len(orders)))
-    found = np.zeros((most + n, len(orders)))  # with zeros before lag 0
+    padded = np.zeros((most + n, len(orders)))  # with zeros before lag 0
     for k, known in enumerate(coefficients):
         weights[most - len(known) :, k] = known[::-1]
-    found[most:, :-1] = covariance.T
+    padded[most:, :-1] = covariance.T
     for lag in range(int(orders[:-1].min()) + 1, n):
-        total = np.add.reduce((weights * found[lag : lag + most])[::-1], axis=0)
-        np.copyto(found[most + lag], total, where=orders < lag)
-    covariance[:] = found[most:, :-1].T
+        total = np.add.reduce((weights * padded[lag : lag + most])[::-1], axis=0)
+        np.copyto(padded[most + lag], total, where=orders < lag)
+    covariance[:] = padded[most:, :-1].T

@@ -105,10 +105,10 @@ def collision_rates(
     counts, others = window.of(impacts.collisions), discs.partners
 
     def rate(i: int, j: int) -> Estimate:
-        found = mean(counts[:, i, j] / discs.number[i], theory=expected.between(i, j))
+        rate = mean(counts[:, i, j] / discs.number[i], theory=expected.between(i, j))
         of_pairs = 2 if others[j] == discs.name[i] else 1  # a collision of two like discs counts for both
         number = float(counts[:, i, j].sum()) * window.width / of_pairs
-        return replace(found, independent_samples=min(found.independent_samples, number))
+        return replace(rate, independent_samples=min(rate.independent_samples, number))
 
     species, groups = range(counts.shape[1]), range(len(others))
     return tuple(CollisionRate(discs.name[i], others[j], rate(i, j)) for i in species for j in groups)

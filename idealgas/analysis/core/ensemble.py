@@ -17,10 +17,11 @@ UNLIKELY = 1e-5
 """Probability that a gas in equilibrium is refused because of its mean temperatures, whatever their number."""
 
 FAR = 0.0455
-"""Probability that any temperature in equilibrium is at an instant above what its mean may be, or any below.
+"""Probability that any temperature of a gas in equilibrium is, at one instant, above the upper bound on its mean.
 
-Beyond it, energy is exchanged more slowly than the log is long, and error bars from the log are too small. Of the two
-temperatures of one species of many discs these are 2 standard deviations at an instant.
+To lie below the lower bound is as probable. Beyond them, energy is exchanged more slowly than the log is long, and
+error bars from the log are too small. Of the two temperatures of one species of many discs these are 2 standard
+deviations at an instant.
 """
 
 ON_A_LINE = 8
@@ -164,12 +165,12 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
             theory = float(expected[s, axis] / number[s, 0])
             if theory == 0:  # of fixed discs
                 continue
-            found = mean(energies[:, s, axis] / number[s], theory)
-            dof, deviation = max(found.independent_samples - 1, 1.0), abs(found.deviation or 0.0)
-            far = not lowest[s] <= found.value / theory <= highest[s]
-            far &= abs(found.value - theory) > ROUNDING * ensemble.temperature
+            warmth = mean(energies[:, s, axis] / number[s], theory)
+            dof, deviation = max(warmth.independent_samples - 1, 1.0), abs(warmth.deviation or 0.0)
+            far = not lowest[s] <= warmth.value / theory <= highest[s]
+            far &= abs(warmth.value - theory) > ROUNDING * ensemble.temperature
             if far or special.stdtr(dof, -deviation) < UNLIKELY / rows / 2:
-                return f"m v{letter}²{name} is {found.value:.4g} on average, and {theory:.4g} in equilibrium"
+                return f"m v{letter}²{name} is {warmth.value:.4g} on average, and {theory:.4g} in equilibrium"
     return ""
 
 

@@ -125,9 +125,9 @@ class TimeSeries:
             if self.fraction >= DENSE and (collisions := self.moments.events[first:, 0].sum()):
                 free_time = number.sum() * len(centre) / (2 * collisions)
         mixing = (inefficiency(one) for one in slow if np.ptp(one) > ROUNDING)
-        found = (
+        times = (
             (HEAT * exchange, "heat crosses the gas"),
             (FREE_TIMES * free_time, "the discs of a dense gas change places"),
             (max(mixing, default=0.0), "species move past each other"),
         )
-        return max(Exchange(time * self.width, process) for time, process in found)
+        return max(Exchange(time * self.width, process) for time, process in times)

@@ -80,17 +80,17 @@ def stream(
             if whole is not None and not tally.cut:
                 tally.add(whole)
         for pieces in cutter.cut(flights) if cutting else ():
-            some = moving(cutter.batch(pieces))
+            batch = moving(cutter.batch(pieces))
             for tally in cutting:
-                tally.add(some)
+                tally.add(batch)
         done += len(flights["disc"])
         if progress is not None:
             progress(done, rows)
     for flights in reader.open() if cutting else ():
         for pieces in cutter.cut(flights):
-            some = moving(cutter.batch(pieces))
+            batch = moving(cutter.batch(pieces))
             for tally in cutting:
-                tally.add(some)
+                tally.add(batch)
     for tally in tallies:
         tally.finish()
 

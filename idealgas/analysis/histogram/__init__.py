@@ -257,15 +257,17 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
         measured = ensemble_at(log.scene, gas, energy / degrees_of_freedom(log), np.inf)
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
-    sums, densities, found = window.of(tally.sums), window.of(tally.counts), []
+    sums, densities, histograms = window.of(tally.sums), window.of(tally.counts), []
     for s, (name, snapshots) in enumerate(zip(discs.name, parts, strict=True)):
         possible = velocity_laws(quantity, known, s, measured)
         samples, spacing = independent_samples(snapshots)
         expected = list(possible.values())[-1].mean if possible and measured is None else None
         average = _mean(sums[:, s] / discs.number[s], high[s], expected, confined)
         edges = np.linspace(low[s], high[s], BINS + 1)
-        found.append(distribution_of(name, edges, densities[:, s], average, samples, spacing * window.width, possible))
-    return window, found, known.why_not
+        histograms.append(
+            distribution_of(name, edges, densities[:, s], average, samples, spacing * window.width, possible)
+        )
+    return window, histograms, known.why_not
 
 
 def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:

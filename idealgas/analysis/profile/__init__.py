@@ -333,9 +333,10 @@ def _of_species(
     if expected is not None and not expected.dilute:  # χ² would find the errors of a law of dilute gases
         number = strip * expected.density[s]
         density, warmth = ([of(s, k) for k in strips] for of in (expected.of_density, expected.of_temperature))
-        excess = sums[..., 1] - [one.value for one in warmth] * sums[..., 0]
-        density_test = strip_test(sums[..., 0], number, strip * np.array([one.error for one in density]), memory)
-        temperature_test = strip_test(excess, number, number * np.array([one.error for one in warmth]), memory)
+        excess = sums[..., 1] - [estimate.value for estimate in warmth] * sums[..., 0]
+        errors = [np.array([estimate.error for estimate in estimates]) for estimates in (density, warmth)]
+        density_test = strip_test(sums[..., 0], number, strip * errors[0], memory)
+        temperature_test = strip_test(excess, number, number * errors[1], memory)
     return SpeciesProfile(
         name,
         tuple(mean(sums[:, k, 0] / strip, expected.of_density(s, k) if expected else None, memory) for k in strips),

@@ -40,9 +40,9 @@ def pressure_of_strips(
     rates = passed_on.stress / np.diff(times)[:, None, None]
     pressure = ((carried[1:] + carried[:-1]) / 2 + rates) / area
     strips = range(len(edges) - 1)
-    found = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
+    components = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
     if not log.periodic[axis] and conserved_momentum(log)[1 - axis]:
         lost = -np.diff(stored, axis=0) / np.diff(times)[:, None] / log.box[1 - axis]
         shear = pressure[..., 2]  # less what was lost, it is the scatter of what discs carry at single instants
-        found["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)
-    return found
+        components["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)
+    return components

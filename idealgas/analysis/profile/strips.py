@@ -102,10 +102,10 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory
     waves = np.linalg.qr(np.sqrt(weight)[:, None] * powers)[0] / np.sqrt(weight)[:, None]
     squares = []
     for wave in waves.T[1:]:
-        found = mean(series @ wave, Theory(0.0, float(error @ np.abs(wave)), "theory"), memory)
-        if found.deviation is None:
+        amplitude = mean(series @ wave, Theory(0.0, float(error @ np.abs(wave)), "theory"), memory)
+        if amplitude.deviation is None:
             continue
-        p_value = 2 * special.stdtr(max(found.independent_samples - 1, 1.0), -abs(found.deviation))
+        p_value = 2 * special.stdtr(max(amplitude.independent_samples - 1, 1.0), -abs(amplitude.deviation))
         squares.append(special.chdtri(1, max(p_value, 1e-300)))
     if not squares:
         return None

@@ -62,8 +62,8 @@ def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Di
 
 def _pairs(before: np.ndarray, after: np.ndarray, box: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Number of pairs of two discs (bins,) by the distance from the place of one before to that of the other after."""
-    found = cKDTree(before, boxsize=box).count_neighbors(cKDTree(after, boxsize=box), edges[1:], cumulative=False)
+    counts = cKDTree(before, boxsize=box).count_neighbors(cKDTree(after, boxsize=box), edges[1:], cumulative=False)
     moved = after - before
     moved -= box * np.rint(moved / box)
     own = np.hypot(*moved.T)
-    return found - np.histogram(own, edges)[0]
+    return counts - np.histogram(own, edges)[0]

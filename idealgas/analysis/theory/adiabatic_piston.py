@@ -41,8 +41,9 @@ def slowest_rate(conductance: np.ndarray, capacity: np.ndarray) -> float:
         both = np.zeros(len(capacity))
         both[k], both[k + 1] = scale[k], -scale[k + 1]
         rates += each * np.outer(both, both)
-    found = np.linalg.eigvalsh(rates)
-    slow = found[found > 1e-9 * max(float(found[-1]), np.finfo(float).tiny)]  # less is rounding: equal temperatures
+    eigenvalues = np.linalg.eigvalsh(rates)
+    rounding = 1e-9 * max(float(eigenvalues[-1]), np.finfo(float).tiny)  # of the 0 that belongs to equal temperatures
+    slow = eigenvalues[eigenvalues > rounding]
     return float(slow.min(initial=math.inf)) if len(slow) else 0.0
 
 

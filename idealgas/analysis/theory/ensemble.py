@@ -49,7 +49,7 @@ class Composition(NamedTuple):
 
     @property
     def partners(self) -> tuple[str, ...]:
-        """Names of the groups of discs by which collisions are counted, as `Gas.partners`."""
+        """Names of the groups between which collisions are counted, in the order of `Gas.partners`."""
         names = tuple(dict.fromkeys(self.name))
         return names if len(names) <= MOST_PAIRED else ("all",)
 

@@ -11,9 +11,9 @@ def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """
     length = first.shape[1]
     padded = fft.next_fast_len(2 * length - 1, real=True)
-    one = np.fft.rfft(first, padded, axis=1)
-    other = one if second is first else np.fft.rfft(second, padded, axis=1)
-    power = (one.conj() * other).sum(axis=3).mean(axis=2)
+    transform = np.fft.rfft(first, padded, axis=1)
+    other = transform if second is first else np.fft.rfft(second, padded, axis=1)
+    power = (transform.conj() * other).sum(axis=3).mean(axis=2)
     return np.fft.irfft(power, padded, axis=1)[:, :length] / np.arange(length, 0, -1)
 
 

@@ -101,7 +101,7 @@ def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equil
 
     collisions: (B, S, G), rates of the collisions of all discs of a species with those of a group, 1/time.
     """
-    found = []
+    diffusions = []
     each = collisions.mean(axis=0) / discs.number[:, None]
     masses = discs.mass if each.shape[1] == len(discs.mass) else discs.number @ discs.mass / discs.number.sum()
     for rate, mass, radius in zip(each, discs.mass, discs.radius, strict=True):
@@ -110,8 +110,8 @@ def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equil
         needed = max(LEAST_LAG / whole, LEAST_MEMORIES / friction) if whole else math.inf
         friction_d = equilibrium.temperature / mass / friction if whole else math.inf
         sides = [side for side, is_periodic in zip(log.box, log.periodic, strict=True) if not is_periodic]
-        found.append(Limits(whole, needed, friction_d, tuple(side - 2 * float(radius) for side in sides)))
-    return found
+        diffusions.append(Limits(whole, needed, friction_d, tuple(side - 2 * float(radius) for side in sides)))
+    return diffusions
 
 
 def diffusion(

@@ -221,8 +221,8 @@ def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ..
     random = discs.with_partners(2 * (discs.radius[:, None] + discs.radius) * others / area * speed)
     groups = random.shape[1]
     return tuple(
-        Contact(found.species, found.other, found.rate.times(1 / alone))
-        for k, (found, alone) in enumerate(zip(rates, random.ravel().tolist(), strict=bool(rates)))
+        Contact(rate.species, rate.other, rate.rate.times(1 / alone))
+        for k, (rate, alone) in enumerate(zip(rates, random.ravel().tolist(), strict=bool(rates)))
         if (groups == 1 or k // groups <= k % groups) and alone > 0
     )
 

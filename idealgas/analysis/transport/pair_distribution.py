@@ -55,8 +55,8 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
         places = inside(log, state.position)
         trees = [cKDTree(places[ids], boxsize=period) for ids in members]
         for i, j in pairs:
-            found = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=False)
-            counts[i, j].append(found[1:])
+            numbers = trees[i].count_neighbors(trees[j], edges[i, j], cumulative=False)
+            counts[i, j].append(numbers[1:])
     return tuple(_normalised(log, discs, i, j, edges[i, j], np.array(counts[i, j], float)) for i, j in pairs)
 
 

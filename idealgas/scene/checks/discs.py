@@ -93,7 +93,7 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
             if name not in known:
                 key = ("wall", i, "permeable_to")
                 wrong = f"no such species{did_you_mean(name, known)}"
-                yield Issue((key,), wrong, f'"{name}"', " or ".join(f'"{one}"' for one in known))
+                yield Issue((key,), wrong, f'"{name}"', " or ".join(f'"{each}"' for each in known))
 
 
 def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
