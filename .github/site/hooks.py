@@ -1,4 +1,4 @@
-"""Pages of the site that are made from other files: READMEs, the gallery, and the reference of the analyses."""
+"""Make the pages of the site that come from other files: READMEs, the gallery and the reference of the analyses."""
 
 import posixpath
 import re
@@ -11,10 +11,10 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 REPOSITORY = PROJECT["urls"].get("Repository", "")
-"""Address of the repository, to which the pages link; empty until pyproject.toml has it."""
+"""Address of the repository, to which the pages link; empty if pyproject.toml does not give it."""
 
 OWN = ".github/site/pages"
-"""Folder of the pages that only the site has."""
+"""Folder of the pages that exist only on the site."""
 
 PAGES = {
     "README.md": "index.md",
@@ -32,7 +32,7 @@ PAGES = {
         for path in (ROOT / "idealgas" / "analysis").glob("*.md")
     },
 }
-"""Pages of the site, by files of the repository."""
+"""Page of the site for each file of the repository that becomes a page."""
 
 LINK = re.compile(r"(\[[^]]*\])\(([^):#]+)(#[^)]*)?\)")
 
@@ -50,55 +50,55 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Insert the analyses into the reference, and lead the links of the site's own pages to pages of the site."""
+    """Insert the analyses into the reference, and redirect links in pages that exist only on the site."""
     if (ROOT / OWN / page.file.src_uri).exists():
         markdown = linked(markdown, f"{OWN}/{page.file.src_uri}", REPOSITORY)
     return markdown.replace("<!-- analyses -->", "\n".join(_analyses()))
 
 
 def on_post_page(output: str, **_: Any) -> str:
-    """Name the search for programs that read a page aloud."""
+    """Label the search dialog for screen readers."""
     search = 'data-md-component="search" role="dialog"'
     return output.replace(search, f'{search} aria-label="Search"')
 
 
 def linked(text: str, source: str, repository: str) -> str:
-    """Text of a page with its links to pages of the site, to pictures, and to other files of the repository.
+    """Return the text of a page with its links redirected to pages and pictures of the site or to the repository.
 
-    Without an address of the repository, its other files are named but not linked.
+    If the address of the repository is empty, files that are not on the site are named but not linked.
     """
     page = PAGES.get(source, posixpath.basename(source))
 
-    def link(found: re.Match[str]) -> str:
-        target = posixpath.normpath(posixpath.join(posixpath.dirname(source), found[2]))
+    def link(match: re.Match[str]) -> str:
+        target = posixpath.normpath(posixpath.join(posixpath.dirname(source), match[2]))
         place = PAGES.get(target, target.replace(".readme/", "pictures/").removeprefix(f"{OWN}/"))
         if place != target:
             path = posixpath.relpath(place, posixpath.dirname(page) or ".")
         elif (ROOT / target).exists() and not repository:
-            return found[1][1:-1]
+            return match[1][1:-1]
         elif (ROOT / target).exists():
             path = f"{repository}/{'tree' if (ROOT / target).is_dir() else 'blob'}/main/{target}"
         else:
-            return found[0]
-        return f"{found[1]}({path}{found[3] or ''})"
+            return match[0]
+        return f"{match[1]}({path}{match[3] or ''})"
 
     return LINK.sub(link, text)
 
 
 def _text(source: str) -> str:
-    """Text of a page that is made from a file of the repository."""
+    """Return the text of a page that is made from a file of the repository."""
     return linked((ROOT / source).read_text(encoding="utf-8"), source, REPOSITORY)
 
 
 def _gallery() -> dict[str, str | bytes]:
-    """Files of the gallery: its page, with description and commands of every example scene, and the pictures."""
+    """Return the files of the gallery: its page, with the description and commands of every scene, and the pictures."""
     from idealgas.gallery import ABOUT, SCENES, commands, described, draw
 
     files: dict[str, str | bytes] = {}
     parts = ["# Gallery", ABOUT]
     for name in SCENES:
         title, description = described(name)
-        description = description.replace("<pre ", '<pre style="overflow-x: auto" ')  # the theme has none for it
+        description = description.replace("<pre ", '<pre style="overflow-x: auto" ')  # the theme does not style it
         parts.append(f"## {title}")
         if (picture := draw(name)) is not None:
             files[f"gallery/{name}.png"] = picture
@@ -109,7 +109,7 @@ def _gallery() -> dict[str, str | bytes]:
 
 
 def _analyses() -> Iterator[str]:
-    """Lines of the reference for each analysis: its function, and its results with the keys of their JSON."""
+    """Yield the lines of the reference for each analysis: its function, and its results with their JSON keys."""
     from idealgas.analysis import registry
 
     for analysis in registry.analyses():
@@ -117,11 +117,11 @@ def _analyses() -> Iterator[str]:
         yield f"::: {analysis.measure.__module__}.{analysis.measure.__qualname__}\n    options: {{heading_level: 4}}\n"
         for result in analysis.results:
             yield f"::: {result.__module__}.{result.__qualname__}\n    options: {{heading_level: 4, members: false}}\n"
-            yield f"Keys of its JSON: {', '.join(f'`{key}`' for key in _keys(result))}.\n"
+            yield f"JSON keys: {', '.join(f'`{key}`' for key in _keys(result))}.\n"
 
 
 def _keys(result: type) -> Iterator[str]:
-    """Keys of the plain values of a result, except those that a field adds by its own values."""
+    """Yield the JSON keys of the fields of a result, except fields whose values are inlined or omitted."""
     from idealgas.analysis.core.fields import INLINE, OMITTED, Key
 
     for field in fields(result):
