@@ -1,4 +1,4 @@
-"""Pairs of discs that are near each other."""
+"""Find pairs of discs that touch or nearly touch."""
 
 from collections.abc import Iterator
 
@@ -6,21 +6,24 @@ import numpy as np
 
 NOT_PERIODIC = (0.0, 0.0)
 MARGIN = 1e-9
-"""Relative distance beyond contact up to which pairs are near: callers decide by their own arithmetic which touch."""
+"""Relative distance beyond contact up to which pairs are returned; callers decide which of them touch."""
 
 
 def near_pairs(
     position: np.ndarray, radius: np.ndarray, period: tuple[float, float] = NOT_PERIODIC
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Indices (n,) of both discs of every pair that touches or overlaps, and of some that nearly do, in several parts.
+    """Yield the pairs of discs that touch, overlap or nearly touch, in several parts.
 
-    Discs are compared with those of about their size, from a power of two to the next, and with all smaller ones, so
-    that a few large discs among many small ones cost little.
+    Discs are grouped by size, from one power of two to the next. Each group is searched for pairs within it and with
+    all smaller discs, so that a few large discs among many small ones cost little.
 
     Args:
         position: (N, 2), length.
         radius: (N,), length.
-        period: width and height of a box with periodic sides, length; 0 along an axis without them.
+        period: width and height of a box with periodic sides, length; 0 along an axis that is not periodic.
+
+    Yields:
+        Indices (n,) of the first and of the second disc of each pair.
     """
     from scipy.spatial import cKDTree
 
@@ -41,5 +44,5 @@ def near_pairs(
 
 
 def _reach(contact: float, period: tuple[float, float]) -> float:
-    """Distance up to which pairs may touch, length; rounding of a coordinate changes it by less than the margins."""
+    """Return the distance up to which pairs may touch, with margins larger than the rounding of coordinates."""
     return contact * (1 + MARGIN) + 1e-15 * max(period)

@@ -1,4 +1,4 @@
-"""The event log: one crash-safe HDF5 file, and the exact state of the gas at any time from it."""
+"""The event log: a single crash-safe HDF5 file that gives the exact state of the gas at any time."""
 
 from idealgas.columns import Column
 from idealgas.log.errors import DamageError, LogError

@@ -1,4 +1,4 @@
-"""Consistency of the scene of a log with its arrays."""
+"""Check that the scene stored in a log agrees with the arrays of the log."""
 
 from collections.abc import Collection, Sequence
 
@@ -12,7 +12,10 @@ from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 DRAWN = 1e-12
-"""Largest relative difference of radii that two systems make of one distribution, as their logarithms are rounded."""
+"""Largest relative difference of radii that two systems draw from the same distribution.
+
+Their mathematical libraries round logarithms differently.
+"""
 
 
 def check_scene(
@@ -30,15 +33,15 @@ def check_scene(
     Args:
         scene: scene of the log.
         gas: discs at the start.
-        walls: walls of the log.
+        walls: walls in the log.
         periodic: whether the box is periodic along x and along y.
         gravity: acceleration, length/time².
-        kinds: kinds of events of the log, of those that only some logs have.
+        kinds: optional kinds of events that the log declares.
         columns: names of the columns of events and checkpoints.
-        pistons: number of pistons of the log.
+        pistons: number of pistons in the log.
 
     Raises:
-        ValueError: if something differs.
+        ValueError: if the scene and the log differ.
     """
     if scene.box.size != gas.box:
         raise ValueError(f"a box of {scene.box.size} (box: {gas.box})")

@@ -1,4 +1,4 @@
-"""Rows of a log as columns with one number per row, for tables of other programs."""
+"""Convert the rows of a log to columns with one number per row, for tables of other programs."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Columns = dict[str, np.ndarray]
 
 KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
-"""Names of the numbers in the column `kind` of events."""
+"""Names of the codes in the column `kind` of events."""
 
 CHOSEN_BY = {
     "events": ("disc", "t0", "t1"),
@@ -28,15 +28,18 @@ CHOSEN_BY = {
     "discs": ("disc", "times"),
     "observables": ("t0", "t1"),
 }
-"""Tables of `Log.to_pandas`, and its arguments that select rows of each."""
+"""Arguments of `Log.to_pandas` that select rows, for each of its tables."""
 
 
 def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTORS) -> Columns:
-    """Columns (n,) from columns (n,) and (n, components).
+    """Split columns of shape (n, components) into columns of shape (n,).
 
     Args:
-        values: columns by name, None for missing ones.
-        vectors: names of components, by column; other components are numbered, as in name_0_1.
+        values: columns by name; None for a missing column.
+        vectors: names of the components, by column; unnamed components are numbered, as in name_0_1.
+
+    Returns:
+        (n,) columns by name.
     """
     columns: Columns = {}
     for name, column in values.items():
@@ -51,11 +54,13 @@ def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTO
 
 
 def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[Columns]:
-    """Event rows block by block. The first block is empty, so that the columns of a log without events are known.
+    """Yield the columns of event rows, block by block; `kind` is an index into KIND_NAMES.
+
+    The first block is empty, so that a log without events has columns, too.
 
     Args:
         blocks: blocks of event rows.
-        names: names of the event columns of the log; `kind` is an index into KIND_NAMES.
+        names: names of the event columns of the log.
     """
     yield flat(empty_batch(0, columns_named(names))._asdict())
     for block in blocks:
@@ -63,16 +68,22 @@ def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[
 
 
 def flat_flights(batches: Iterable[Flights]) -> Iterator[Columns]:
-    """Flights batch by batch. `kind` is an index into KIND_NAMES, -1 if no event ends the flight."""
+    """Yield the columns of flights, batch by batch.
+
+    `kind` is an index into KIND_NAMES, or -1 if the flight does not end with an event.
+    """
     for batch in batches:
         columns = flat(batch._asdict(), {column.name: column.parts for column in FLIGHT_COLUMNS if column.parts})
         yield columns | {"kind": np.where(batch.kind == NO_EVENT, -1, batch.kind.astype(np.int8))}
 
 
 def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
-    """A row for each disc, or for the disc with an id, state by state.
+    """Yield the columns of states, with one row for each disc.
 
-    gas: the same discs; `species` is an index into its names of species.
+    Args:
+        gas: the discs; the column `species` is an index into its names of species.
+        states: states of the discs.
+        disc: id of the only disc to include; None for all discs.
     """
     ids = np.arange(len(gas), dtype=np.uint32)
     chosen = ids if disc is None else ids[ids == disc]
@@ -88,17 +99,24 @@ def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) ->
 def flat_samples(
     observables: Mapping[str, tuple[np.ndarray, np.ndarray]], walls: Sequence[Wall], t0: float | None, t1: float | None
 ) -> Columns:
-    """Samples at times t0 ≤ t < t1, with their times. observables: times and values, by name."""
+    """Return the samples at times t0 ≤ t < t1 as columns, with their times.
+
+    Args:
+        observables: times (s,) and values (s, …), by name.
+        walls: walls of the log, which name components.
+        t0: start; None for the first sample.
+        t1: end; None for no end.
+    """
     time = next((time for time, _ in observables.values()), np.empty(0))
-    some = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
+    rows = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
     return flat(
-        {"time": time[some]} | {name: values[some] for name, (_, values) in observables.items()},
+        {"time": time[rows]} | {name: values[rows] for name, (_, values) in observables.items()},
         components([wall.name for wall in walls]),
     )
 
 
 def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:
-    """Raise LogError for an unknown table, or for arguments (by name) that do not apply to it."""
+    """Raise LogError for an unknown table, or if arguments, given by name, do not apply to the table."""
     if what not in CHOSEN_BY:
         raise LogError(f"{path}: no table of {what} (allowed: {', '.join(CHOSEN_BY)})")
     if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[what]]:
@@ -107,11 +125,11 @@ def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:
 
 
 def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]]) -> "DataFrame":
-    """DataFrame of all blocks.
+    """Return a DataFrame with the rows of all blocks.
 
     Args:
-        blocks: rows as columns.
-        categories: names of the numbers of a column, by column.
+        blocks: columns of each block.
+        categories: names of the codes in a column, by column.
 
     Raises:
         LogError: if pandas is missing.
@@ -126,7 +144,7 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
             parts.setdefault(name, []).append(column)
     whole: dict[str, Any] = {
         name: np.concatenate(parts.pop(name)) for name in tuple(parts)
-    }  # so that memory holds the parts once
+    }  # popped one by one, so that the data are in memory only once
     for name, words in categories.items():
         whole[name] = Categorical.from_codes(whole[name], categories=list(words))
     return DataFrame(whole, copy=False)

@@ -1,4 +1,7 @@
-"""Digests of a log, equal for the same events and final state, however, when and by how many threads it was written."""
+"""Digests of a log, which depend only on its events and final state.
+
+Compression, the time of writing and the number of threads do not matter.
+"""
 
 import hashlib
 
@@ -8,19 +11,22 @@ from idealgas.log.reader import Log
 
 
 def column_digests(log: Log) -> dict[str, str]:
-    """SHA-256 of each event column by name, taken over the bytes of its values, the lowest byte first."""
-    found = {name: hashlib.sha256() for name in log.columns}
+    """Return the SHA-256 of each event column by name, computed from the little-endian bytes of its values."""
+    hashes = {name: hashlib.sha256() for name in log.columns}
     for block in log.chunks(log.columns):
-        for name in found:
-            found[name].update(_little_endian(getattr(block, name)))
-    return {name: column.hexdigest() for name, column in found.items()}
+        for name in hashes:
+            hashes[name].update(_little_endian(getattr(block, name)))
+    return {name: column.hexdigest() for name, column in hashes.items()}
 
 
 def digest(log: Log) -> str:
-    """SHA-256 of a list of the digests of all event columns and of all arrays of the final state, in order of name.
+    """Return the digest of a log.
+
+    It is the SHA-256 of the list of the digests of all event columns and all arrays of the final state, in order of
+    their names.
 
     Raises:
-        LogError: if the log has no events, and was not closed.
+        LogError: if the log has no events and was not closed.
     """
     state = log.state_at(log.end_time)._asdict()
     arrays = {f"end_{name}": np.asarray(values) for name, values in state.items() if values is not None}

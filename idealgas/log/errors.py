@@ -1,4 +1,4 @@
-"""Errors of a log, each with a message of one line."""
+"""Errors of a log, each with a one-line message."""
 
 import re
 from pathlib import Path
@@ -7,18 +7,18 @@ from idealgas.errors import UserError
 
 
 class LogError(UserError):
-    """A log cannot be read, or lacks the requested data."""
+    """A log cannot be read or does not contain the requested data."""
 
 
 class DamageError(LogError):
-    """A log has damaged bytes or invalid values, so that no result may be computed from it."""
+    """A log has damaged bytes or invalid values, so that results must not be computed from it."""
 
     def __init__(self, path: Path, what: str) -> None:
         super().__init__(f"{path}: damaged: {what}")
 
 
 def reason(error: Exception) -> str:
-    """Reason of a failed read, in one line; HDF5 has it in parentheses."""
+    """Return the reason of a failed read on one line; messages of HDF5 have it in parentheses."""
     if isinstance(error, UnicodeDecodeError):
         return "not UTF-8 text"
     system = isinstance(error, OSError) and error.strerror

@@ -1,7 +1,7 @@
 """Flights: the motion of each disc between two of its events, in bounded memory.
 
-An event row has the state of a disc after an event. A flight also has the state before it, which follows from the
-previous event of the disc. One pass over the rows joins the two.
+An event row contains the state of a disc after an event. A flight also contains the state before that event, which
+follows from the previous event of the disc. A single pass over the rows joins the two.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -19,12 +19,12 @@ from idealgas.physics.motion import path_length, position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
 BATCH = 2 * BLOCK
-"""Number of flights in a batch, at most, unless a single flight is cut into more pieces."""
+"""Largest number of flights in a batch, unless a single flight is cut into more pieces."""
 
 NO_EVENT = 255
-"""Kind of a flight that does not end with an event: it is cut at an edge, or open at the last one."""
+"""Kind of a flight that does not end with an event, because it is cut at an edge or still open at the last edge."""
 NOBODY = -(2**31)
-"""Partner of a disc at the end of such a flight."""
+"""Partner of the disc at the end of a flight that does not end with an event."""
 
 FLIGHT_COLUMNS = (
     Column("disc", "u4"),
@@ -46,7 +46,7 @@ FLIGHT_COLUMNS = (
     Column("angular_velocity", "f8", (), "1/time"),
     Column("new_angular_velocity", "f8", (), "1/time"),
 )
-"""All columns that flights may have, in the order of `Flights`."""
+"""All columns that flights may have, in the order of the fields of `Flights`."""
 
 _NEEDS: dict[str, tuple[str, ...]] = {
     "ends_in_collision": ("kind",),
@@ -59,7 +59,7 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "image": ("position", "velocity"),
     "new_angular_velocity": ("angular_velocity",),
 }
-"""Columns from which a column is computed at an edge."""
+"""Columns from which a column is computed, by name, where a flight is cut at an edge."""
 
 _READ = {
     "kind": "kind",
@@ -72,39 +72,40 @@ _READ = {
     "angular_velocity": "angular_velocity",
     "new_angular_velocity": "angular_velocity",
 }
-"""Event column with the values of a column before or after events."""
+"""Event column that contains the values of a column of flights."""
 
 _STATE = {"position", "velocity", "image", "angular_velocity"}
 """Columns of the state at the start of a flight."""
 
 
 class Flights(NamedTuple):
-    """Flights of discs, in the order of the events that end them, then those that are still open.
+    """Flights of discs, ordered by the events at their ends; flights that are still open come last.
 
-    The two flights that end in a collision of two discs are in one batch, that of the smaller id first; between their
-    ends are only pieces of the second one. The pieces of a flight follow each other. A column that was not requested is
-    None. Columns may share memory: do not write into them.
+    The two flights that end in a collision of two discs are in the same batch, the flight of the smaller id first, and
+    only pieces of the second flight lie between their ends. The pieces of a flight are consecutive. A column that was
+    not requested is None. Columns may share memory: do not write into them.
 
     Attributes:
         disc: (n,) u4, id of the disc.
         species: (n,) u2, number of its species.
         block: (n,) i8, number of the interval between two edges, from 0; an event at an edge belongs to the
-            interval before it.
-        start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
+            interval that ends there.
+        start: (n,) f8, time of the previous event of the disc, or of the edge at which the piece begins.
         end: (n,) f8, time of the event or edge at the end.
         kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
-        partner: (n,) i4, id of the other disc in it, -1 - k for wall k, BATH, OUTSIDE, or NOBODY.
+        partner: (n,) i4, id of the other disc in this event, -1 - k for wall k, BATH, OUTSIDE, or NOBODY.
         ends_in_collision: (n,) bool, whether the event at the end is a collision with another disc.
-        velocity: (n, 2) f8, length/time, at the start.
-        end_velocity: (n, 2) f8, length/time, at the end, before the event. It is `velocity` without gravity.
-        new_velocity: (n, 2) f8, length/time, after the event; `end_velocity` if no event ends the flight.
-        displacement: (n, 2) f8, length, from start to end, across periodic sides too.
-        path: (n,) f8, length, of the path from start to end; with gravity a parabola.
-        position: (n, 2) f8, length, at the start, inside the box; None where the method has no positions.
-        end_position: (n, 2) f8, length, at the end, inside the box; None where the method has no positions.
-        image: (n, 2) i4, box lengths to add to `position` to unwrap it; None without periodic sides.
-        angular_velocity: (n,) f8, 1/time, during the flight; None where discs do not spin.
-        new_angular_velocity: (n,) f8, 1/time, after the event; None where discs do not spin.
+        velocity: (n, 2) f8, velocity at the start, length/time.
+        end_velocity: (n, 2) f8, velocity at the end, before the event, length/time. It equals `velocity` without
+            gravity.
+        new_velocity: (n, 2) f8, velocity after the event, length/time; equal to `end_velocity` if there is no event.
+        displacement: (n, 2) f8, displacement from start to end, length; it is unwrapped across periodic sides.
+        path: (n,) f8, length of the path from start to end, which is a parabola with gravity.
+        position: (n, 2) f8, position at the start, inside the box, length; None if discs have no positions.
+        end_position: (n, 2) f8, position at the end, inside the box, length; None if discs have no positions.
+        image: (n, 2) i4, number of box lengths to add to `position` to unwrap it; None without periodic sides.
+        angular_velocity: (n,) f8, angular velocity during the flight, 1/time; None if discs do not spin.
+        new_angular_velocity: (n,) f8, angular velocity after the event, 1/time; None if discs do not spin.
     """
 
     disc: np.ndarray
@@ -128,31 +129,32 @@ class Flights(NamedTuple):
 
     @classmethod
     def joined(cls, batches: Iterable["Flights"]) -> "Flights":
-        """Join at least one batch of flights."""
+        """Join one or more batches of flights."""
         columns: Iterable[Any] = zip(*batches, strict=True)
         return cls(*(cast(Any, None if column[0] is None else np.concatenate(column)) for column in columns))
 
 
 def flight_columns(events: Collection[str]) -> tuple[Column, ...]:
-    """Columns of the flights of a log with these event columns."""
+    """Return the columns that flights of a log can have, given the names of its event columns."""
     return tuple(column for column in FLIGHT_COLUMNS if _read_for(_made_for([column.name])) <= set(events))
 
 
 def _made_for(columns: Collection[str]) -> set[str]:
-    """Columns, and those from which they are computed."""
+    """Return the names of columns together with the columns from which they are computed."""
     return {source for name in columns for source in (name, *_NEEDS.get(name, ()))}
 
 
 def _read_for(made: set[str]) -> set[str]:
-    """Event columns that are needed for some columns."""
+    """Return the event columns that must be read for columns of flights."""
     return {_READ[name] for name in made if name in _READ}
 
 
 class FlightReader:
-    """Flights of a log between the first and the last edge, cut at the edges in between.
+    """Reader of the flights of a log between the first and the last edge, cut at the edges in between.
 
-    Most callers need only `batches`. Its steps are for sums over both whole flights and pieces in one pass; they use
-    columns by name, also those from which the requested columns are computed where a flight is cut.
+    Most callers need only `batches`. The other methods are its steps, for sums over both whole flights and pieces in a
+    single pass. They return columns by name, including the columns from which the requested ones are computed where a
+    flight is cut.
     """
 
     def __init__(
@@ -162,7 +164,7 @@ class FlightReader:
         discs: ArrayLike | None = None,
         columns: Collection[str] | None = None,
     ) -> None:
-        """Check the arguments of `Log.flights`. Raises LogError as described there."""
+        """Check the arguments, which are described at `Log.flights`. Raises LogError if they are invalid."""
         log.require_events()
         known = [column.name for column in flight_columns(log.columns)]
         if unknown := [name for name in columns or () if name not in known]:
@@ -189,7 +191,7 @@ class FlightReader:
                 yield self.batch(pieces)
 
     def whole(self) -> Iterator[Arrays]:
-        """Yield uncut flights that end with events, in batches. Their block is that of their end."""
+        """Yield uncut flights that end with events, in batches. Each belongs to the block in which it ends."""
         log, (first, last) = self._log, self._edges[[0, -1]]
         state = log.state_at(first)
         self._join, self._left = Join(state, self._read), ~state.inside
@@ -203,17 +205,17 @@ class FlightReader:
                 yield self._flights(self._join.pass_on(rows), rows["time"], rows)
 
     def open(self) -> Iterator[Arrays]:
-        """Yield uncut flights that are open at the last edge, one per disc, in batches, after all those of `whole`.
+        """Yield uncut flights that are still open at the last edge, in batches; to be called when `whole` has ended.
 
-        Discs that have left the gas have none.
+        There is one for each disc that has not left the gas.
         """
-        every = np.flatnonzero(~self._left)
-        every = every if self._discs is None else np.intersect1d(every, self._discs)
-        for some in np.split(every, range(BATCH, len(every), BATCH)):
-            yield self._flights(self._join.states(some), np.full(len(some), self._edges[-1]), None)
+        present = np.flatnonzero(~self._left)
+        present = present if self._discs is None else np.intersect1d(present, self._discs)
+        for ids in np.split(present, range(BATCH, len(present), BATCH)):
+            yield self._flights(self._join.states(ids), np.full(len(ids), self._edges[-1]), None)
 
     def cut(self, flights: Arrays) -> Iterator[Arrays]:
-        """Yield the pieces between edges of a batch of uncut flights, in batches, with the columns of this reader."""
+        """Cut a batch of flights at the edges, and yield the pieces in batches, with the columns of this reader."""
         kept = {"disc", "block", "start", "end", "partner", *self._made}
         flights = {name: values for name, values in flights.items() if name in kept}
         edges, last = self._edges, flights["block"]
@@ -229,13 +231,13 @@ class FlightReader:
         while stop < len(pieces):
             start = stop
             stop = max(int(done.searchsorted(done[start] + BATCH, "right")) - 1, start + 1)
-            if pairs and flights["disc"][stop - 1] < flights["partner"][stop - 1]:  # keep both flights of a pair
+            if pairs and flights["disc"][stop - 1] < flights["partner"][stop - 1]:  # do not separate a pair of flights
                 stop += 1 if stop - 1 == start else -1
-            some = slice(start, stop)
-            yield self._pieces({name: values[some] for name, values in flights.items()}, first[some], pieces[some])
+            rows = slice(start, stop)
+            yield self._pieces({name: values[rows] for name, values in flights.items()}, first[rows], pieces[rows])
 
     def batch(self, flights: Arrays) -> Flights:
-        """Flights with the requested columns."""
+        """Return flights with the requested columns."""
         columns = dict(flights)
         if "species" in self._made:
             columns["species"] = self._log.discs.species[flights["disc"]]
@@ -252,35 +254,41 @@ class FlightReader:
         return Flights(*(cast(Any, columns[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
-        """Uncut flights from states (n,) at their starts. rows: events that end them, if any."""
+        """Return uncut flights from the states of discs at their starts.
+
+        Args:
+            state: state (n,) at the start of each flight.
+            end: (n,), time at which each flight ends.
+            rows: the events at the ends of the flights; None if the flights are still open.
+        """
         start, made = state["time"], self._made
-        found = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
-        found |= {name: state[name] for name in _STATE & made}
+        columns = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
+        columns |= {name: state[name] for name in _STATE & made}
         if self._falls and "end_velocity" in made:
-            found["end_velocity"] = self._velocity(state["velocity"], start, end)
+            columns["end_velocity"] = self._velocity(state["velocity"], start, end)
         if rows is not None:
-            return found | {name: rows[source] for name, source in _READ.items() if name in made - _STATE}
+            return columns | {name: rows[source] for name, source in _READ.items() if name in made - _STATE}
         if "end_position" in made:
-            found["end_position"], _ = self._position(state["position"], state["velocity"], start, end)
+            columns["end_position"], _ = self._position(state["position"], state["velocity"], start, end)
         if "new_velocity" in made:
-            found["new_velocity"] = self._velocity(state["velocity"], start, end)
+            columns["new_velocity"] = self._velocity(state["velocity"], start, end)
         if "new_angular_velocity" in made:
-            found["new_angular_velocity"] = state["angular_velocity"]
+            columns["new_angular_velocity"] = state["angular_velocity"]
         none = {"kind": np.full(len(end), NO_EVENT, "u1"), "partner": np.full(len(end), NOBODY, "i4")}
-        return found | {name: values for name, values in none.items() if name in made}
+        return columns | {name: values for name, values in none.items() if name in made}
 
     def _pieces(self, flights: Arrays, first: np.ndarray, pieces: np.ndarray) -> Arrays:
-        """Pieces of flights. first: (n,), blocks of the first pieces. pieces: (n,), numbers of pieces."""
+        """Cut flights into pieces. first: (n,), block of the first piece; pieces: (n,), number of pieces of each."""
         source = np.repeat(np.arange(len(pieces)), pieces)
         opening = np.cumsum(pieces) - pieces
-        found = {name: values.take(source, axis=0) for name, values in flights.items()}
-        found["block"] = (first - opening).take(source) + np.arange(len(source))
+        columns = {name: values.take(source, axis=0) for name, values in flights.items()}
+        columns["block"] = (first - opening).take(source) + np.arange(len(source))
         inner = np.ones(len(source), bool)
         inner[opening] = False
-        later = np.flatnonzero(inner)  # pieces that begin at an edge; each ends the one before it
-        earlier, edge = later - 1, self._edges[found["block"][later]]
-        start = found["start"][later]
-        now = {name: found[name][later] for name in _STATE & found.keys()}
+        later = np.flatnonzero(inner)  # pieces that begin at an edge, where the previous piece ends
+        earlier, edge = later - 1, self._edges[columns["block"][later]]
+        start = columns["start"][later]
+        now = {name: columns[name][later] for name in _STATE & columns.keys()}
         if "position" in now:
             now["position"], boxes = self._position(now["position"], now["velocity"], start, edge)
             if "image" in now:
@@ -288,32 +296,32 @@ class FlightReader:
         if "velocity" in now:
             now["velocity"] = self._velocity(now["velocity"], start, edge)
         for name, values in {"start": edge, **now}.items():
-            found[name][later] = values
+            columns[name][later] = values
         ends: dict[str, Any] = {"end": edge, "kind": NO_EVENT, "partner": NOBODY}
         ends |= {f"{when}_{name}": values for name, values in now.items() for when in ("end", "new")}
-        for name in ends.keys() & found.keys():
-            found[name][earlier] = ends[name]
-        return found
+        for name in ends.keys() & columns.keys():
+            columns[name][earlier] = ends[name]
+        return columns
 
     def _block_of(self, times: np.ndarray) -> np.ndarray:
-        """Blocks of non-decreasing times after the first edge."""
+        """Return the blocks of non-decreasing times after the first edge."""
         inner = self._edges[1:-1]
         low, high = inner.searchsorted(times[[0, -1]]) if len(times) else (0, 0)
         return np.asarray(low + inner[low:high].searchsorted(times))
 
     def _gravity(self, start: np.ndarray) -> np.ndarray | None:
-        """Accelerations of flights that start at times (n,), (n, 2) or (2,); None without gravity."""
+        """Return the accelerations, (n, 2) or (2,), of flights that start at times (n,); None without gravity."""
         return self._log.gravity_at(start) if self._falls else None
 
     def _velocity(self, velocity: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        """Velocities (n, 2) at times (n,) of flights that start with others."""
+        """Return the velocities (n, 2) at times `end` of flights with given velocities at `start`."""
         gravity = self._gravity(start)
         return velocity if gravity is None else velocity_after(velocity, gravity, (end - start)[:, None])
 
     def _position(
         self, position: np.ndarray, velocity: np.ndarray, start: np.ndarray, end: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Positions (n, 2), inside the box, at times (n,) of flights, and numbers (n, 2) of box lengths."""
+        """Return the positions (n, 2) inside the box at times `end`, and the numbers (n, 2) of box lengths crossed."""
         place = position_after(position, velocity, self._gravity(start), (end - start)[:, None])
         boxes = np.zeros_like(place)
         for axis in np.flatnonzero(self._log.periodic):

@@ -1,4 +1,4 @@
-"""The header of a log, written before the run: scene, box, discs, walls, and versions of the programs."""
+"""The header of a log, which is written before the run: scene, box, discs, walls and versions of the programs."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class LogHeader:
-    """The part of a `Log` that is written before its run; the attributes are described there."""
+    """The part of a `Log` that is written before the run; `Log` describes its attributes."""
 
     def __init__(self, file: LogFile) -> None:
         self._file = file
@@ -37,9 +37,9 @@ class LogHeader:
 
     @cached_property
     def runs(self) -> list[tuple[str, str]]:
-        """Scene (TOML with all defaults) and command of the run, and of each run that resumed it, in order.
+        """Scene (TOML with all defaults) and command of the run and of each run that resumed it, in order.
 
-        The scenes differ only in their ends.
+        The scenes differ only in when the run ends.
         """
         return list(zip(*(self._file.texts(f"runs/{column.name}") for column in RUN_COLUMNS), strict=True))
 
@@ -56,8 +56,8 @@ class LogHeader:
         if not self._file.rows("changes"):
             return []
         last = self._file.column("checkpoints/time")[-1:].max(initial=0.0)
-        both = zip(self._file.column("changes/time").tolist(), self._file.texts("changes/setting"), strict=True)
-        return [SceneChange(*change) for change in both if change[0] <= last]
+        rows = zip(self._file.column("changes/time").tolist(), self._file.texts("changes/setting"), strict=True)
+        return [SceneChange(*row) for row in rows if row[0] <= last]
 
     @cached_property
     def scene(self) -> "Scene":
@@ -78,13 +78,16 @@ class LogHeader:
 
     @property
     def gravity(self) -> tuple[float, float]:
-        """Acceleration (gx, gy) between events, length/time². Raises NotApplicableError if it changes in time."""
+        """Acceleration (gx, gy) between events, length/time². Raises NotApplicableError if it changes with time."""
         if self._steps_of_gravity is not None:
             raise NotApplicableError(f"{self.path}: not applicable to a gas whose gravity changes in time")
         return self._first_gravity
 
     def gravity_at(self, time: np.ndarray) -> np.ndarray:
-        """Acceleration, length/time², at times (n,): (n, 2), or (2,) if it does not change. No flight has two."""
+        """Return the acceleration at times (n,), length/time²: (n, 2), or (2,) if it is constant.
+
+        It never changes during a flight.
+        """
         if self._steps_of_gravity is None:
             return np.array(self._first_gravity)
         times, values = self._steps_of_gravity
@@ -92,12 +95,12 @@ class LogHeader:
 
     @property
     def has_gravity(self) -> bool:
-        """Whether discs are accelerated between events, at any time."""
+        """Whether gravity accelerates the discs at any time."""
         return any(self._first_gravity) or self._steps_of_gravity is not None
 
     @cached_property
     def _steps_of_gravity(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Times (n,) from which accelerations (n, 2) hold; None if there is one only."""
+        """Times (n,) from which accelerations (n, 2) act; None if gravity is constant."""
         if Kind.STEERED not in self._file.kinds or not self.scene.properties.later_accelerations:
             return None
         times, values = zip(*self.scene.gravity.steps, strict=True)
@@ -109,7 +112,7 @@ class LogHeader:
         return Kind.ESCAPED in self._file.kinds
 
     def _has_time_steps(self) -> bool:
-        """Whether discs move in time steps; False if the scene is damaged."""
+        """Return whether the run has time steps; False if the scene is damaged."""
         try:
             return self.scene.run.dt is not None
         except LogError:
@@ -122,22 +125,22 @@ class LogHeader:
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """Attributes of the file by name: format, format_version, seed, created (UTC), and versions.
+        """Attributes of the file by name: format, format_version, seed, created (UTC) and versions.
 
-        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5. `trajectory` is the version of
-        the laws of motion: only a program with the same one resumes the log.
+        The versions are of idealgas, python, numpy, numba, h5py, isal and hdf5. `trajectory` is the version of the laws
+        of motion: only a program with the same value can resume the log.
         """
         return self._file.attributes("/", ROOT_ATTRIBUTES) | self._file.attributes("versions", VERSIONS)
 
     @cached_property
     def discs(self) -> Gas:
-        """Discs at the start of the run: constants of each disc, and position and velocity at time 0."""
+        """Discs at the start of the run: their constants, and their positions and velocities at time 0."""
         inner = len(self.walls) > FIRST_SEGMENT
         return replace(self._stored_discs, solid_area=self.scene.solids.area) if inner else self._stored_discs
 
     @cached_property
     def _stored_discs(self) -> Gas:
-        """Discs at the start of the run as the file contains them, without knowledge of the scene."""
+        """Discs at the start of the run as stored in the file, independent of the scene."""
         columns: dict[str, Any] = {column.name: self._file.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         names = tuple(self._file.texts("discs/species_name"))
         self._file.checked(lambda: check_species(columns["species"], names), "discs/species")
@@ -145,7 +148,7 @@ class LogHeader:
 
     @property
     def given(self) -> "Discs":
-        """The discs at the start, as those from which a scene starts."""
+        """The discs at the start of the run, in the form from which a scene can start."""
         from idealgas.scene.discs import Discs
 
         gas, n = self._stored_discs, len(self._stored_discs)
@@ -154,18 +157,18 @@ class LogHeader:
         return Discs(gas.position, gas.velocity, gas.radius, gas.mass, spin, species, gas.species_names, np.arange(n))
 
     def stored(self, table: str) -> list[Column]:
-        """Columns of a table as they are in the file: name, type and shape of an entry."""
+        """Return the columns of a table as stored in the file: name, type and shape of an entry."""
         return self._file.stored(table)
 
     @cached_property
     def inertia(self) -> np.ndarray | None:
-        """(N,) moment of inertia of each disc, mass length²; None without rotation."""
+        """(N,) moment of inertia of each disc, mass·length²; None without rotation."""
         spins = "angular_velocity" in self._file.names("checkpoints")
         return self._file.fixed("discs/inertia") if spins else None
 
     @cached_property
     def walls(self) -> list[Wall]:
-        """Sides of the box (left, right, bottom, top), then the wall segments; events name wall k as partner -1 - k."""
+        """Sides of the box (left, right, bottom, top), then the wall segments; events refer to wall k as -1 - k."""
         ends, names = self._file.fixed("walls/endpoints").tolist(), self._file.texts("walls/name")
         walls = [Wall(name, *map(tuple, end)) for name, end in zip(names, ends, strict=True)]
         self._file.checked(lambda: check_walls(walls, self.box), "walls/endpoints")

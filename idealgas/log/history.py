@@ -1,4 +1,4 @@
-"""Event rows of a log in blocks, and the state of the gas at any time."""
+"""The event rows of a log in blocks, and the state of the gas at any time."""
 
 from bisect import bisect_left, bisect_right
 from collections import namedtuple
@@ -19,7 +19,7 @@ from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.summary import parse_summary
 
 COUNTS = ("events", "disc_collisions", "trials")
-"""Numbers that every run counts, and that may end it."""
+"""Counters of every run, which may end it."""
 
 
 _CACHED = ("runs", "checkpoints", "observables", "snapshot_times", "summary", "changes", "end_time", "counts")
@@ -28,12 +28,12 @@ _CACHED = ("runs", "checkpoints", "observables", "snapshot_times", "summary", "c
 
 @cache
 def _rows(columns: tuple[str, ...]) -> Any:
-    """Type of blocks of rows with these columns, cached, as creating it takes longer than reading a short block."""
+    """Return the type of blocks of rows with these columns; creating it takes longer than reading a short block."""
     return namedtuple("Rows", columns)
 
 
 class LogHistory(LogHeader):
-    """The part of a `Log` that its run writes, except samples; the attributes are described there."""
+    """The part of a `Log` that is written during the run, except samples; `Log` describes its attributes."""
 
     start_time = 0.0
 
@@ -47,7 +47,7 @@ class LogHistory(LogHeader):
 
     @property
     def live(self) -> bool:
-        """Whether this log is being written now."""
+        """Whether a run is writing this log now."""
         return self.unclosed and is_locked(self.path)
 
     def require_events(self) -> None:
@@ -56,7 +56,7 @@ class LogHistory(LogHeader):
             raise LogError(f"{self.path}: has no events (made with log.events = false)")
 
     def refresh(self) -> None:
-        """Read what the run has stored since the log was opened or last refreshed."""
+        """Read what the run has written since the log was opened or last refreshed."""
         self._file.refresh()
         self._update()
 
@@ -70,7 +70,7 @@ class LogHistory(LogHeader):
             start = (self._rows - 1) // self._block * self._block
             last = {name: self._file.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
             self._file.checked(partial(check_pairs, last, start))
-            if last["disc"][-1] < last["partner"][-1]:  # the first row of a pair whose second is not committed
+            if last["disc"][-1] < last["partner"][-1]:  # first row of a pair whose second row is not yet committed
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
         for name in _CACHED:
@@ -94,15 +94,15 @@ class LogHistory(LogHeader):
 
     @cached_property
     def checkpoints(self) -> Checkpoints:
-        """States at the starts of epochs, from which the run can be resumed; each is read when it is indexed."""
-        found = Checkpoints(self._file, len(self), self._check_checkpoint)
-        if self.complete and len(found) < self._file.rows("checkpoints"):
+        """States at the beginning of epochs, from which the run can be resumed; each is read when it is indexed."""
+        checkpoints = Checkpoints(self._file, len(self), self._check_checkpoint)
+        if self.complete and len(checkpoints) < self._file.rows("checkpoints"):
             row = self._file.column("checkpoints/row")[-1]
             raise DamageError(self.path, f"checkpoints/row: {row} (allowed up to {len(self)}, all events)")
-        return found
+        return checkpoints
 
     def _check_checkpoint(self, time: float, row: int) -> None:
-        """Raise DamageError unless the event rows before a checkpoint are those before its time."""
+        """Raise DamageError unless the number of rows before a checkpoint agrees with its time."""
         if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
             raise DamageError(self.path, f"checkpoints/row: {row} at t = {time:g} (got other events before it)")
 
@@ -110,10 +110,10 @@ class LogHistory(LogHeader):
     def summary(self) -> dict[str, Any]:
         """Fields of the run's `Summary` by name; empty if the run has not reached its end."""
         names, values = (self._file.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
-        found = self._file.checked(lambda: parse_summary(names, values), "summary/value")
-        if self.has_events and found.get("rows", len(self)) != len(self):
-            raise DamageError(self.path, f"summary/value: {found['rows']} rows (events: {len(self)})")
-        return Table(self.path, "summary", found)
+        fields = self._file.checked(lambda: parse_summary(names, values), "summary/value")
+        if self.has_events and fields.get("rows", len(self)) != len(self):
+            raise DamageError(self.path, f"summary/value: {fields['rows']} rows (events: {len(self)})")
+        return Table(self.path, "summary", fields)
 
     @cached_property
     def end_time(self) -> float:
@@ -131,7 +131,7 @@ class LogHistory(LogHeader):
         return end
 
     def _sample_times(self, table: str, step: int) -> np.ndarray:
-        """Times of each `step`-th row of a table of samples; none for a missing table."""
+        """Return the times of every `step`-th row of a table of samples; none if the table is missing."""
         path = next((f"{table}/{name}" for name in self._file.names(table) if name.endswith("/time")), None)
         times = self._file.column(path, step) if path else np.empty(0)
         if self.complete and len(times) and times[-1] > self.end_time:
@@ -142,7 +142,7 @@ class LogHistory(LogHeader):
     def counts(self) -> dict[str, int]:
         """Numbers of `events`, `disc_collisions` and `trials` up to the end of the log.
 
-        Without event rows they are those of the last sample.
+        Without event rows they are taken from the last sample.
         """
         if self.complete:
             return {name: self.summary[name] for name in COUNTS}
@@ -161,12 +161,12 @@ class LogHistory(LogHeader):
 
     @property
     def has_positions(self) -> bool:
-        """Whether the discs have positions; in the Monte Carlo method they are nan."""
+        """Whether the discs have positions; with the Monte Carlo method their positions are nan."""
         return "position" in self._file.names("checkpoints")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the event columns, those of `EventBatch` that this log has; empty without events."""
+        """Names of the columns of `EventBatch` that this log has; empty without events."""
         return tuple(self._file.names("events"))
 
     @overload
@@ -174,16 +174,16 @@ class LogHistory(LogHeader):
     @overload
     def chunks(self, columns: Sequence[str], start: int = 0, stop: int | None = None) -> Iterator[Any]: ...
     def chunks(self, columns: Sequence[str] | None = None, start: int = 0, stop: int | None = None) -> Iterator[Any]:
-        """Event rows in blocks of at most 65 536 rows.
+        """Yield event rows in blocks of at most 65 536 rows.
 
         Args:
             columns: names of the columns to read; each block is then a named tuple of arrays, (n,) or (n, 2). By
-                default it is an `EventBatch`, which describes the columns.
+                default, a block is an `EventBatch`, which describes the columns.
             start: number of the first row.
-            stop: number after the last row; by default the end of the log.
+            stop: number of the row after the last one; by default the end of the log.
 
         Raises:
-            LogError: if the log lacks a column.
+            LogError: if the log does not have a column.
         """
         block: Any = partial(EventBatch, position=None) if columns is None else _rows(tuple(columns))
         names = self.columns if columns is None else columns
@@ -193,11 +193,11 @@ class LogHistory(LogHeader):
         for first in range(start // self._block * self._block, stop, self._block) if start < stop else ():
             rows = {name: self._file.chunk(f"events/{name}", first) for name in names}
             self._file.checked(partial(check_pairs, rows, first))
-            some = slice(max(start - first, 0), stop - first)
-            yield block(**{name: column[some] for name, column in rows.items()})
+            chosen = slice(max(start - first, 0), stop - first)
+            yield block(**{name: column[chosen] for name, column in rows.items()})
 
     def row_at(self, time: float, side: Literal["left", "right"] = "left") -> int:
-        """Number of the first event row at `time` or later; with side "right" of the first one after `time`."""
+        """Return the number of the first event row at `time` or later, or later than `time` if the side is "right"."""
         if not len(self):
             return 0
         find = bisect_left if side == "left" else bisect_right
@@ -211,12 +211,12 @@ class LogHistory(LogHeader):
         return self._first_times[block]
 
     def events(self, disc: int | None = None, t0: float | None = None, t1: float | None = None) -> Iterator[EventBatch]:
-        """Event rows at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
+        """Yield event rows at times t0 ≤ t < t1, in blocks (`EventBatch`) of any length.
 
         Args:
-            disc: id of the disc; all by default.
-            t0: start of the window; by default that of the log.
-            t1: end of the window; by default that of the log.
+            disc: id of a disc; all discs by default.
+            t0: start of the window; by default the start of the log.
+            t1: end of the window; by default the end of the log, including it.
         """
         start = 0 if t0 is None else self.row_at(t0)
         stop = len(self) if t1 is None else self.row_at(t1)
@@ -225,20 +225,27 @@ class LogHistory(LogHeader):
             return
         row = start
         for ids in self.chunks(("disc",), start, stop):
-            own = np.flatnonzero(ids.disc == disc)
-            for block in self.chunks(None, row, row + len(ids.disc)) if len(own) else ():
-                yield EventBatch._make(None if column is None else column[own] for column in block)
+            chosen = np.flatnonzero(ids.disc == disc)
+            for block in self.chunks(None, row, row + len(ids.disc)) if len(chosen) else ():
+                yield EventBatch._make(None if column is None else column[chosen] for column in block)
             row += len(ids.disc)
 
     def state_at(self, time: float) -> LogState:
-        """All discs at one time, exactly; at the time of an event after the event. Raises LogError as `frames` does."""
+        """Return the exact state of all discs at one time; at the time of an event, the state after the event.
+
+        Args:
+            time: time of the state.
+
+        Raises:
+            LogError: as for `frames`.
+        """
         return next(self.frames([time]))
 
     def frames(self, times: Iterable[float]) -> Iterator[LogState]:
-        """All discs at each of several times, in one pass over the log.
+        """Yield the states of all discs at several times, in a single pass over the log.
 
-        The states are exact: every disc is in free flight after its last event. A log without events has states only
-        at its checkpoints.
+        The states are exact, as every disc moves freely after its last event. A log without events has states only at
+        its checkpoints.
 
         Args:
             times: times in increasing order.
@@ -275,7 +282,7 @@ class LogHistory(LogHeader):
         return Replay(start, self.columns, self.box, self.periodic, gravity_at, self.escapes)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
-        """Discs at the start, as in a checkpoint."""
+        """Return the state of the discs at the start, in the form of a checkpoint."""
         names = self._file.names("checkpoints")
         arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
         if not self.has_positions:

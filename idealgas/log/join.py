@@ -1,4 +1,4 @@
-"""Join of event rows with the states of their discs before each event."""
+"""Join event rows with the states of their discs before each event."""
 
 from collections.abc import Collection, Iterator
 from typing import Any
@@ -27,18 +27,18 @@ def whole_pairs(chunks: Iterator[Any]) -> Iterator[Arrays]:
 
 
 class Join:
-    """Latest states of all discs, advanced through the event rows.
+    """The latest states of all discs, updated as event rows are passed.
 
     Attributes:
         discs: number of discs.
     """
 
     def __init__(self, state: LogState, names: Collection[str]) -> None:
-        """Start with the states of all discs at one time. names: event columns that are read."""
+        """Start with the states of all discs at one time. names: event columns that the rows have."""
         self.discs = len(state.velocity)
         start = {"time": np.full(self.discs, state.time)}
         start |= {name: getattr(state, name) for name in LogState._fields[1:] if name in names}
-        self._states = start  # of the discs, then of the current rows
+        self._states = start  # states of the discs, followed by the states in the current rows
         self._make_room(BLOCK)
 
     def _make_room(self, rows: int) -> None:
@@ -49,7 +49,7 @@ class Join:
         }
 
     def pass_on(self, rows: Arrays) -> Arrays:
-        """States of the discs before each event row; then advance the latest states through the rows."""
+        """Return the states of the discs before each event row, and update the latest states."""
         number = len(rows["disc"])
         if number > self._room:
             self._make_room(number)
@@ -62,18 +62,18 @@ class Join:
         return before | {"disc": rows["disc"]}
 
     def _places(self, disc: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return where the states before and after event rows are.
+        """Return the indices of the states before and after event rows.
 
         Args:
             disc: (n,), disc of each row.
 
         Returns:
-            (n,), index of the state of the disc before each row; the discs that have rows; index of the last state of
-            each of them.
+            (n,), index of the state of the disc before each row; the discs that have rows; the index of the last state
+            of each of these discs.
         """
-        order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # in linear time, by radix
+        order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # a radix sort, in linear time
         ordered = disc[order]
-        is_first = np.ones(len(disc), np.bool_)  # row of its disc
+        is_first = np.ones(len(disc), np.bool_)  # whether a row is the first row of its disc
         is_first[1:] = ordered[1:] != ordered[:-1]
         first, state = np.flatnonzero(is_first), self.discs + order
         before = np.roll(state, 1)
@@ -83,6 +83,6 @@ class Join:
         return previous, ordered[first], state[np.append(first, len(disc))[1:] - 1]
 
     def states(self, discs: np.ndarray) -> Arrays:
-        """Latest states of some discs."""
-        found = {name: values.take(discs, axis=0) for name, values in self._states.items()}
-        return found | {"disc": discs.astype(np.uint32)}
+        """Return the latest states of discs, given by their ids."""
+        columns = {name: values.take(discs, axis=0) for name, values in self._states.items()}
+        return columns | {"disc": discs.astype(np.uint32)}

@@ -1,4 +1,4 @@
-"""The HDF5 file of a log, open for reading, with its columns in chunks. Every failure is a LogError."""
+"""The HDF5 file of a log, open for reading in chunks. Every failure is a LogError."""
 
 import math
 import os
@@ -25,7 +25,10 @@ from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.rules import Rules, box_of, check_names, check_sizes
 
 _CACHED = 64
-"""Number of chunks of events in the cache, up to 64 MiB: several analyses read a log of half a million rows once."""
+"""Number of chunks of events in the cache, up to 64 MiB.
+
+With this number, several analyses together read a log of half a million rows only once.
+"""
 _CACHED_OTHERS = 16
 """Number of small chunks of other tables in the cache."""
 _SMALL = 2**20
@@ -33,13 +36,13 @@ _SMALL = 2**20
 ATTEMPTS = 10
 """Number of attempts to read a file while a writer may be changing the same bytes."""
 PAUSE = 0.02
-"""Time between these attempts, s."""
+"""Time between two attempts, s."""
 
 Result = TypeVar("Result")
 
 
 class Table(dict[str, Any]):
-    """Entries of a table of a log, by name; a missing one raises DamageError."""
+    """Entries of a table of a log, by name; a missing entry raises DamageError."""
 
     def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
         super().__init__(entries)
@@ -50,13 +53,15 @@ class Table(dict[str, Any]):
 
 
 class LogFile:
-    """The HDF5 file of a log, open for reading, also while it is written and after its writer was killed.
+    """The HDF5 file of a log, open for reading, even while it is written or after its writer was killed.
 
     Attributes:
         path: path of the file.
-        unclosed: whether the file consistency flags are set: it is being written, or its writer was killed.
+        unclosed: whether the file consistency flags are set, because the file is being written or its writer was
+            killed.
         commit: newest commit record.
-        kinds: kinds of events, of those that only some logs have.
+        kinds: optional kinds of events that the log counts.
+        pistons: number of pistons.
         rules: rules for the values of this log.
     """
 
@@ -64,7 +69,7 @@ class LogFile:
         self.path = path
         self._file: Any = None
         self._opened: list[Any] = []
-        weakref.finalize(self, _close_all, self._opened)  # before Python ends: HDF5 ends later, and then reads no more
+        weakref.finalize(self, _close_all, self._opened)  # before Python ends, as HDF5 can no longer read after that
         self._events = lru_cache(_CACHED)(self._chunk)
         self._others = lru_cache(_CACHED_OTHERS)(self._chunk)
         keep_freed_memory()
@@ -75,7 +80,7 @@ class LogFile:
             raise
 
     def refresh(self) -> None:
-        """Read what the writer has committed since."""
+        """Read what the writer has committed since the file was opened or last refreshed."""
         self._read(self._open)
         self._events.cache_clear()
         self._others.cache_clear()
@@ -86,17 +91,20 @@ class LogFile:
         self._file = None
 
     def rows(self, table: str) -> int:
-        """Number of committed rows, 0 for a missing table."""
+        """Return the number of committed rows of a table; 0 if it is missing."""
         return self.commit.rows.get(table, 0)
 
     def names(self, table: str) -> list[str]:
-        """Names of a table's columns."""
+        """Return the names of the columns of a table."""
         return self._names.get(table, [])
 
     def stored(self, table: str) -> list[Column]:
-        """Columns of a table as in the file: name, type and shape of an entry; of H5MD elements the values."""
-        found = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
-        paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in found)
+        """Return the columns of a table as stored in the file: name, type and shape of an entry.
+
+        Of an H5MD element, only the values are included.
+        """
+        columns = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
+        paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in columns)
         return [
             Column(word, column.dtype.str[1:], column.chunk[1:])
             for word, name, column in paths
@@ -104,11 +112,11 @@ class LogFile:
         ]
 
     def chunk_rows(self, path: str) -> int:
-        """Number of rows in a chunk of a column."""
+        """Return the number of rows in a chunk of a column."""
         return self._columns[path].chunk[0]
 
     def chunk(self, path: str, start: int) -> np.ndarray:
-        """Committed rows of the chunk of a column that begins at row `start`; read-only."""
+        """Return the committed rows of the chunk of a column that begins at row `start`; the array is read-only."""
         if table_of(path) == "events":
             return self._events(path, start)
         column = self._columns[path]
@@ -116,14 +124,14 @@ class LogFile:
         return self._others(path, start) if small else self._chunk(path, start)
 
     def column(self, path: str, step: int = 1) -> np.ndarray:
-        """All committed rows of a column of a short table, or each `step`-th of them from the first on."""
+        """Return all committed rows of a column of a short table, or every `step`-th row from the first one on."""
         column = self._columns[path]
         starts = range(0, self.rows(table_of(path)), column.chunk[0])
         parts = [np.ascontiguousarray(self.chunk(path, start)[-start % step :: step]) for start in starts]
         return np.concatenate(parts) if parts else np.empty((0, *column.chunk[1:]), column.dtype)
 
     def fixed(self, name: str) -> np.ndarray:
-        """Values of a dataset that was stored before the run."""
+        """Return the values of a dataset that was stored before the run."""
 
         def read() -> np.ndarray:
             column = StoredColumn(self._file, name)
@@ -135,20 +143,25 @@ class LogFile:
         return self._read(read, f"{name}: ")
 
     def texts(self, name: str) -> list[str]:
-        """Texts of a dataset that was stored before the run, or of a column of a table."""
+        """Return the texts of a dataset that was stored before the run, or of a column of a table."""
         texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
         return self.checked(lambda: [text.decode() for text in texts], name)
 
     def checked(self, action: Callable[[], Result], what: str = "") -> Result:
-        """Result of an action that raises ValueError for invalid data. what: name of the data, put before the error."""
+        """Return the result of an action that raises ValueError for invalid data.
+
+        Args:
+            action: function to call.
+            what: name of the data, with which the error message begins.
+        """
         return self._read(action, what and f"{what}: ")
 
     def attribute(self, name: str, attribute: str) -> Any:
-        """Value of an attribute of a dataset or group."""
+        """Return the value of an attribute of a dataset or group."""
         return self._read(lambda: self._file[name].attrs[attribute], f"{name}: ")
 
     def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
-        """Attributes of a group by name, each a text or an integer."""
+        """Return attributes of a group by name; each is a text or an integer."""
         return self._read(lambda: {key: _text_or_integer(self._file[name], key) for key in wanted}, f"{name}: ")
 
     def _open(self) -> None:
@@ -172,7 +185,7 @@ class LogFile:
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
-        size = os.fstat(source.fileno()).st_size  # after the commit: a writer may have extended the file since
+        size = os.fstat(source.fileno()).st_size  # read after the commit, as a writer may be extending the file
         if self.unclosed:
             self._check_size(size, self.commit.file_size)
         self._columns = {path: self._column_at(path) for path in self.commit.tails}
@@ -189,7 +202,7 @@ class LogFile:
             raise DamageError(self.path, f"truncated: {size:,} of {expected:,} bytes")
 
     def _rules(self, size: int) -> Rules:
-        """Rules for the values of this log, after a check of its tables. size: of the file, bytes."""
+        """Check the tables of this log, and return the rules for its values. size: size of the file, bytes."""
         discs, species, walls = (self._column_at(name) for name in ("discs/id", "discs/species_name", "walls/name"))
         counts = (discs.extent, species.extent, walls.extent)
         check_sizes(*counts, size)
@@ -223,7 +236,7 @@ class LogFile:
         return data
 
     def _read(self, action: Callable[[], Result], what: str = "") -> Result:
-        """Result of an action, repeated a few times while it fails and a writer may be changing the same bytes."""
+        """Return the result of an action; if it fails while a writer may be changing the same bytes, try again."""
         attempt = 1
         while True:
             try:
@@ -237,7 +250,7 @@ class LogFile:
             time.sleep(PAUSE)
 
     def _was_changed(self) -> bool:
-        """Whether a run has changed the log since it was opened or last refreshed."""
+        """Return whether a run has changed the log since it was opened or last refreshed."""
         try:
             return commit_of(self.path) != self.commit
         except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError):
@@ -245,14 +258,14 @@ class LogFile:
 
 
 def _close_all(files: list[Any]) -> None:
-    """Close files, the last one first, and empty the list."""
+    """Close files in reverse order, and empty the list."""
     while files:
-        with suppress(OSError, RuntimeError):  # HDF5 reads damaged bytes even as it closes
+        with suppress(OSError, RuntimeError):  # HDF5 may read damaged bytes even when it closes a file
             files.pop().close()
 
 
 def _text_or_integer(item: h5py.HLObject, name: str) -> str | int:
-    """Attribute that is a single text or integer. Raises ValueError otherwise."""
+    """Return an attribute that is a single text or integer. Raises ValueError if it is anything else."""
     value = item.attrs[name]
     try:
         value = value.decode() if isinstance(value, bytes) else value

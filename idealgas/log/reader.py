@@ -1,4 +1,4 @@
-"""A log of a run, open for reading, also during its run and after it was interrupted or killed."""
+"""The log of a run, open for reading, even during the run or after it was interrupted or killed."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,15 +32,22 @@ if TYPE_CHECKING:
 
 
 class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
-    """Times and values of the samples by name, each read from the file when it is first asked for."""
+    """Times and values of the samples by name; each is read from the file when it is first accessed."""
 
     def __init__(self, file: LogFile, names: Sequence[str], times: Callable[[int], np.ndarray], step: int = 1) -> None:
-        """Each `step`-th sample of a file. names: of the observables. times: reads their common times, by step."""
+        """Take every `step`-th sample of a file.
+
+        Args:
+            file: file of the log.
+            names: names of the observables.
+            times: function that reads their common times, given the step.
+            step: number of samples in the file per sample taken.
+        """
         self._file, self._names, self._read_times, self._step = file, tuple(names), times, step
         self._read: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def thinned(self, most: int) -> "Samples":
-        """The same samples if they are at most `most`, else that many of them or less, evenly chosen from the first."""
+        """Return at most `most` of these samples, evenly spaced, beginning with the first one."""
         return Samples(self._file, self._names, self._read_times, max(1, -(-self._file.rows("observables") // most)))
 
     def __getitem__(self, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -66,14 +73,14 @@ class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
-    """Open the log of a run for reading, in a `with` statement or with a call of `close` at the end.
+    """Open the log of a run for reading. Use it in a `with` statement, or call `close` at the end.
 
     Args:
         path: path of the log.
 
     Raises:
-        LogError: if the file is missing, damaged, or not a log of idealgas. All methods of `Log` raise it too, as most
-            of the file is read on demand.
+        LogError: if the file is missing, damaged or not a log of idealgas. As most of the file is read on demand, all
+            methods of `Log` may raise it, too.
     """
     for _ in range(ATTEMPTS):
         before = _last_change(path)
@@ -82,30 +89,30 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
         except LogError:
             if not is_locked(Path(path)) and _last_change(path) == before:
                 raise
-            sleep(PAUSE)  # a run that resumes the log may just have removed rows, or a run has ended meanwhile
+            sleep(PAUSE)  # the run may just have ended, or be removing rows in order to resume the log
     return Log(LogFile(Path(path)))
 
 
 def _last_change(path: str | os.PathLike[str]) -> tuple[int, ...]:
-    """Which file has a path, its size, and when it was last written; nothing of a missing one."""
+    """Return the inode, the size and the time of the last change of a file; an empty tuple if it is missing."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return ()
-    return found.st_ino, found.st_size, found.st_mtime_ns
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 class Log(LogHistory):
     """The log of a run, open for reading; a context manager that closes the file. Use `open_log` to create it.
 
-    `len(log)` is the number of event rows, two for a collision of two discs and one for any other event. `print(log)`
-    shows the scene, the state of the run, and the file. Energies and temperatures are in units of mass length²/time²,
-    with Boltzmann's constant 1. Methods and properties raise LogError if the data they need are damaged.
+    `len(log)` is the number of event rows: two for a collision of two discs, and one for any other event. `print(log)`
+    shows the scene, the state of the run and the file. Energies and temperatures are in units of mass·length²/time²,
+    with Boltzmann's constant 1. Methods and properties raise LogError if the data that they require are damaged.
 
     Attributes:
         path: path of the file.
         complete: whether the run reached its end.
-        unclosed: whether the file was not closed: it is still written (see `live`), or its run was killed.
+        unclosed: whether the file was not closed, because it is still being written (see `live`) or its run was killed.
         has_events: whether the log has event rows.
         box: (Lx, Ly), length; the origin is the lower left corner.
         periodic: whether the box is periodic along x and along y.
@@ -123,7 +130,7 @@ class Log(LogHistory):
         return "interrupted"
 
     def __str__(self) -> str:
-        """Three lines: scene and discs; time span, events and state of the run; file."""
+        """Return three lines: scene and discs; time span, events and state of the run; file."""
         from rich.filesize import decimal
 
         scene, names = self.scene, self.discs.species_names
@@ -140,42 +147,43 @@ class Log(LogHistory):
 
     @cached_property
     def observables(self) -> "Samples":
-        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name; read when asked for.
+        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name, read when accessed.
 
-        Every log has kinetic_energy, momentum, energy (of the discs), overlap (deepest, relative to the sum of two
-        radii), outside (farthest reach beyond sides that reflect, in diameters), and the numbers of events,
-        disc_collisions, wall_hits and trials since the start. Effects add rotational_energy, potential_energy,
-        piston_position and piston_velocity (of each piston), wall_energy (from each wall since the start),
-        dissipated_energy (lost since the start in collisions of discs, then at each wall), thermostat_collisions and
-        bath_energy. With
-        `log.pressure` samples have the sums of idealgas/log/README.md: kinetic_flow, collision_flow, wall_virial,
-        face_normal_impulse, face_tangential_impulse, face_hits and, in mixtures, pair_collisions; with
-        `log.heat_flow` also kinetic_heat_flow and collision_heat_flow.
+        Every log has kinetic_energy, momentum, energy (of the discs), overlap (the deepest, relative to the sum of the
+        two radii), outside (the largest distance by which a disc extends beyond a reflecting side, in diameters), and
+        the numbers of events, disc_collisions, wall_hits and trials since the start. Effects add rotational_energy,
+        potential_energy, piston_position and piston_velocity (of each piston), wall_energy (received from each wall
+        since the start), dissipated_energy (lost since the start in collisions of discs, then at each wall),
+        thermostat_collisions and bath_energy.
+
+        With `log.pressure`, samples also contain sums, which idealgas/log/README.md describes: kinetic_flow,
+        collision_flow, wall_virial, face_normal_impulse, face_tangential_impulse, face_hits and, in mixtures,
+        pair_collisions; with `log.heat_flow` also kinetic_heat_flow and collision_heat_flow.
         """
         names = [name.partition("/")[0] for name in self._file.names("observables") if name.endswith("/value")]
         return Samples(self._file, names, partial(self._sample_times, "observables"))
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
-        """(S,) times of the snapshots, which `log.snapshot_every` adds to the file as in H5MD."""
+        """(S,) times of the snapshots, which `log.snapshot_every` adds to the file in the layout of H5MD."""
         return self._sample_times("particles", 1)
 
     def flights(
         self, edges: ArrayLike | None = None, *, discs: ArrayLike | None = None, columns: Sequence[str] | None = None
     ) -> Iterator[Flights]:
-        """Flights of discs from event to event, in batches of at most 131 072, unless a single one has more pieces.
+        """Yield the flights of discs from event to event, in batches of at most 131 072, unless one has more pieces.
 
-        A flight has the state in which a disc begins it, and the event that ends it; `Flights` describes the columns.
-        The flights of a disc fill the time from the first edge to the last, and are cut at the edges in between.
+        A flight contains the state of a disc at its start and the event at its end; `Flights` describes the columns.
+        The flights of a disc cover the time from the first edge to the last, and are cut at the edges in between.
 
         Args:
             edges: (B + 1,), times in increasing order; by default the start and the end of the log.
-            discs: ids of the discs to follow; all by default.
-            columns: names of the columns to make, which takes less time; all that the log has by default.
+            discs: ids of the discs to include; all by default.
+            columns: names of the columns to compute; all columns of the log by default, which takes longer.
 
         Raises:
-            LogError: if the log has no events, if its flights have no such column, if there is no such disc, or if the
-                log does not cover the edges.
+            LogError: if the log has no events, if a column or a disc does not exist, or if the log does not cover the
+                edges.
         """
         return FlightReader(self, edges, discs, columns).batches()
 
@@ -188,29 +196,30 @@ class Log(LogHistory):
         t1: float | None = None,
         times: Iterable[float] | None = None,
     ) -> "DataFrame":
-        """A table of the log as a pandas DataFrame in memory.
+        """Return a table of the log as a pandas DataFrame.
 
-        - "events": a row for each event row at times t0 ≤ t < t1, of one disc or of all: time, disc, partner, kind (a
-          category: disc, wall, ...), after the event x, y, vx, vy, and with the effect angular_velocity, image_x,
-          image_y.
-        - "flights": a row for each flight of one disc or of all, cut at `times`, with the columns of `Flights`; kind is
-          missing if no event ends the flight.
-        - "discs": a row for each disc at each of `times`, by default the start: time, disc, species, radius, mass, and
-          the state as above.
-        - "observables": a row for each sample at times t0 ≤ t < t1, with a column for each component of `observables`.
+        - "events": one row for each event row of one disc or all discs at times t0 ≤ t < t1, with time, disc, partner,
+          kind (a category: disc, wall, ...) and the state after the event: x, y, vx, vy and, if the scene has these
+          effects, angular_velocity, image_x, image_y.
+        - "flights": one row for each flight of one disc or all discs, cut at `times`, with the columns of `Flights`;
+          kind is missing if the flight does not end with an event.
+        - "discs": one row for each disc at each of `times`, by default the start, with time, disc, species, radius,
+          mass and the state as above.
+        - "observables": one row for each sample at times t0 ≤ t < t1, with a column for each component of
+          `observables`.
 
         Requires pandas: .venv/bin/pip install -e ".[notebook]".
 
         Args:
             what: name of the table.
-            disc: id of a disc.
-            t0: start of the window.
-            t1: end of the window.
+            disc: id of a disc; all discs by default.
+            t0: start of the window; by default the start of the log.
+            t1: end of the window; by default the end of the log.
             times: times in increasing order.
 
         Raises:
-            LogError: without pandas, if the log has no events, if it does not cover a time, or if an argument does not
-                apply to the table.
+            LogError: if pandas is missing, if the log has no events or does not cover a time, or if an argument does
+                not apply to the table.
         """
         check_choice(self.path, what, {"disc": disc, "t0": t0, "t1": t1, "times": times})
         if what == "events":
@@ -227,16 +236,16 @@ class Log(LogHistory):
 
 
 Parameters = ParamSpec("Parameters")
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 def takes_path(
-    function: Callable[Concatenate[Log, Parameters], Found],
-) -> Callable[Concatenate[Log | str | os.PathLike[str], Parameters], Found]:
-    """Let a function whose first argument is a log take the path of one as well."""
+    function: Callable[Concatenate[Log, Parameters], Result],
+) -> Callable[Concatenate[Log | str | os.PathLike[str], Parameters], Result]:
+    """Let a function whose first argument is a log also accept the path of a log."""
 
     @wraps(function)
-    def opening(log: Log | str | os.PathLike[str], *args: Parameters.args, **named: Parameters.kwargs) -> Found:
+    def opening(log: Log | str | os.PathLike[str], *args: Parameters.args, **named: Parameters.kwargs) -> Result:
         if isinstance(log, Log):
             return function(log, *args, **named)
         with open_log(log) as opened:

@@ -1,4 +1,4 @@
-"""Opening a log for writing again: after its writer was killed, or to continue it from a checkpoint."""
+"""Open a log for writing again, after its writer was killed or to continue it from a checkpoint."""
 
 import os
 import shutil
@@ -18,11 +18,11 @@ from idealgas.log.reader import Log, open_log
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
-    """Close a log that was not closed, so that any HDF5 program opens it. A log that was closed stays as it is.
+    """Close a log that was not closed, so that any HDF5 program can open it. A closed log is left as it is.
 
     Args:
         path: path of the log.
-        output: path of a copy that is closed instead of the log itself.
+        output: path of a copy, which is closed instead of the log itself.
         force: whether the copy may overwrite another log.
 
     Returns:
@@ -51,14 +51,14 @@ def reopen(
 
     Args:
         path: path of the log.
-        checkpoint: index of the checkpoint, None for the start.
-        commit: commit that the log must have, None for any.
+        checkpoint: index of the checkpoint; None for the start.
+        commit: commit that the log must have; None for any.
 
     Returns:
-        The file, the writers of its tables, and the number of its last commit.
+        The file, the writers of its tables, and the sequence number of its last commit.
 
     Raises:
-        LogError: if the log has no such checkpoint, is damaged, or has another commit.
+        LogError: if the log has no such checkpoint, is damaged or has another commit.
         OutputError: if the log is being written.
     """
     path = Path(path)
@@ -73,7 +73,7 @@ def reopen(
             rows |= {"events": int(row), "checkpoints": index + 1}
             rows["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
             rows["changes"] = sum(change.time <= time for change in log.changes)
-            times = log.observables.times  # of two samples at one time the second is that of an end
+            times = log.observables.times  # if two samples have the same time, the second was taken at an end
             rows["observables"] = int(min(times.searchsorted(time) + 1, times.searchsorted(time, "right")))
         keep = {table: rows.get(table, 0) for table in log.commit.rows}
         _check_appendable(log, keep)
@@ -81,7 +81,7 @@ def reopen(
 
 
 def _committed(log: Log) -> dict[str, int]:
-    """Number of valid rows of each table, after which a log can be continued."""
+    """Return the number of valid rows of each table, after which a log can be continued."""
     rows = {"events": len(log), "checkpoints": len(log.checkpoints)}
     keep = {table: rows.get(table, stored) for table, stored in log.commit.rows.items()}
     _check_appendable(log, keep)
@@ -89,15 +89,15 @@ def _committed(log: Log) -> dict[str, int]:
 
 
 def _close(path: Path, keep: Mapping[str, int] | None, commit: Commit | None = None) -> None:
-    """Close a log after the first `keep` rows of each table; None if it is closed already."""
+    """Close a log after the first `keep` rows of each table; do nothing for None, as the log is already closed."""
     if keep is not None:
         open_after(path, keep, commit)[0].close()
 
 
 def _check_appendable(log: Log, keep: Mapping[str, int]) -> None:
-    """Raise DamageError if a log cannot be continued after these rows, before a byte of it is changed."""
+    """Raise DamageError if a log cannot be continued after these rows. Called before the log is changed."""
     if log.live:
-        return  # it will be refused, and its writer may be changing the same bytes
+        return  # opening it will be refused, and its writer may be changing the same bytes
     try:
         with ReadableFile(log.path) as source, h5py.File(source, "r") as file:
             open_tables(file, Commit.read(file), keep)
@@ -110,8 +110,8 @@ def open_after(
 ) -> tuple[WritableFile, dict[str, TableWriter], int]:
     """Open a log for appending after the first `keep` rows of each table, and remove later rows.
 
-    The commit record is written first, so that the log is valid at any moment. A log with another commit than the given
-    one is left as it is: another run has continued or replaced it since it was read.
+    The commit record is written first, so that the log is valid at any moment. If the commit of the log is not the
+    given one, another run has continued or replaced the log since it was read, and it is left as it is.
     """
     try:
         opened = WritableFile(path, commit)
@@ -120,20 +120,23 @@ def open_after(
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise _failure(path, error) from error
     try:
-        found = Commit.read(opened.file)
-        tables = open_tables(opened.file, found, keep)
+        newest = Commit.read(opened.file)
+        tables = open_tables(opened.file, newest, keep)
         opened.file.swmr_mode = True
-        for sequence in (1, 2):
-            commit_tables(opened.file, tables, found.sequence + sequence)
+        for step in (1, 2):
+            commit_tables(opened.file, tables, newest.sequence + step)
         for table in tables.values():
             table.trim()
         opened.file.flush()
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         opened.abandon()
         raise _failure(path, error) from error
-    return opened, tables, found.sequence + 2
+    return opened, tables, newest.sequence + 2
 
 
 def _failure(path: Path, error: Exception) -> UserError:
-    """Error of a log that could not be opened for appending: of the system if it has a number, else of the file."""
+    """Return the error for a log that cannot be opened for appending.
+
+    An error with a number comes from the operating system; any other error means that the file is damaged.
+    """
     return DamageError(path, reason(error)) if error_number(error) is None else storage_error(path, error)

@@ -1,4 +1,4 @@
-"""States of the gas at any time: a checkpoint, the events after it, and free flight after the last event of a disc."""
+"""Compute the state of the gas at any time from a checkpoint, the events after it, and the free flight of the discs."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, overload
@@ -16,14 +16,14 @@ MOST_BOXES = 2.0**30
 
 
 class LogState(NamedTuple):
-    """All discs at one time, in order of id. Discs that have left the gas have nan.
+    """The state of all discs at one time, in order of id. All values of discs that have left the gas are nan.
 
     Attributes:
         time: time of the state.
-        position: (N, 2), length; nan in a gas without positions.
-        velocity: (N, 2), length/time.
+        position: (N, 2), positions, length; nan in a gas without positions.
+        velocity: (N, 2), velocities, length/time.
         image: (N, 2), number of box lengths to add to a position to unwrap it; None without periodic sides.
-        angular_velocity: (N,), 1/time; None without rotation.
+        angular_velocity: (N,), angular velocities, 1/time; None without rotation.
     """
 
     time: float
@@ -34,13 +34,13 @@ class LogState(NamedTuple):
 
     @property
     def inside(self) -> np.ndarray:
-        """(N,) bool, whether each disc is in the gas."""
+        """(N,) bool, whether each disc is still in the gas."""
         return ~np.isnan(self.velocity[:, 0])
 
     def mean(self, values: np.ndarray, members: np.ndarray | bool = True) -> float:
-        """Mean of values (N,) over the discs in the gas, or those of them that are members; 0 without any."""
-        found = values[self.inside & members]
-        return float(found.mean()) if len(found) else 0.0
+        """Return the mean of values (N,) over the discs in the gas, or over members among them; 0 if there are none."""
+        selected = values[self.inside & members]
+        return float(selected.mean()) if len(selected) else 0.0
 
 
 class Checkpoint(NamedTuple):
@@ -50,8 +50,8 @@ class Checkpoint(NamedTuple):
         time: time of the state.
         row: number of event rows before it.
         epoch: number of epochs before it.
-        arrays: values of each disc, and other arrays, by name.
-        values: single numbers, by name.
+        arrays: arrays by name, such as the values of each disc.
+        values: single numbers by name.
     """
 
     time: float
@@ -79,8 +79,8 @@ class Checkpoints(Sequence[Checkpoint]):
 
         Args:
             file: file of the log.
-            rows: number of event rows; later checkpoints are left out.
-            check: function that raises LogError for a time and a row that do not belong together.
+            rows: number of event rows; later checkpoints are omitted.
+            check: function of a time and a row that raises LogError if they are inconsistent.
         """
         self._file, self._check = file, check
         self.times = file.column("checkpoints/time")
@@ -110,16 +110,16 @@ class Checkpoints(Sequence[Checkpoint]):
 
     def _entry(self, name: str, row: int) -> np.ndarray:
         path = f"checkpoints/{name}"
-        some = self._file.chunk_rows(path)
-        return self._file.chunk(path, row // some * some)[row % some]
+        size = self._file.chunk_rows(path)
+        return self._file.chunk(path, row // size * size)[row % size]
 
 
 class Replay:
-    """The state of every disc after its last event, advanced through the event rows.
+    """The state of every disc after its last event, updated as event rows are followed.
 
     Attributes:
         row: number of the next event row.
-        columns: columns of events that `follow` needs.
+        columns: columns of events that `follow` requires.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class Replay:
         self._box, self._periodic, self._gravity_at = box, periodic, gravity_at
 
     def follow(self, block: Any) -> None:
-        """Advance through a block of event rows."""
+        """Update the states with a block of event rows."""
         self._time[block.disc] = block.time
         for name in self._state:
             self._record[name][block.disc] = getattr(block, name)
@@ -150,9 +150,10 @@ class Replay:
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
-        """All discs at a time between the last event row and the next.
+        """Return the state of all discs at a time between the last event row and the next one.
 
-        Raises ValueError if a disc passes through more boxes than an image can count.
+        Raises:
+            ValueError: if a disc crosses more box lengths than an image can count.
         """
         now = {name: values.copy() for name, values in self._record.items()}
         position, velocity = now["position"], now["velocity"]

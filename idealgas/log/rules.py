@@ -1,6 +1,6 @@
 """Rules for the values of a log: declared types and shapes, and numbers that are finite, in range and in order.
 
-Every column is checked as it is read, before any of its numbers is used. A broken rule raises ValueError.
+Every column is checked when it is read, before its numbers are used. A broken rule raises ValueError.
 """
 
 import math
@@ -49,19 +49,21 @@ NEEDED: dict[str, Sequence[Column]] = {
     "summary": SUMMARY_COLUMNS,
     "changes": CHANGE_COLUMNS,
 }
-"""Columns that every table of this name has; a log may lack those of events and changes."""
+"""Columns that each table has; only the tables of events and of changes may be missing in a log."""
 
 ORDERED = ("time", "row", "epoch", "step", "trial")
-"""Columns that never decrease and are never negative."""
+"""Columns that are never negative and never decrease."""
 
 MOST_PACKED = 1100
-"""Largest number of bytes that one byte of a file may become; deflate yields at most 1032."""
+"""Largest number of bytes to which one byte of a file may expand; deflate expands it to at most 1032."""
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST, SLOWEST = 1e-100, 1e50, 1e150, 1e-61
-"""Least mass and radius; largest mass, radius and speed; largest time, spin and observable; least of the top speed.
+"""Bounds of values, within which products and sums of squares are finite.
 
-Products of them, and sums of their squares, are finite."""
+LEAST bounds masses and radii from below; MOST bounds masses, radii and velocities from above; LONGEST bounds times,
+spins and observables from above; SLOWEST bounds the largest velocity component of a gas from below.
+"""
 
 Range = tuple[float, float]
 
@@ -70,7 +72,7 @@ class Rules:
     """The rules for the values of one log.
 
     Attributes:
-        has_time_steps: function that returns whether discs move in time steps; called if one is outside the box.
+        has_time_steps: function that returns whether the run has time steps; called if a disc is outside the box.
     """
 
     def __init__(
@@ -89,7 +91,7 @@ class Rules:
             discs: number of discs.
             species: number of species.
             walls: number of walls.
-            kinds: kinds of events of this log, of those that only some logs have.
+            kinds: optional kinds of events that this log declares.
             pistons: number of pistons.
         """
         self._others = [PARTNERS[kind] for kind in kinds if kind in PARTNERS]
@@ -135,7 +137,7 @@ class Rules:
         self._edges: dict[str, tuple[list[int], list[tuple[float, float]]]] = {}
 
     def check_fixed(self, name: str, stored: StoredColumn) -> None:
-        """Check the type and shape of a dataset that was stored before the run, in one chunk."""
+        """Check the type and shape of a dataset that was stored before the run, in a single chunk."""
         column = self._declared[name]
         self._check_type(column, stored)
         if stored.shape != column.shape or stored.chunk != column.shape:
@@ -145,9 +147,9 @@ class Rules:
 
     def check_table(self, columns: Mapping[str, StoredColumn], rows: int, file_size: int) -> None:
         """Check the types, shapes and sizes of the datasets of a table with `rows` committed rows."""
-        (chunk, *others) = {column.chunk[0] for column in columns.values()}
-        if others:
-            raise ValueError(f"{next(iter(columns))}: chunks of {chunk} and {others[0]} rows in one table")
+        (chunk, *different) = {column.chunk[0] for column in columns.values()}
+        if different:
+            raise ValueError(f"{next(iter(columns))}: chunks of {chunk} and {different[0]} rows in one table")
         for path, stored in columns.items():
             try:
                 self._check_column(path, stored)
@@ -168,7 +170,7 @@ class Rules:
                 Column(names[0], "", shape) if table == "observables" and names[-1] == "value" else None
             )
         elif column is None and table == "checkpoints" and len(names) == 1:
-            column = Column(names[0], "", stored.chunk[1:])  # of an effect or an exact sum
+            column = Column(names[0], "", stored.chunk[1:])  # column of an effect, or an exact sum
         if column is None:
             raise ValueError("not a column of a log")
         if table == "observables" and stored.dtype.str not in ("<f8", "<i8"):
@@ -188,7 +190,7 @@ class Rules:
             )
 
     def check(self, path: str, data: np.ndarray, start: int = 0) -> None:
-        """Check the values of a column from row `start` on."""
+        """Check the values of a column. start: row of the first value."""
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
@@ -199,7 +201,7 @@ class Rules:
         if name == "position":
             self._check_positions(path, data, start)
             return
-        if not (in_order and low <= data[0] and data[-1] <= high):  # which are then bounds on the others
+        if not (in_order and low <= data[0] and data[-1] <= high):  # in order, the first and last value are the bounds
             _check_range(data, low, high, start)
         if name == "kind" and (wrong := np.isin(data, self._no_kinds)).any():
             row = int(wrong.argmax())
@@ -212,14 +214,14 @@ class Rules:
             raise ValueError(f"largest component {largest:g} (allowed from {SLOWEST:g} on, or 0)")
 
     def _range_of_others(self, path: str) -> Range:
-        """Range of a column without a rule of its own."""
+        """Return the range of the values of a column for which no range is declared."""
         if path.startswith("observables/"):
             return -LONGEST, LONGEST
-        unknown = path not in self._declared and path.startswith("checkpoints/")  # minus infinity means never
+        unknown = path not in self._declared and path.startswith("checkpoints/")  # a time of minus infinity means never
         return (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST)
 
     def _check_positions(self, path: str, data: np.ndarray, start: int) -> None:
-        """Check that positions are in the box, except after the start of a run with time steps.
+        """Check that positions are in the box; in a run with time steps, discs may leave it after the start.
 
         Discs that have left the gas have the position nan.
         """
@@ -238,7 +240,10 @@ class Rules:
             _check_range(data, -MOST, MOST, start)
 
     def _check_order(self, path: str, data: np.ndarray, start: int, in_order: bool) -> None:
-        """Check the order of the rows of a chunk, unless it is known, and of the chunks that have been read."""
+        """Check that values do not decrease within a chunk, unless `in_order`, or from one chunk to the next.
+
+        Only chunks that have been read can be compared.
+        """
         if not in_order and (falls := data[1:] < data[:-1]).any():
             raise ValueError(f"decreases in row {start + 1 + int(falls.argmax())}")
         starts, edges = self._edges.setdefault(path, ([], []))
@@ -252,7 +257,7 @@ class Rules:
 
 
 def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
-    """Check that all numbers are in a range and none is nan."""
+    """Check that all numbers are in a range, and that none is nan."""
     if data.min() >= low and data.max() <= high:
         return
     wrong = ~((data >= low) & (data <= high))
@@ -262,7 +267,7 @@ def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
 
 
 def box_of(data: np.ndarray) -> tuple[float, float]:
-    """Width and height of the box. Raises ValueError for other data."""
+    """Return the width and height of the box. Raises ValueError if the data are invalid."""
     if data.shape != BOX.shape or data.dtype != np.dtype(BOX.dtype) or not ((data >= LEAST) & (data <= MOST)).all():
         raise ValueError(f"box: invalid width and height (allowed {LEAST:g} to {MOST:g})")
     width, height = data.tolist()
@@ -270,7 +275,7 @@ def box_of(data: np.ndarray) -> tuple[float, float]:
 
 
 def check_names(names: Mapping[str, Sequence[str]]) -> None:
-    """Check that each table has the columns that it needs. names: names of the columns, by table."""
+    """Check that each table has its required columns. names: names of the columns, by table."""
     for table, columns in NEEDED.items():
         if table in ("events", "changes") and table not in names:
             continue
@@ -280,15 +285,15 @@ def check_names(names: Mapping[str, Sequence[str]]) -> None:
         here, there = column.name in names["events"], column.name in names["checkpoints"]
         if column.when not in ("", TRIALS) and here != there:
             raise ValueError(f"{'checkpoints' if here else 'events'}/{column.name}: missing")
-    for table, found in names.items():
-        if len(set(found)) != len(found):
+    for table, columns in names.items():
+        if len(set(columns)) != len(columns):
             raise ValueError(f"{table}: a column appears twice")
-        if table in ("observables", "particles") and not any(name.endswith("/time") for name in found):
+        if table in ("observables", "particles") and not any(name.endswith("/time") for name in columns):
             raise ValueError(f"{table}: no times")
 
 
 def check_species(species: np.ndarray, names: Sequence[str]) -> None:
-    """Check that each species has a disc and a name of its own."""
+    """Check that each species has at least one disc and a unique name."""
     number = np.bincount(species, minlength=len(names))[: len(names)]
     if not number.all():
         raise ValueError(f"no disc of species {number.argmin()}")
@@ -305,13 +310,13 @@ def check_boundary(words: object) -> None:
 
 
 def check_images(periodic: bool, names: Sequence[str]) -> None:
-    """Check that discs have images if and only if sides are periodic. names: names of the columns of checkpoints."""
+    """Check that discs have images if and only if sides are periodic. names: columns of the checkpoints."""
     if periodic != (IMAGE.name in names):
         raise ValueError(f"{'missing, with' if periodic else 'present, without'} periodic sides")
 
 
 def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
-    """Check that the first walls are the sides of the box, and the others segments in it."""
+    """Check that the first walls are the sides of the box, and that the remaining walls are segments inside it."""
     for wall, ends in zip(walls, side_ends(box), strict=False):
         if (wall.start, wall.end) != ends:
             raise ValueError(f"not the sides of a box of {box[0]:g} by {box[1]:g} (got {wall.start} to {wall.end})")

@@ -1,8 +1,8 @@
-"""The schema of a log: every dataset with its type, unit and chunk, and the creation of an empty file.
+"""The schema of a log: the type, unit and chunk of every dataset, and the creation of an empty file.
 
-A table has a dataset for each column. The tables are `runs`, whose last row has the scene of the log, `events`,
+A table has one dataset for each column. The tables are `runs`, whose last row contains the scene of the log, `events`,
 `checkpoints`, `observables`, the snapshots in `particles`, and `summary`, which has rows once the run has reached its
-end. Only the commit record (`commit.py`) has the number of valid rows of each table.
+end. The number of valid rows of each table is stored only in the commit record (`commit.py`).
 """
 
 import importlib.metadata
@@ -34,10 +34,10 @@ from idealgas.state import Gas
 
 FORMAT = "idealgas log"
 VERSION = 1
-"""Version of the format, to be raised when a reader of the previous one would misread a log."""
+"""Version of the format, to be increased if a reader of the previous version would misread a log."""
 H5MD_VERSION = (1, 1)
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
-"""Small blocks do not extend over two pages of the file, so that a killed process leaves no half of one."""
+"""Small blocks of the file do not extend over two pages, so that a killed process never leaves half a block."""
 
 
 class Wall(NamedTuple):
@@ -46,7 +46,7 @@ class Wall(NamedTuple):
     Attributes:
         name: name of the wall.
         start: (x, y) of its first end, length.
-        end: (x, y) of its other end, length.
+        end: (x, y) of its second end, length.
     """
 
     name: str
@@ -55,19 +55,19 @@ class Wall(NamedTuple):
 
 
 CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Column("epoch", "i8"))
-"""Columns of all checkpoints: time, and the numbers of event rows and of epochs before it."""
+"""Columns of all checkpoints: the time, and the numbers of event rows and of epochs before it."""
 CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
 """Default columns of a checkpoint with an entry for each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
-"""Columns that all observables share, with the number of epochs as step, and all elements of snapshots."""
+"""Columns that all observables, or all elements of snapshots, share; the step of an observable counts epochs."""
 CHANGE_COLUMNS = (Column("time", "f8", (), "time"), Column("setting", "S256"))
-"""Changes that a program made to the scene during the run."""
+"""Columns with the changes that a program made to the scene during the run."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
-"""Texts of the run, and of each run that resumed it."""
+"""Columns with the scene and command of the run, and of each run that resumed it."""
 COUNTED = {"thermostat_collisions": Kind.THERMOSTAT, "steered": Kind.STEERED, "escaped": Kind.ESCAPED}
-"""Kinds of events that only logs have whose checkpoints have these columns."""
+"""Optional kinds of events, by the column of checkpoints that counts them; other logs do not have these events."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
-"""Columns of the summary, with a row for each field; the values are JSON."""
+"""Columns of the summary, which has a row for each field; the values are JSON."""
 DISC_COLUMNS = (
     POSITION,
     VELOCITY,
@@ -79,9 +79,9 @@ ID = Column("id", "u4")
 BOX, GRAVITY = Column("box", "f8", (2,), "length"), Column("gravity", "f8", (2,), "length/time^2")
 ENDPOINTS = Column("endpoints", "f8", (2, 2), "length")
 NAME = Column("name", "S")
-"""Columns of the header: of the discs, the box, the walls, and names of walls and species."""
+"""Columns of the header, which describe the discs, the box, the walls, and the names of walls and species."""
 MOST_NAME = 1024
-"""Largest size of a name, bytes. Tables of other programs repeat it in every row."""
+"""Largest size of a name, bytes; it is limited because exported tables repeat names in every row."""
 
 ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
 PACKAGES = ("numpy", "numba", "h5py", "isal")
@@ -89,15 +89,15 @@ VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
 """Attributes of the root and of the group `versions`."""
 
 SHORTEST_CHUNK = 8192
-"""Least number of event rows in a chunk; a short run may be resumed to a later end."""
+"""Smallest number of event rows in a chunk; even a short run may later be resumed to a later end."""
 DISC_RECORDS = 4096
-"""Approximate number of disc records in a chunk of checkpoints or snapshots, which has at least one state."""
+"""Approximate number of disc records in a chunk of checkpoints or snapshots; a chunk has at least one state."""
 SAMPLES = 1024
 """Number of rows in a chunk of `observables`."""
 SUMMARY_ROWS = 64
 """Number of rows in a chunk of `summary`."""
 SCENE_SLACK = 256
-"""Bytes by which the text of a scene may grow when its run gets another end."""
+"""Bytes by which the text of a scene may grow when the run is resumed to another end."""
 COMMAND_SIZE = 1024
 """Largest size of a command, bytes."""
 
@@ -109,16 +109,16 @@ VECTORS: dict[str, Sequence[str]] = {
     **{name: (f"{name}_x", f"{name}_y") for name in ("kinetic_heat_flow", "collision_heat_flow")},
     "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
 }
-"""Component names that do not depend on the walls."""
+"""Names of components that do not depend on the walls."""
 
 
 def box_walls(box: tuple[float, float]) -> list[Wall]:
-    """Sides of the box as walls: left, right, bottom, top."""
+    """Return the sides of the box as walls: left, right, bottom, top."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
 
 
 def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
-    """Component names of event columns and observables. walls: names of the walls of a log."""
+    """Return the names of the components of event columns and observables. walls: names of the walls of a log."""
     faces = {
         name: [f"{name}_{face}" for face in face_names(walls)]
         for name in ("face_normal_impulse", "face_tangential_impulse", "face_hits")
@@ -130,20 +130,20 @@ def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
 
 @dataclass(frozen=True)
 class LogLayout:
-    """Everything about a log that is known before its run.
+    """The layout of a log, which is determined before the run.
 
     Attributes:
-        walls: walls by their numbers in events.
+        walls: walls in the order of their numbers in events.
         boundary: "none" or "periodic", along x and along y.
         gravity: acceleration between events, length/time².
-        disc_columns: (N,) further constants and start values of the discs.
-        event_columns: columns of events; without any the log has no events.
+        disc_columns: (N,) further constants and initial values of the discs.
+        event_columns: columns of events; if there are none, the log has no events.
         checkpoint_arrays: columns of checkpoints with an entry for each disc.
-        checkpoint_values: other columns of checkpoints.
+        checkpoint_values: all other columns of checkpoints.
         observables: columns of samples.
-        snapshot_arrays: columns of snapshots with an entry for each disc; without any the log has no snapshots.
+        snapshot_arrays: columns of snapshots with an entry for each disc; if there are none, the log has no snapshots.
         steered: whether a program may change the scene during the run.
-        most_rows: largest number of event rows of the run, if that is less than a full chunk.
+        most_rows: largest number of event rows of the run, if it is less than a full chunk.
         compression: "gzip" or "none".
     """
 
@@ -189,9 +189,13 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
-    """Create empty tables, without those that have no columns, and the commit record, which lists their datasets.
+    """Create an empty table for each kind of rows that has columns, and the commit record, which lists their datasets.
 
-    text_sizes: size of each text in a row of `runs`, bytes.
+    Args:
+        file: the new file.
+        discs: number of discs.
+        layout: layout of the log.
+        text_sizes: size of each text in a row of `runs`, bytes.
     """
     paths: list[str] = []
 
@@ -207,7 +211,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
         paths.append(path)
 
     def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
-        """Add elements of H5MD with common steps and times."""
+        """Add elements of H5MD that share their steps and times."""
         first = f"{group}/{columns[0].name}"
         for shared in SAMPLE_COLUMNS:
             add(f"{first}/{shared.name}", shared, rows)
@@ -222,17 +226,17 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
     event_rows = max(SHORTEST_CHUNK, min(BLOCK, 1 << (layout.most_rows - 1).bit_length()))
     for column in layout.event_columns:
         add(f"events/{column.name}", column, event_rows)
-    some = max(1, DISC_RECORDS // discs)
+    states = max(1, DISC_RECORDS // discs)
     for column in (*CHECKPOINT_COLUMNS, *layout.checkpoint_values):
-        add(f"checkpoints/{column.name}", column, some)
+        add(f"checkpoints/{column.name}", column, states)
     for column in layout.checkpoint_arrays:
-        add(f"checkpoints/{column.name}", column._replace(shape=(discs, *column.shape)), some)
+        add(f"checkpoints/{column.name}", column._replace(shape=(discs, *column.shape)), states)
     if layout.observables:
         add_elements("observables", layout.observables, SAMPLES)
     if layout.snapshot_arrays:
         arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.snapshot_arrays]
-        add_elements("particles/discs", arrays, some)
-        box = file.create_group("particles/discs/box")  # which H5MD requires, as links to the constants of the discs
+        add_elements("particles/discs", arrays, states)
+        box = file.create_group("particles/discs/box")  # required by H5MD, like the links to the constants of the discs
         box.attrs.update({"dimension": 2, "boundary": file["box"].attrs["boundary"]})
         box["edges"] = file["box"]
         for name in ("id", "species", "mass", "radius"):
@@ -245,7 +249,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
 
 
 def _create(file: h5py.File, path: str, unit: str, layout: LogLayout, **options: Any) -> None:
-    """Create a dataset, with checksums and the compression of the log."""
+    """Create a dataset with checksums and with the compression of the log."""
     if layout.compression == "gzip":
         options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     dataset = file.create_dataset(path, fletcher32=True, **options)
@@ -255,14 +259,14 @@ def _create(file: h5py.File, path: str, unit: str, layout: LogLayout, **options:
 
 @cache
 def _versions() -> dict[str, np.bytes_]:
-    """Versions of the programs that write the log."""
+    """Return the versions of the programs that write the log."""
     packages = {name: importlib.metadata.version(name) for name in PACKAGES}
     versions = {"idealgas": __version__, "python": platform.python_version(), **packages}
     return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 
 
 def _text(texts: Sequence[str]) -> np.ndarray:
-    """UTF-8 strings of fixed length, as HDF5 stores those of variable length without checksums."""
+    """Return UTF-8 strings of fixed length; HDF5 does not store strings of variable length with checksums."""
     coded = [text.encode() for text in texts]
     size = max([1, *map(len, coded)])
     return np.array(coded, h5py.string_dtype("utf-8", size))

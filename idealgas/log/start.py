@@ -1,4 +1,4 @@
-"""A state of a log as the start of another scene: its discs, and the scene that continues from it."""
+"""Start another scene from a state of a log: read its discs, or write the scene that continues from it."""
 
 from collections import Counter
 from collections.abc import Container
@@ -18,10 +18,10 @@ from idealgas.toml.dump import dump_document
 
 
 def read_state(path: Path, time: float | Literal["end"]) -> tuple[dict[str, Any], float]:
-    """Columns of the discs of a log at a time, and their deepest overlap there beyond rounding, length.
+    """Return the columns of the discs of a log at a time, and their deepest overlap beyond rounding, length.
 
     Raises:
-        StartError: if the log cannot be read, or has no positions at this time.
+        StartError: if the log cannot be read or has no positions at this time.
     """
     try:
         with open_log(path) as log:
@@ -59,18 +59,23 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
 
 
 def _in_step(time: float, rate: float, size: tuple[float, float]) -> bool:
-    """Whether the image above a sheared box is ahead by whole widths of the box at a time, but for rounding."""
+    """Return whether the image above a sheared box is ahead by whole widths of the box, except for rounding."""
     widths = rate * size[1] * time / size[0]
     return abs(widths - round(widths)) <= 1e-12 * max(widths, 1.0)
 
 
 def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
-    """TOML text of a scene that starts from the state of a log, with pistons and values in time as they are then.
+    """Return the TOML text of a scene that starts from a state of a log.
 
-    time: of the state. source: path of the log in the scene.
+    Pistons and values that change in time continue as they are at the time of the state.
+
+    Args:
+        log: the log.
+        time: time of the state.
+        source: path of the log that is written into the scene.
 
     Raises:
-        UserError: if the log has no positions at this time, or if its pistons are not known then.
+        UserError: if the log does not contain the positions of the discs or pistons at this time.
     """
     time, scene = _instant(log, time), log.scene
     columns, _ = _columns(log, time)
@@ -96,7 +101,7 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
 
 
 def _known(wall: Any, species: Container[str]) -> Any:
-    """A wall that none but known species pass; one for others alone is closed to all discs."""
+    """Return a wall that refers only to the given species; if none of its species remains, no disc passes it."""
     if wall.permeable_to is None:
         return wall
     names = tuple(name for name in wall.permeable_to if name in species)
@@ -105,14 +110,14 @@ def _known(wall: Any, species: Container[str]) -> Any:
 
 
 def _pistons_at(log: Log, scene: Scene, time: float) -> tuple[Any, ...]:
-    """Tables of the pistons at a time at which the log has a sample."""
+    """Return the tables of the pistons at a time; the log has to have a sample at this time."""
     times, position = log.observables["piston_position"]
     k = int(np.abs(times - time).argmin()) if len(times) else 0
     if not len(times) or times[k] != time:
         nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
         raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
-    found, velocities = [], log.observables["piston_velocity"][1][k]
+    pistons, velocities = [], log.observables["piston_velocity"][1][k]
     for piston, place, velocity in zip(scene.piston, position[k], velocities, strict=True):
-        own = {"velocity": float(velocity)} if piston.mass is not None else {}
-        found.append(piston.after(time).model_copy(update={"position": float(place), **own}))
-    return tuple(found)
+        motion = {"velocity": float(velocity)} if piston.mass is not None else {}
+        pistons.append(piston.after(time).model_copy(update={"position": float(place), **motion}))
+    return tuple(pistons)

@@ -1,4 +1,4 @@
-"""Writing a log during its run: buffers circulate between the engine and a thread that stores them."""
+"""Write a log during its run: buffers circulate between the engine and a thread that stores them."""
 
 import errno
 import json
@@ -36,7 +36,7 @@ FLUSH_SECONDS = 1.0
 class _Rows(NamedTuple):
     """Rows `start` to `stop` of the columns `data` for a table, queued for the thread.
 
-    buffer: buffer of the data that returns to the pool; None without one.
+    If `buffer` is not None, the buffer returns to the pool when the rows are stored.
     """
 
     table: TableWriter
@@ -52,10 +52,10 @@ _END = object()
 class LogWriter:
     """A log that is being written; a context manager that closes it as interrupted unless `close` is called first.
 
-    Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive a
-    kill of the process, and with `fsync` a power failure that leaves no block of the disk half written. A failure to
-    store data (a full disk, a removed file) raises OutputError with exit code 1 in the next call; what was committed
-    before remains readable.
+    Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive if
+    the process is killed, and with `fsync` also a power failure, unless it leaves a block of the disk half written. If
+    data cannot be stored (a full disk, a removed file), the next call raises OutputError with exit code 1, and
+    everything committed before remains readable.
 
     Attributes:
         path: path of the log.
@@ -85,8 +85,8 @@ class LogWriter:
             seed: seed of the run.
             command: command line of the run.
             trajectory: version of the laws of motion.
-            fsync: whether each commit waits until it is on the disk.
-            force: whether an existing log is overwritten.
+            fsync: whether each commit is forced to the disk.
+            force: whether to overwrite an existing log.
 
         Raises:
             OutputError: if the file exists (without `force`) or cannot be written.
@@ -117,7 +117,7 @@ class LogWriter:
             give_name(part, path, force, fsync)
         except (OSError, RuntimeError) as error:
             raise storage_error(path, error) from error
-        except ValueError as error:  # larger than any log that can be read
+        except ValueError as error:  # the log would be larger than any log that can be read
             raise OutputError(f"{path}: {error}") from error
         finally:
             part.unlink(missing_ok=True)
@@ -137,11 +137,11 @@ class LogWriter:
 
         Args:
             path: path of the log.
-            checkpoint: index into `Log.checkpoints`, None to start again.
-            fsync: whether each commit waits until it is on the disk.
+            checkpoint: index into `Log.checkpoints`; None to start again.
+            fsync: whether each commit is forced to the disk.
             scene_text: scene of the run that continues the log, TOML; None if it is not a new run.
-            command: command line of that run.
-            commit: commit that the log must still have, None for any.
+            command: command line of the new run.
+            commit: commit that the log must still have; None for any.
 
         Raises:
             LogError: if there is no such checkpoint, or if the log has another commit.
@@ -164,7 +164,7 @@ class LogWriter:
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
         self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
-        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the last one returned is still in the caches
+        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # as the buffer returned last is still in the cache
         for _ in range(BUFFERS if self._events else 0):
             self._free.put(empty_batch(BLOCK + 1, columns_named(self._names)))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
@@ -175,9 +175,9 @@ class LogWriter:
     # ── the caller's side ──
 
     def batch(self) -> EventBatch:
-        """A buffer to fill, one at a time. Waits while all are in use.
+        """Return a buffer to fill; only one can be filled at a time. Waits while all buffers are in use.
 
-        It has room for the rest of the chunk in the file, and one row more for the second row of a pair.
+        The buffer has room for the rest of the chunk in the file, and for one more row, the second row of a pair.
         """
         self._check_open()
         self._lent = self._free.get()
@@ -186,7 +186,7 @@ class LogWriter:
 
     @property
     def behind(self) -> bool:
-        """Whether more than one buffer waits to be stored."""
+        """Whether more than one buffer is waiting to be stored."""
         return self._events is not None and self._free.qsize() < BUFFERS - 1
 
     def write(self, rows: int) -> None:
@@ -205,8 +205,8 @@ class LogWriter:
         Args:
             time: time of the state.
             epoch: number of epochs before it.
-            arrays: values of each disc, and other arrays, by declared name; they are copied.
-            values: single numbers, by declared name.
+            arrays: arrays by declared name, such as the values of each disc; they are copied.
+            values: single numbers by declared name.
         """
         given = {"time": time, "row": self.rows, "epoch": epoch, **arrays, **(values or {})}
         self._put_row("checkpoints", given)
@@ -216,19 +216,19 @@ class LogWriter:
         self._put_row("observables", {"time": time, "step": epoch, **values})
 
     def change(self, time: float, setting: str) -> None:
-        """Store a change of the scene from a time on; it holds once a checkpoint follows."""
+        """Store a change of the scene from a time on; it takes effect once a checkpoint follows."""
         self._put_row("changes", {"time": time, "setting": setting.encode()})
 
     def snapshot(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
-        """Store a snapshot of all discs, by declared name. step: its number. The arrays are copied."""
+        """Store a snapshot of all discs. step: number of the snapshot; arrays: copied, by declared name."""
         self._put_row("particles", {"time": time, "step": step, **arrays})
 
     def close(self, summary: Mapping[str, Any] | None = None) -> None:
         """Store all queued data and close the file.
 
         Args:
-            summary: fields of the summary, JSON values; without it the run counts as interrupted. Its `end_time` is the
-                time up to which the log covers the motion.
+            summary: fields of the summary, as JSON values; without them the run counts as interrupted. `end_time` is
+                the time up to which the log covers the motion.
         """
         if not self._thread.is_alive():
             return
@@ -276,7 +276,7 @@ class LogWriter:
         self._queue.put(item)
 
     def _check_open(self) -> None:
-        """Raise OutputError if nothing can be stored any more."""
+        """Raise OutputError if nothing more can be stored."""
         self._raise()
         if not self._thread.is_alive():
             raise OutputError(f"{self.path}: this log is closed")
@@ -304,13 +304,13 @@ class LogWriter:
                 self._free.put(item.buffer)
 
     def _store(self, item: object) -> None:
-        """Store the rows of an item, if any, and commit when it is due; a first checkpoint is due immediately."""
+        """Store the rows of an item, if any, and commit if due; the commit of a first checkpoint is due immediately."""
         if isinstance(item, _Rows):
             item.table.append(item.start, item.stop, item.data)
             delay = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
             self._due = min(self._due, time.monotonic() + delay)
         if item is _END:
-            for _ in range(2):  # so that both slots of the record have the end
+            for _ in range(2):  # so that both slots of the record contain the end
                 self._commit(tails=True, last=True)
         elif time.monotonic() >= self._due:
             self._commit(tails=True)
@@ -318,7 +318,7 @@ class LogWriter:
             self._commit(tails=False)
 
     def _commit(self, tails: bool, last: bool = False) -> None:
-        """Commit all rows; without `tails` only event rows in full chunks. last: whether it is the end of the log."""
+        """Commit all rows; without `tails`, event rows only in full chunks. last: whether the log ends here."""
         if self._file.removed:
             raise FileNotFoundError(errno.ENOENT, "the file was removed")
         for table in self._tables.values():
@@ -332,13 +332,13 @@ class LogWriter:
 
 
 def _file_in_memory() -> h5py.File:
-    """A new HDF5 file in memory: HDF5 may crash when it creates a file on a disk that is full or fails."""
-    name = uuid.uuid4().hex  # HDF5 refuses a second file of one name, also in memory
+    """Create an HDF5 file in memory, as HDF5 may crash when it creates a file on a disk that is full or fails."""
+    name = uuid.uuid4().hex  # HDF5 refuses a second file of the same name, even in memory
     return h5py.File(name, "w", driver="core", backing_store=False, **OPTIONS, **schema.PAGES)
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:
-    """A row of `runs`, with a truncated command. Raises ValueError for a scene that does not fit."""
+    """Return a row of `runs`, with a truncated command. Raises ValueError if the scene does not fit."""
     scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
     line = command.encode(errors="backslashreplace")  # file names need not be UTF-8
     scene, cut = scene_text.encode(), line[:command_size].decode(errors="ignore").encode()

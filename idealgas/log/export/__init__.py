@@ -1,1 +1,1 @@
-"""Logs as files that other programs read."""
+"""Export of logs to files that other programs read."""

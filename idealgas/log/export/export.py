@@ -1,4 +1,4 @@
-"""Export of logs for other programs: tables of events or discs, and frames of all discs."""
+"""Export logs for other programs: tables of events or discs, and frames of all discs."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -21,9 +21,9 @@ class Format(NamedTuple):
 
     Attributes:
         ending: file name extension.
-        write: function that writes frames at some times, all event rows or all flights, and returns their number.
-        has_events: whether the format has event rows and flights.
-        streams: whether `write` takes an open binary file, which it writes from start to end, instead of a path.
+        write: function that writes frames at given times, all event rows or all flights, and returns their number.
+        has_events: whether the format can contain event rows and flights.
+        streams: whether `write` takes an open binary file, which it writes sequentially, instead of a path.
     """
 
     ending: str
@@ -52,17 +52,17 @@ def export(
     rows: Rows = "events",
     parts: int | None = None,
 ) -> int:
-    """Write the states at some times, all events or all flights, to a file.
+    """Write the states at given times, all events or all flights to a file.
 
     Args:
         log: log to export, or its path.
-        kind: name of one of FORMATS.
-        output: path, where the file appears when it is complete; or an open binary file, such as a pipe, for a format
-            that streams.
+        kind: name of a format in FORMATS.
+        output: path of the file, which appears there when it is complete; or an open binary file, such as a pipe, for
+            a format that streams.
         times: times of the frames in increasing order; None for events or flights.
-        force: whether an existing file of the same format is overwritten.
-        rows: "events" or "flights", the motion of each disc from one of its events to the next.
-        parts: number of Parquet files in a new folder, into which events or flights are divided in time.
+        force: whether to overwrite an existing file of the same format.
+        rows: "events", or "flights" for the motion of each disc from one of its events to the next.
+        parts: number of Parquet files into which events or flights are divided in time; `output` is then a new folder.
 
     Returns:
         Number of frames or rows.
@@ -74,40 +74,40 @@ def export(
     """
     if kind not in FORMATS:
         raise unknown("format", kind, tuple(FORMATS))
-    made = FORMATS[kind]
+    file_format = FORMATS[kind]
     if rows not in tables.END_OF:
         raise unknown("table of rows", rows, tuple(tables.END_OF))
     if parts is not None and (kind != "parquet" or times is not None or parts < 1):
         raise LogError(f"parts are at least one file of events or flights in parquet (got {parts}, {kind})")
-    if times is None and not made.has_events:
+    if times is None and not file_format.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
     if times is None:
         log.require_events()
-    if times is not None and not made.has_events and not log.has_positions:
+    if times is not None and not file_format.has_events and not log.has_positions:
         raise LogError(f"{log.path}: its discs have no positions ({log.scene.run.method})")
     try:
         if parts is not None:
             return tables.write_parts(log, rows, Path(str(output)), parts, force)
-        with _target(made, kind, output, force, log) as target:
-            return made.write(log, rows if times is None else times, target)
+        with _target(file_format, kind, output, force, log) as target:
+            return file_format.write(log, rows if times is None else times, target)
     except ModuleNotFoundError as error:
         raise LogError(f"{kind} requires {error.name}: {install('export')}") from error
 
 
 @contextmanager
 def _target(
-    made: Format, kind: Kind, output: str | os.PathLike[str] | BinaryIO, force: bool, log: Log
+    file_format: Format, kind: Kind, output: str | os.PathLike[str] | BinaryIO, force: bool, log: Log
 ) -> Iterator[Path | BinaryIO]:
-    """Path or file for a format to write to."""
+    """Yield the path or the open file to which a format writes."""
     if isinstance(output, (str, os.PathLike)):
-        with written(output, made.ending, force, [log.path]) as part:
-            if not made.streams:
+        with written(output, file_format.ending, force, [log.path]) as part:
+            if not file_format.streams:
                 yield part
                 return
             with part.open("wb") as file:
                 yield file
         return
-    if not made.streams:
+    if not file_format.streams:
         allowed = ", ".join(name for name, each in FORMATS.items() if each.streams)
         raise LogError(f"{kind} cannot be written to a pipe (allowed {allowed})")
     try:
@@ -120,7 +120,15 @@ def _target(
 
 
 def frame_times(log: Log, choice: str) -> np.ndarray:
-    """Times of frames for `N`, so many from start to end of the log, or `every=DT`. Raises LogError otherwise."""
+    """Return the times of frames.
+
+    Args:
+        log: the log.
+        choice: the number of frames from the start to the end of the log, or `every=DT`.
+
+    Raises:
+        LogError: for any other choice.
+    """
     every, equals, text = choice.rpartition("=")
     start, end = log.start_time, log.end_time
     try:

@@ -1,4 +1,4 @@
-"""Frames of all discs as GSD, extended XYZ, and H5MD in three dimensions."""
+"""Write frames of all discs as GSD, extended XYZ, or H5MD in three dimensions."""
 
 import errno
 import io
@@ -19,9 +19,10 @@ from idealgas.log.reader import Log
 
 
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
-    """Write GSD with HOOMD's schema: two dimensions, the origin in the middle of the box, float32.
+    """Write GSD with HOOMD's schema, in two dimensions and float32, with the origin in the middle of the box.
 
-    GSD has no walls, so its box counts as periodic. Its names are ASCII. Discs that have left the gas are at nan.
+    GSD has no walls, so programs treat its box as periodic. Names of species are written in ASCII. Discs that have left
+    the gas have the position nan.
     """
     import gsd.hoomd
 
@@ -49,7 +50,7 @@ def _append_gsd(file: Any, log: Log, times: Sequence[float]) -> None:
         particles.velocity = _with_zeros(state.velocity)
         if state.image is not None:
             particles.image = _with_zeros(state.image)
-        if step == 0:  # other frames inherit them
+        if step == 0:  # later frames inherit these values
             particles.types = [name.encode("ascii", "backslashreplace").decode() for name in discs.species_names]
             particles.typeid, particles.mass, particles.diameter = discs.species, discs.mass, 2 * discs.radius
         file.append(frame)
@@ -70,10 +71,10 @@ PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:
 
 
 def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
-    """Write extended XYZ with 17 digits, so that every float64 is exact. The depth of the box is the largest diameter.
+    """Write extended XYZ with enough digits to represent every float64 exactly.
 
-    `species` is a species' name if that is the symbol of a chemical element, and otherwise X. Discs that have left the
-    gas are left out.
+    The depth of the box is the largest diameter. `species` is the name of a species if it is the symbol of a chemical
+    element, and X otherwise. Discs that have left the gas are omitted.
     """
     discs, (width, height) = log.discs, log.box
     pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
@@ -96,10 +97,10 @@ def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
 
 
 def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
-    """Write H5MD 1.1 with a third coordinate, zero, in the group that MDAnalysis expects.
+    """Write H5MD 1.1 with a third coordinate equal to zero, in the group that MDAnalysis expects.
 
-    A box without periodic sides has no edges, as MDAnalysis would regard them as periodic. Discs that have left the gas
-    are at nan.
+    Without periodic sides, the edges of the box are omitted because MDAnalysis would treat them as periodic. Discs that
+    have left the gas have the position nan.
     """
     with _Target(path) as target, h5py.File(target, "w", libver=("v110", "v110")) as file:
         _fill_h5md3d(file, log, times)
@@ -109,10 +110,10 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
 
 class _Target(io.RawIOBase):
-    """A file for HDF5, which crashes if a write fails; after a failure this file ignores all calls.
+    """A file for HDF5, which would crash if a write failed: after a failure, this file ignores all calls.
 
     Attributes:
-        failure: error of the failed call; None without one.
+        failure: error of the call that failed; None if none has.
     """
 
     def __init__(self, path: Path) -> None:
@@ -180,11 +181,11 @@ def _fill_h5md3d(file: h5py.File, log: Log, times: Sequence[float]) -> None:
 
 
 def _share_times(group: h5py.Group, name: str) -> None:
-    """Link the steps and times of an element to those of the positions."""
+    """Link the steps and times of an element to the steps and times of the positions."""
     for shared in ("step", "time") if name != "position" else ():
         group[f"{name}/{shared}"] = group[f"position/{shared}"]
 
 
 def _with_zeros(vectors: np.ndarray) -> np.ndarray:
-    """Vectors (N, 3) with a third component 0, from (N, 2)."""
+    """Return vectors (N, 3) with third component 0 from vectors (N, 2)."""
     return np.pad(vectors, ((0, 0), (0, 1)))

@@ -1,4 +1,4 @@
-"""CSV and Parquet, written block by block with pyarrow."""
+"""Write CSV and Parquet, block by block, with pyarrow."""
 
 import re
 import shutil
@@ -16,32 +16,41 @@ from idealgas.log.dataframes import KIND_NAMES, Columns, flat_discs, flat_events
 from idealgas.log.reader import Log
 
 Rows = Literal["events", "flights"]
-"""Rows of a table."""
+"""What the rows of a table describe, unless they describe discs at given times."""
 
 END_OF = {"events": "time", "flights": "end"}
-"""Column with the time of a row, in which rows are in order."""
+"""Column with the time by which the rows are ordered."""
 
 
 def write_csv(log: Log, times: Sequence[float] | Rows, file: BinaryIO) -> int:
-    """Write CSV with a row for each disc and time, or for each event row or flight."""
+    """Write CSV with a row per disc and time, event row or flight; return the number of frames or rows."""
     from pyarrow import csv
 
     return _write(log, times, partial(csv.CSVWriter, file))
 
 
 def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
-    """Write Parquet with a row for each disc and time, or for each event row or flight."""
+    """Write Parquet with a row per disc and time, event row or flight; return the number of frames or rows."""
     from pyarrow import parquet
 
     return _write(log, times, partial(parquet.ParquetWriter, str(path)))
 
 
 def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = False) -> int:
-    """Write event rows or flights as Parquet files in a new folder, and return their number.
+    """Write event rows or flights as Parquet files in a new folder, and return the number of rows.
 
-    Each file has the columns, and the rows that end in one of so many equal parts of the time of the log. The folder
-    appears when it is complete; one that holds only such files is replaced with `force`. Raises OutputError if it
-    cannot be made.
+    The time of the log is divided into equal parts, and each file has all columns of the rows that end in one part. The
+    folder appears when it is complete.
+
+    Args:
+        log: log to export.
+        what: "events" or "flights".
+        folder: the new folder.
+        number: number of files.
+        force: whether to replace an existing folder that contains only such files.
+
+    Raises:
+        OutputError: if the folder cannot be written.
     """
     import pyarrow
     from pyarrow import parquet
@@ -82,7 +91,7 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
 
 
 def _replace(place: Path, folder: Path) -> None:
-    """Give a complete folder its name; a previous one with this name is removed last."""
+    """Rename a complete folder to its final name; a previous folder with this name is removed last."""
     if not folder.exists():
         place.rename(folder)
         return
@@ -101,7 +110,7 @@ def _is_part(path: Path) -> bool:
 
 
 def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any], Any]) -> int:
-    """Write blocks of rows, of which the first one, which may be empty, has the columns."""
+    """Write blocks of rows. The first block, which may be empty, determines the columns."""
     import pyarrow
 
     writer, rows = None, 0
@@ -125,7 +134,7 @@ def _columns(log: Log, times: Sequence[float] | Rows) -> Iterator[Columns]:
 
 
 def _flight_columns(log: Log) -> Iterator[Columns]:
-    """Whole flights; the kind of one that no event ends is empty."""
+    """Yield whole flights; the kind is empty if a flight does not end with an event."""
     kinds, species = np.array([*KIND_NAMES, ""]), np.array(log.discs.species_names)
     for columns in flat_flights(log.flights()):
         del columns["block"]

@@ -1,1 +1,1 @@
-"""The HDF5 file of a log: chunks, tables, the commit record, and the file consistency flags."""
+"""The HDF5 file of a log: its chunks, tables, commit record and file consistency flags."""

@@ -1,8 +1,8 @@
-"""Bytes of a chunk: HDF5's filter pipeline (shuffle, deflate, fletcher32) in both directions, at the speed of memory.
+"""Encode and decode chunks with HDF5's filter pipeline (shuffle, deflate, fletcher32), at the speed of memory.
 
-A chunk may skip filters of its dataset's pipeline, by the bits of its filter mask. Full chunks of a compressed dataset
-are shuffled and deflated (a zlib stream has its own Adler-32). A chunk that is still growing is stored uncompressed
-with its fletcher32, so that it keeps its size and its position in the file.
+A chunk may skip filters of the pipeline of its dataset; the bits of its filter mask say which. Full chunks of a
+compressed dataset are shuffled and deflated; they need no fletcher32, as a zlib stream contains an Adler-32. A chunk
+that is still growing is stored uncompressed with a fletcher32, so that it keeps its size and its position in the file.
 """
 
 import struct
@@ -14,36 +14,36 @@ from idealgas.jit import inline, njit
 
 SHUFFLE, DEFLATE, FLETCHER32 = 1, 2, 4
 COMPRESSED, PLAIN = FLETCHER32, SHUFFLE | DEFLATE
-"""Filter masks of the chunks of a compressed dataset; the bits are the filters that are skipped."""
+"""Filter masks of compressed and of growing chunks of a compressed dataset; each bit is a filter that is skipped."""
 
 _STORED_BLOCK, _BLOCK_HEADER = 65_535, 5
-"""Bytes of a full stored block of a deflate stream, and of its header."""
+"""Size of a full stored block of a deflate stream, and of its header, bytes."""
 
 _SAMPLE = 1024
-"""Bytes of a plane that decide whether it is noise."""
+"""Number of bytes of a plane that are tested to decide whether it is noise."""
 
 _TILE = 2048
 """Number of items that are shuffled while they are in the first-level cache."""
 
 _WIDTHS = (4, 8)
-"""Bytes of the items that compiled functions shuffle; others use NumPy."""
+"""Sizes of the items that compiled functions shuffle, bytes; items of other sizes are shuffled with NumPy."""
 
 _WORTH_LOADING = 64 * 2**20
-"""Bytes that NumPy encodes or decodes in about the time that loading compiled functions takes."""
+"""Number of bytes that NumPy encodes or decodes in about the time that loading the compiled functions takes."""
 
 _LARGEST_KEPT = 31 * 2**20
-"""Nearly the bytes of the largest block that glibc can be made to keep."""
+"""Size slightly below the largest block that glibc can be made to keep, bytes."""
 
 _RESERVED = 2**20
-"""Bytes for which memory is kept: more than a chunk of events has."""
+"""Size of the memory that is always kept, bytes: larger than a chunk of events."""
 
 _WORDS = 256
-"""Number of 16-bit words whose sum, each times its index, fits in 32 bits."""
+"""Number of 16-bit words for which the sum of word times index fits in 32 bits."""
 
 
 @inline
 def _gather_byte(items, byte, start, stop, out, place):
-    """Copy one byte of each item from `start` to before `stop` to consecutive bytes of `out`."""
+    """Copy one byte of each item from `start` up to, but not including, `stop` to consecutive bytes of `out`."""
     shift = np.uint64(8 * byte)
     for k in range(stop - start):
         out[np.uintp(place + k)] = np.uint8(items[np.uintp(start + k)] >> shift)
@@ -51,13 +51,13 @@ def _gather_byte(items, byte, start, stop, out, place):
 
 @njit
 def shuffle(items, noise, blocks, planes):
-    """Gather the bytes of items in planes: the first bytes of all items, the second bytes, and so on.
+    """Gather the bytes of items in planes: the first bytes of all items, then the second bytes, and so on.
 
     Args:
-        items: (n,) unsigned.
-        noise: number of planes that are written to `blocks`.
-        blocks: bytes of deflate's stored blocks, each with room for its header.
-        planes: bytes of the other planes.
+        items: (n,) unsigned integers.
+        noise: number of planes that are written to `blocks`, the first ones.
+        blocks: output, bytes of deflate's stored blocks, each with room for its header.
+        planes: output, bytes of the remaining planes.
     """
     n = len(items)
     for first in range(0, n, _TILE):
@@ -75,7 +75,7 @@ def shuffle(items, noise, blocks, planes):
 
 
 def _shuffle_in_numpy(items, noise, blocks, planes):
-    """Do the work of `shuffle`."""
+    """Do the same as `shuffle` in NumPy."""
     n, words = len(items), items.view(np.uint8).reshape(-1, items.itemsize).T
     planes.reshape(-1, n)[:] = words[noise:]
     stored = words[:noise].reshape(-1)
@@ -86,7 +86,7 @@ def _shuffle_in_numpy(items, noise, blocks, planes):
 
 @inline
 def _scatter_byte(items, byte, start, stop, plane):
-    """Set one byte of each item from `start` to before `stop`; the first byte clears the others."""
+    """Set one byte of each item from `start` up to, but not including, `stop`; byte 0 clears the other bytes."""
     shift = np.uint64(8 * byte)
     for k in range(start, stop):
         value = np.uint64(plane[np.uintp(k)]) << shift
@@ -103,9 +103,9 @@ def unshuffle(planes, items):
 
 
 class Encoder:
-    """Encodes chunks in its own memory: new memory for each chunk of events would take longer than the encoding.
+    """Encoder of chunks that reuses its memory, as allocating memory for each chunk would take longer than encoding it.
 
-    Memory for a larger chunk, of all discs of a large gas, is freed when a smaller chunk follows.
+    Memory for a larger chunk, such as a checkpoint of a large gas, is freed when a smaller chunk follows.
 
     The result of a method is valid until the next call.
     """
@@ -114,10 +114,10 @@ class Encoder:
         self._planes = self._bytes = np.empty(0, np.uint8)
 
     def compressed(self, rows: np.ndarray) -> np.ndarray:
-        """Bytes of a full chunk, shuffled and deflated.
+        """Return the bytes of a full chunk, shuffled and deflated.
 
-        The low-order bytes of a measured number are noise. Planes that a test of a few bytes cannot compress become
-        stored blocks, which takes a fraction of the time in both directions.
+        The low-order bytes of a measured number are noise. Planes of which a sample cannot be compressed become stored
+        blocks, which are written and read in a fraction of the time.
         """
         self._reserve(rows.nbytes)
         items = np.ascontiguousarray(rows).reshape(-1)
@@ -136,7 +136,7 @@ class Encoder:
         return self._bytes[:size]
 
     def _shuffle(self, items: np.ndarray) -> tuple[int, np.ndarray]:
-        """Number of planes that are noise, which are copied to their blocks, and the bytes of the others."""
+        """Copy planes that are noise to stored blocks; return their number and the bytes of the remaining planes."""
         words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
         noise = width if len(items) >= _SAMPLE else 0
         gather = shuffle if _is_worth_loading(items.nbytes) else _shuffle_in_numpy
@@ -150,7 +150,7 @@ class Encoder:
         return noise, planes
 
     def plain(self, rows: np.ndarray) -> np.ndarray:
-        """Bytes of a chunk, uncompressed, with its fletcher32."""
+        """Return the bytes of a chunk, uncompressed, followed by its fletcher32."""
         self._reserve(rows.nbytes)
         size = self._put(0, np.ascontiguousarray(rows).reshape(-1).view(np.uint8))
         size = self._put(size, fletcher32(self._bytes[:size]))
@@ -173,24 +173,24 @@ def _shuffled(items: np.ndarray) -> np.ndarray:
 
 
 def most_stored(size: int) -> int:
-    """Largest number of bytes of a stored chunk of `size` bytes: incompressible data grows a little."""
+    """Return the largest size of a stored chunk of `size` bytes; incompressible data grow a little."""
     return size + size // 64 + 1024
 
 
 def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, verify: bool = True) -> np.ndarray:
-    """Values of a stored chunk, (values,).
+    """Return the values of a stored chunk, (values,).
 
-    At most one byte more than declared is decompressed.
+    At most one byte more than the declared size is decompressed, so that a crafted chunk cannot fill the memory.
 
     Args:
         stored: bytes in the file.
-        mask: filter mask, the filters that were skipped.
+        mask: filter mask, that is the filters that were skipped.
         dtype: type of the values.
-        values: number of values.
-        verify: whether a fletcher32 has to match.
+        values: expected number of values.
+        verify: whether the fletcher32, if there is one, has to match.
 
     Raises:
-        ValueError: if the chunk is damaged, or has another number of values.
+        ValueError: if the chunk is damaged or has a different number of values.
     """
     size = values * dtype.itemsize
     data: bytes | memoryview = memoryview(stored)
@@ -199,7 +199,7 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
             raise ValueError("a checksum does not match")
         data = data[:-4]
     if not mask & DEFLATE:
-        stream = igzip_lib.IgzipDecompressor(igzip_lib.DECOMP_ZLIB)  # a little faster than the one of `isal_zlib`
+        stream = igzip_lib.IgzipDecompressor(igzip_lib.DECOMP_ZLIB)  # a little faster than the class in `isal_zlib`
         try:
             data = stream.decompress(data, size + 1)
         except igzip_lib.error as error:  # type: ignore[misc]
@@ -210,7 +210,7 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
         raise ValueError(f"a chunk of {len(data):,} bytes (allowed {size:,})")
     if not mask & SHUFFLE and dtype.itemsize > 1:
         planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, -1)
-        planes.flags.writeable = False  # of one type, to be compiled once
+        planes.flags.writeable = False  # arrays always have the same type, so that the function is compiled once
         if dtype.itemsize in _WIDTHS and _is_worth_loading(size):
             items = np.empty(planes.shape[1], f"u{dtype.itemsize}")
             unshuffle(planes, items)
@@ -220,21 +220,22 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
 
 
 def keep_freed_memory() -> None:
-    """Make the C library keep the memory of a chunk for the next one, which saves a quarter of the time of reading.
+    """Make the C library keep the memory of a chunk for the next chunk, which saves a quarter of the reading time.
 
-    glibc returns every block that is larger than any freed before, and then requests zeroed pages again.
+    glibc returns to the system every block that is larger than any block freed before, and then has to request zeroed
+    pages again.
     """
     np.empty(_LARGEST_KEPT, np.uint8)
 
 
 def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
-    """HDF5's checksum of 16-bit big-endian words, as the four bytes that follow the data in the file.
+    """Return HDF5's checksum of 16-bit big-endian words, as the four bytes that follow the data in the file.
 
-    Both sums, of the words and of the running sums, are computed from little-endian words: swapping the bytes of every
-    word multiplies them by 256 modulo 65535.
+    The sum of the words and the sum of the running sums are computed from little-endian words. Swapping the bytes of
+    every word multiplies both sums by 256 modulo 65535.
     """
     words = np.frombuffer(data, "<u2", len(data) // 2)
-    words.flags.writeable = False  # of one type, to be compiled once
+    words.flags.writeable = False  # arrays always have the same type, so that the function is compiled once
     total, moment = map(int, (_sums if _is_worth_loading(len(data)) else _sums_in_numpy)(words))
     simple, running = 256 * total, 256 * (len(words) * total - moment)
     if len(data) % 2:
@@ -247,14 +248,14 @@ _processed = 0
 
 
 def _is_worth_loading(size: int) -> bool:
-    """Whether compiled functions are used for `size` bytes more: what reads or writes little starts without them."""
+    """Return whether to use compiled functions for `size` more bytes; loading them is not worth it for a small log."""
     global _processed
     _processed += size
     return _processed > _WORTH_LOADING
 
 
 def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:
-    """What `_sums` returns, in floats that hold each partial sum exactly."""
+    """Return the same as `_sums`, computed with floats, which represent each partial sum exactly."""
     total = moment = 0
     for first in range(0, len(words), 65535):
         part = words[first : first + 65535].astype(float)
@@ -265,7 +266,7 @@ def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:
 
 @njit
 def _sums(words):
-    """Sum of 16-bit words (n,), and sum of each times its index, up to multiples of 65535."""
+    """Return the sum of 16-bit words (n,) and the sum of word times index, up to multiples of 65535."""
     total = moment = np.int64(0)
     for first in range(0, len(words), _WORDS):
         total_here = np.uint32(0)
@@ -280,5 +281,5 @@ def _sums(words):
 
 
 def _fold(value: int) -> int:
-    """Value modulo 65535, with 65535 for positive multiples of it, as end-around carries give."""
+    """Return a value modulo 65535, but 65535 for its positive multiples, as in a sum with end-around carry."""
     return (value - 1) % 65535 + 1 if value else 0

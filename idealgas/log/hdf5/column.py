@@ -1,4 +1,4 @@
-"""A dataset of a log, read and written in whole chunks, without HDF5's own filters and cache."""
+"""Read and write a dataset of a log in whole chunks, without HDF5's own filters and cache."""
 
 import math
 
@@ -10,24 +10,24 @@ from isal import isal_zlib
 from idealgas.log.hdf5 import chunks
 
 NUMBERS = ("<f8", "<i8", "<u8", "<i4", "<u4", "<u2", "|u1")
-"""NumPy types of all numbers in a log."""
+"""NumPy types that numbers in a log may have."""
 
 _COMPRESSED = (h5z.FILTER_SHUFFLE, h5z.FILTER_DEFLATE, h5z.FILTER_FLETCHER32)
 _PLAIN = (h5z.FILTER_FLETCHER32,)
 
 
 class StoredColumn:
-    """A dataset whose chunks divide only its first axis.
+    """A dataset that is divided into chunks only along its first axis.
 
     Attributes:
-        dtype: type of its values.
+        dtype: type of the values.
         shape: shape of the dataset when it was opened.
         chunk: shape of a chunk.
-        extent: number of rows.
+        extent: current number of rows.
     """
 
     def __init__(self, file: h5py.File, path: str, encoder: chunks.Encoder | None = None) -> None:
-        """Open a dataset. Raises KeyError if it is missing, ValueError for a layout that no log has."""
+        """Open a dataset. Raises KeyError if it is missing, and ValueError if its layout is not that of a log."""
         if path not in file:
             raise KeyError("missing")
         dataset = file[path]
@@ -45,44 +45,46 @@ class StoredColumn:
         if self.shape[1:] != self.chunk[1:]:
             raise ValueError(f"in chunks of shape {self.chunk} (got an extent of {self.shape})")
         self._encoder = encoder or chunks.Encoder()
-        self.extent: int = self.shape[0]  # asking HDF5 each time takes as long as storing some planes
+        self.extent: int = self.shape[0]  # kept here, as requests to HDF5 would slow down writing
         self._compressed = pipeline == _COMPRESSED
         self._origin = (0,) * (len(self.chunk) - 1)
 
     def read(self, start: int, rows: int, tail: int = 0) -> np.ndarray:
-        """Committed rows of the chunk that begins at row `start`.
+        """Return the committed rows of the chunk that begins at row `start`.
 
-        Damaged or missing chunks raise the errors of NumPy and HDF5.
+        A damaged or missing chunk raises an error of NumPy or HDF5.
 
         Args:
             start: first row of the chunk.
             rows: number of committed rows of the dataset.
-            tail: CRC-32 of the committed rows in the last chunk if that is not full.
+            tail: CRC-32 of the committed rows in the last chunk if this chunk is not full.
         """
-        growing = rows - start < self.chunk[0]  # its fletcher32 fails while a writer is rewriting it
+        growing = rows - start < self.chunk[0]  # a growing chunk fails its fletcher32 while a writer rewrites it
         data = self.whole(start, verify=not growing)[: rows - start]
         if growing and isal_zlib.crc32(data) != tail:
             raise ValueError("a checksum does not match")
         return data
 
     def whole(self, start: int, verify: bool = True) -> np.ndarray:
-        """The whole chunk that begins at row `start`, including values beyond the last row.
+        """Return the whole chunk that begins at row `start`, including values beyond the last row.
 
-        verify: whether its checksum has to match.
+        Args:
+            start: first row of the chunk.
+            verify: whether the checksum of the chunk has to match.
         """
         mask, stored = self.id.read_direct_chunk((start, *self._origin))
-        if not self._compressed:  # bit 0 of its pipeline is the checksum's
+        if not self._compressed:  # this pipeline consists only of the checksum, so its bits have another meaning
             mask = chunks.PLAIN
         return chunks.decode(stored, mask, self.dtype, math.prod(self.chunk), verify).reshape(self.chunk)
 
     def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
-        """Write a whole chunk, after the dataset has grown to its last row, as HDF5 requires.
+        """Write a whole chunk. The dataset is extended first if necessary, as HDF5 requires.
 
         Args:
             start: first row of the chunk.
-            rows: number of its rows that belong to the dataset.
+            rows: number of rows of the chunk that belong to the dataset.
             data: values of the whole chunk.
-            plain: whether it is stored uncompressed in a compressed dataset.
+            plain: whether to store the chunk uncompressed in a compressed dataset.
         """
         if self.extent < start + rows:
             self.resize(start + rows)

@@ -1,8 +1,8 @@
-"""The commit record: the number of committed rows of each table.
+"""The commit record, which contains the number of committed rows of each table.
 
-Two slots with checksums are written alternately, always after the rows that they count. Whenever a writer is killed,
-one slot is complete and its rows are in the file. The last chunk of a table is rewritten in place until it is full. Its
-committed rows remain the same bytes, so their CRC-32, which is also in the record, is correct at any moment.
+Two slots with checksums are written alternately, always after the rows that they count. Whenever a writer is killed, at
+least one slot is complete and its rows are in the file. The last chunk of a table is rewritten in place until it is
+full. The bytes of its committed rows do not change, so their CRC-32, which is also in the record, is valid at any time.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,13 +21,13 @@ DATASET = "commit"
 
 
 class Commit(NamedTuple):
-    """One commit.
+    """A commit record.
 
     Attributes:
-        sequence: number of the commit.
+        sequence: sequence number of the commit.
         file_size: size of the file at the commit, bytes.
         rows: number of committed rows, by table.
-        tails: CRC-32 of the committed rows in the last chunk, 0 if that is full, by path of the dataset.
+        tails: CRC-32 of the committed rows in the last chunk, by path of the dataset; 0 if the chunk is full.
     """
 
     sequence: int
@@ -42,7 +42,7 @@ class Commit(NamedTuple):
 
     @classmethod
     def create(cls, file: h5py.File, paths: Sequence[str]) -> None:
-        """Create the dataset of the record, without committed rows. paths: datasets of all tables."""
+        """Create the dataset of the record, without committed rows. paths: paths of the datasets of all tables."""
         tables = dict.fromkeys(map(table_of, paths), 0)
         width = 2 + len(tables) + len(paths) + 1
         dataset = file.create_dataset(DATASET, (2, width), "u8", chunks=(1, width), fletcher32=True)
@@ -58,7 +58,7 @@ class Commit(NamedTuple):
 
     @classmethod
     def read(cls, file: h5py.File) -> Self:
-        """Newest complete record. Raises ValueError if neither slot is complete."""
+        """Return the newest complete record. Raises ValueError if neither slot is complete."""
         stored = StoredColumn(file, DATASET)
         names = np.asarray(file[DATASET].attrs["datasets"])
         if names.ndim != 1 or names.dtype.kind != "S":
@@ -81,11 +81,11 @@ class Commit(NamedTuple):
 
 
 def commit_of(path: Path) -> Commit:
-    """Newest commit of a file, which may be in use. Raises the errors of h5py and of `Commit.read`."""
+    """Return the newest commit of a file, which may be in use. Raises the errors of h5py and of `Commit.read`."""
     with ReadableFile(path) as source, h5py.File(source, "r") as file:
         return Commit.read(file)
 
 
 def table_of(path: str) -> str:
-    """Name of the table that a dataset belongs to."""
+    """Return the name of the table to which a dataset belongs."""
     return path.partition("/")[0]

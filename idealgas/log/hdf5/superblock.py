@@ -1,8 +1,9 @@
-"""The superblock of an HDF5 file: the file consistency flags, and where the file ends.
+"""The superblock of an HDF5 file, with the file consistency flags and the position of the end of the file.
 
-A file that a writer has open, or did not close, has file consistency flags, and HDF5 then refuses to open it as usual.
-Source: HDF5 File Format Specification 3.0, II.A. A superblock of version 3 has the flags in byte 11, the end of the
-file in bytes 28 to 35, and in bytes 44 to 47 the lookup3 checksum of all previous bytes.
+While a writer has the file open, or if it did not close it, the file consistency flags are set, and HDF5 refuses to
+open the file in the usual way. Source: HDF5 File Format Specification 3.0, II.A. A superblock of version 3 has the
+flags in byte 11, the end of the file in bytes 28 to 35, and the lookup3 checksum of all previous bytes in bytes 44 to
+47.
 """
 
 import errno
@@ -21,14 +22,18 @@ _MASK = 0xFFFFFFFF
 
 
 def has_consistency_flags(block: bytes) -> bool | None:
-    """Whether the flags are set in the first bytes of a file; None for other files than HDF5's of version 3."""
+    """Return whether the flags are set in the first bytes of a file; None if it is not HDF5 with version 3."""
     return block[11] != 0 if len(block) >= _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
 def clear_consistency_flags(descriptor: int) -> None:
-    """Clear the file consistency flags of a file that was not closed. Raises ValueError for a damaged superblock.
+    """Clear the file consistency flags of a file that was not closed.
 
-    descriptor: of the file, open for reading and writing.
+    Args:
+        descriptor: file descriptor, open for reading and writing.
+
+    Raises:
+        ValueError: if the superblock is damaged.
     """
     with open(descriptor, "r+b", closefd=False) as file:
         file.seek(0)
@@ -42,15 +47,16 @@ def clear_consistency_flags(descriptor: int) -> None:
 
 
 class ReadableFile(io.FileIO):
-    """An HDF5 file for reading whose file consistency flags appear to be cleared.
+    """An HDF5 file, open for reading, whose file consistency flags appear to be cleared.
 
-    HDF5 knows the file only through this object. So it takes no locks, and shares nothing with a writer in the same
-    process. Its own way to read a file that is being written, SWMR, retries indefinitely where a byte is damaged. The
-    file appears to end far away, as a writer may extend it at any moment; bytes beyond its present end are zero.
+    HDF5 accesses the file only through this object. Therefore it takes no locks and shares nothing with a writer in the
+    same process. HDF5's own mode for reading a file that is being written, SWMR, is not used because it retries
+    indefinitely where a byte is damaged. As a writer may extend the file at any moment, the file appears to be very
+    long; bytes beyond its actual end are zero.
 
     Attributes:
-        unclosed: whether the flags are set; None for a file other than HDF5 with a superblock of version 3.
-        end: size that the file has if it was closed, bytes.
+        unclosed: whether the flags are set; None if the file is not HDF5 with a superblock of version 3.
+        end: size of the file according to the superblock, bytes; valid if the file was closed.
     """
 
     def __init__(self, path: Path) -> None:
@@ -68,22 +74,22 @@ class ReadableFile(io.FileIO):
             (self.end,) = struct.unpack_from("<Q", block, 28)
 
     def __del__(self) -> None:
-        self.close()  # HDF5 does not
+        self.close()  # HDF5 does not close it
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Change the position in the file; HDF5 seeks the end only to find the size, which may be too far for lseek."""
+        """Change the position in the file. The end, which HDF5 seeks to get the size, may be too far for `lseek`."""
         self._at_end = whence == os.SEEK_END
         return _FAR if self._at_end else super().seek(offset, whence)
 
     def tell(self) -> int:
-        """Position in the file."""
+        """Return the position in the file."""
         return _FAR if self._at_end else super().tell()
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
         """Read bytes into a buffer. Raises OSError if all of them lie beyond the end of the file."""
         start, data, count = self.tell(), memoryview(buffer).cast("B"), 0
-        while some := super().readinto(data[count:]):
-            count += some
+        while size := super().readinto(data[count:]):
+            count += size
         if not count:
             raise OSError(errno.EINVAL, "lies beyond the end of the file")
         data[count:] = bytes(len(data) - count)
@@ -93,9 +99,9 @@ class ReadableFile(io.FileIO):
 
 
 def _cleared(block: bytes, end: int) -> bytes:
-    """Superblock of a closed file of `end` bytes.
+    """Return a superblock with cleared flags for a file of `end` bytes.
 
-    The end of the file in the superblock of a file that was not closed is that at its last flush.
+    If a file was not closed, its superblock contains the end of the file at the last flush.
     """
     if len(block) < _SIZE or struct.unpack_from("<I", block, _SIZE - 4)[0] != lookup3(block[:-4]):
         raise ValueError("the superblock's checksum does not match")
@@ -104,7 +110,7 @@ def _cleared(block: bytes, end: int) -> bytes:
 
 
 def lookup3(data: bytes) -> int:
-    """Hash of at least one byte.
+    """Return the lookup3 hash of one or more bytes.
 
     Source: Bob Jenkins, `hashlittle` of lookup3.c (2006, public domain), with initial value 0.
     """

@@ -1,4 +1,4 @@
-"""Writing tables: rows in batches of any size are stored in whole chunks."""
+"""Write tables: rows arrive in batches of any size and are stored in whole chunks."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,23 +14,23 @@ from idealgas.log.hdf5.commit import DATASET, Commit, table_of
 
 
 class TableWriter:
-    """Writes a table, columns with the same number of rows, in whole chunks.
+    """Writer of a table, whose columns have the same number of rows, in whole chunks.
 
     Attributes:
         columns: datasets, by path.
         chunk: number of rows in a chunk.
         whole: number of rows in full chunks.
-        fill: number of rows in the last chunk, which is not full.
-        tail: number of these that are in the file.
+        fill: number of rows in the growing chunk, the last one, which is not full.
+        tail: number of rows of the growing chunk that are in the file.
     """
 
     def __init__(self, columns: Mapping[str, StoredColumn], commit: Commit, rows: int) -> None:
-        """Continue after the first `rows` of the committed rows."""
+        """Continue a table after its first `rows` committed rows."""
         self.columns = dict(columns)
         self.chunk = next(iter(columns.values())).chunk[0]
         self.whole = rows // self.chunk * self.chunk
         self.fill = self.tail = rows - self.whole
-        self._plain = False  # whether the last chunk is uncompressed in the file
+        self._plain = False  # whether the growing chunk is uncompressed in the file
         self._pending = [np.zeros(column.chunk, column.dtype) for column in columns.values()]
         if self.fill:
             for (path, column), pending in zip(columns.items(), self._pending, strict=True):
@@ -39,23 +39,28 @@ class TableWriter:
                 pending[: self.fill] = committed[: self.fill]
 
     def append(self, start: int, stop: int, data: Sequence[np.ndarray]) -> None:
-        """Append rows `start` to before `stop` of each column's data, and write every chunk that becomes full.
+        """Append the rows `start` up to, but not including, `stop` of the data, and write every chunk that gets full.
 
-        Rows before `start` may be overwritten: if the pending rows fit there, they are copied in front of the new ones,
-        instead of all new ones behind them.
+        Rows of the data before `start` may be overwritten: if the pending rows fit there, they are copied in front of
+        the new rows, which is faster than copying all new rows behind the pending ones.
+
+        Args:
+            start: first row to append.
+            stop: row after the last row to append.
+            data: arrays of all columns, in their order.
         """
         while start < stop:
-            some = min(stop - start, self.chunk - self.fill)
-            fill, start = self.fill, start + some
-            if fill + some == self.chunk and start >= self.chunk:
+            number = min(stop - start, self.chunk - self.fill)
+            fill, start = self.fill, start + number
+            if fill + number == self.chunk and start >= self.chunk:
                 full = [column[start - self.chunk : start] for column in data]
                 for pending, column in zip(self._pending, full, strict=True):
                     column[:fill] = pending[:fill]
                 self._close_chunk(full)
                 continue
             for pending, column in zip(self._pending, data, strict=True):
-                pending[fill : fill + some] = column[start - some : start]
-            self.fill += some
+                pending[fill : fill + number] = column[start - number : start]
+            self.fill += number
             if self.fill == self.chunk:
                 self._close_chunk(self._pending)
 
@@ -71,7 +76,8 @@ class TableWriter:
     def store_tail(self, last: bool = False) -> None:
         """Write the growing chunk, uncompressed, so that it can be rewritten in place.
 
-        last: whether it will not grow further, so that it can be compressed.
+        Args:
+            last: whether the chunk will not grow any further and can be compressed.
         """
         if self.tail != self.fill:
             self._plain |= not last
@@ -79,9 +85,10 @@ class TableWriter:
             self.tail = self.fill
 
     def trim(self) -> None:
-        """Remove rows beyond the last one from the file, and rewrite a chunk whose writing was interrupted.
+        """Remove rows beyond the last one from the file, and rewrite the growing chunk, which may be half written.
 
-        Datasets are cut before that chunk: HDF5 loses the filter mask of a directly written chunk in which it cuts.
+        Datasets are truncated before this chunk, as HDF5 loses the filter mask of a directly written chunk if it
+        truncates a dataset within the chunk.
         """
         for column in self.columns.values():
             if column.extent > self.whole + self.fill:
@@ -96,7 +103,7 @@ class TableWriter:
         return self.whole + self.tail
 
     def checksums(self) -> dict[str, int]:
-        """CRC-32 of each column's stored rows in the growing chunk, by path; 0 if it has no rows."""
+        """Return the CRC-32 of the stored rows of each column in the growing chunk, by path; 0 if there are none."""
         return {
             path: isal_zlib.crc32(pending[: self.tail]) if self.tail else 0
             for path, pending in zip(self.columns, self._pending, strict=True)
@@ -117,21 +124,26 @@ def _named(path: str) -> Iterator[None]:
 
 
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, TableWriter]:
-    """Writers of all tables of a file, which continue after the first `keep` rows of each.
+    """Return writers of the tables of a file.
 
-    To be called before SWMR mode, in which HDF5 retries indefinitely where an index is damaged.
+    Call this before HDF5 enters SWMR mode, in which it retries indefinitely where an index is damaged.
+
+    Args:
+        file: the file.
+        commit: its newest commit.
+        keep: number of rows, by table, after which the writers continue.
     """
     columns: dict[str, dict[str, StoredColumn]] = {name: {} for name in commit.rows}
     encoder = chunks.Encoder()
     for path in commit.tails:
         with _named(path):
             columns[table_of(path)][path] = column = StoredColumn(file, path, encoder)
-            column.id.get_num_chunks()  # reads the whole index
+            column.id.get_num_chunks()  # reads the whole index, so that damage is detected here
     return {name: TableWriter(columns[name], commit, rows) for name, rows in keep.items()}
 
 
 def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, fsync: bool = False) -> None:
-    """Flush the file, and then write the commit record of its rows."""
+    """Flush the file, and then write the commit record of its rows. fsync: whether to force both to the disk."""
     descriptor = file.id.get_vfd_handle()
     file.flush()
     if fsync:
@@ -142,7 +154,7 @@ def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: 
 
 
 def write_commit(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, size: int) -> None:
-    """Write the commit record of all rows in a file. size: size of the file, bytes."""
+    """Write the commit record of all stored rows. size: size of the file, bytes."""
     rows = {name: table.stored for name, table in tables.items()}
     tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
     Commit(sequence, size, rows, tails).write(file[DATASET].id)

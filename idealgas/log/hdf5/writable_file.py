@@ -1,4 +1,4 @@
-"""An HDF5 file that is being written, by one writer."""
+"""An HDF5 file that is open for writing by a single writer."""
 
 import errno
 import os
@@ -13,27 +13,31 @@ from idealgas.log.hdf5.commit import Commit, commit_of
 from idealgas.log.hdf5.superblock import clear_consistency_flags
 
 OPTIONS: dict[str, Any] = {"libver": ("v110", "v110"), "locking": False}
-"""Options of `h5py.File`. HDF5 frees its own lock in SWMR mode, and on some systems it collides with `WriteLock`."""
+"""Options of `h5py.File`. HDF5 drops its own lock in SWMR mode, and on some systems it conflicts with `WriteLock`."""
 
 
 class ChangedError(Exception):
-    """A file has been written since it was read."""
+    """A file has been written to since it was read."""
 
 
 class WritableFile:
-    """An HDF5 file, open for writing, and locked until it is closed.
+    """An HDF5 file that is open for writing, and locked until it is closed.
 
     Attributes:
-        file: the file for h5py.
+        file: the h5py file.
     """
 
     def __init__(self, path: Path, commit: Commit | None = None) -> None:
-        """Open a file, also if its last writer did not close it. commit: newest one that it must have, None for any.
+        """Open a file, even if its last writer did not close it.
+
+        Args:
+            path: path of the file.
+            commit: required newest commit of the file; None for any.
 
         Raises:
-            ChangedError: if it has another commit.
-            BlockingIOError: if it is being written.
-            OSError: if it cannot be written.
+            ChangedError: if the file has another commit.
+            BlockingIOError: if another writer has the file open.
+            OSError: if the file cannot be opened for writing.
             ValueError: if its superblock is damaged.
         """
         self._lock = WriteLock(path)
@@ -52,19 +56,22 @@ class WritableFile:
 
     @property
     def _alone(self) -> bool:
-        """Whether no other code in this process has opened the file with HDF5, which would share it with this one."""
+        """Whether no other code in this process has opened the file with HDF5, which would then share it."""
         return h5py.h5f.get_obj_count(self.file.id, h5py.h5f.OBJ_FILE) == 1
 
     @property
     def removed(self) -> bool:
-        """Whether the file has no name any more."""
+        """Whether the file has been deleted from its folder."""
         return os.fstat(self._lock.descriptor).st_nlink == 0
 
     def close(self) -> None:
-        """Close the file. HDF5 does so only after other code has closed it too; until then it remains locked.
+        """Close the file.
 
-        HDF5 may crash where a file that it closes cannot be written, so it only flushes the file. Raises OSError if
-        that fails, and the file is then abandoned.
+        If other code in this process has the file open, HDF5 closes it only when that code does, and it remains locked
+        until then. HDF5 may crash when it closes a file that cannot be written, so it is only made to flush the file.
+
+        Raises:
+            OSError: if flushing fails; the file is then abandoned.
         """
         if not self._alone:
             self.file.flush()
@@ -78,7 +85,7 @@ class WritableFile:
             clear_consistency_flags(self._lock.descriptor)
 
     def abandon(self) -> None:
-        """Close a file that could not be written to, and leave it as if its writer had been killed."""
+        """Close a file that cannot be written to, and leave it as if its writer had been killed."""
         if self._alone:
             self._discard_writes()
             self._lock.close()
@@ -87,7 +94,7 @@ class WritableFile:
                 self.file.close()
 
     def _discard_writes(self) -> None:
-        """Make HDF5 close the file without writing to it: it would clear the flags of a file with lost writes, too."""
+        """Make HDF5 close the file without writing to it, as it would clear the flags even after a failed write."""
         nowhere = os.open(os.devnull, os.O_RDWR)
         os.dup2(nowhere, self.file.id.get_vfd_handle())
         os.close(nowhere)
