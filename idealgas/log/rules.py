@@ -285,10 +285,10 @@ def check_names(names: Mapping[str, Sequence[str]]) -> None:
         here, there = column.name in names["events"], column.name in names["checkpoints"]
         if column.when not in ("", TRIALS) and here != there:
             raise ValueError(f"{'checkpoints' if here else 'events'}/{column.name}: missing")
-    for table, columns in names.items():
-        if len(set(columns)) != len(columns):
+    for table, present in names.items():
+        if len(set(present)) != len(present):
             raise ValueError(f"{table}: a column appears twice")
-        if table in ("observables", "particles") and not any(name.endswith("/time") for name in columns):
+        if table in ("observables", "particles") and not any(name.endswith("/time") for name in present):
             raise ValueError(f"{table}: no times")
 
 
