@@ -8,12 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 import pytest
 from helpers.needs import NEEDS, has_all, is_here
+from helpers.support import uncompiled
 from hypothesis import settings
-
-from idealgas.jit import EntryPoint
 
 settings.register_profile("no-deadline", deadline=None)
 settings.load_profile("no-deadline")
@@ -66,18 +64,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     terminalreporter.write_line(f"Selected: {chosen or 'all tests'}; deselected: those that need {lacking}.")
 
 
-@pytest.fixture
-def uncompiled(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The engine runs in Python, with the same bits: for scenes of so few events that it takes longer to compile it."""
-    compiled = EntryPoint.__call__
-
-    def call(self: EntryPoint, *arguments: Any) -> Any:
-        if self.py_func.__module__.startswith("idealgas.engine"):
-            return self.py_func(*arguments)
-        return compiled(self, *arguments)
-
-    monkeypatch.setattr(EntryPoint, "__call__", call)
-    with np.errstate(all="ignore"):
+@pytest.fixture(name="uncompiled")
+def run_uncompiled() -> Iterator[None]:
+    with uncompiled():
         yield
 
 

@@ -1,14 +1,30 @@
-"""Report pages, and the browser that opens them."""
+"""Small logs that commands read, report pages, and the browser that opens them."""
 
 import pytest
+from helpers.commands import GAS, OTHERS, SCENE
 from helpers.needs import program
 from helpers.report_pages import FULL, QUICK, SCENES
-from helpers.support import called
+from helpers.support import called, output_of, uncompiled
 from selenium import webdriver
 
 from idealgas.analysis import registry
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory):
+    """A folder with scene.toml, its log run.h5, which `run` has written without a word, and logs of the OTHERS."""
+    folder = tmp_path_factory.mktemp("folder")
+    (folder / "scene.toml").write_text(SCENE)
+    assert output_of("run", "scene.toml", "-o", "run.h5", "--quiet", folder=folder) == ""
+    with uncompiled():
+        for name, text in OTHERS.items():
+            simulate(parse_scene(f"{GAS}run.until = 30\n{text}"), folder / f"{name}.h5")
+    (folder / "file").touch()
+    for name in ("folder.gif", "folder.html"):
+        (folder / name).mkdir()
+    return folder
 
 
 @pytest.fixture(scope="session")

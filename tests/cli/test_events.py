@@ -6,26 +6,11 @@ import pty
 import subprocess
 
 import numpy as np
-import pytest
-from helpers.support import IDEALGAS, called, error_of, output_of
+from helpers.support import IDEALGAS, output_of
 from idealgas_cli.events import KINDS
 
 from idealgas import open_log
 from idealgas.log.dataframes import KIND_NAMES
-
-SCENE = """
-box.size = [10, 10]
-species = [{ name = "gas", count = 50, radius = 0.2, temperature = 1 }]
-run.until = 200
-"""
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("events")
-    (folder / "scene.toml").write_text(SCENE)
-    output_of("run", "scene.toml", "-o", "run.h5", folder=folder)
-    return folder
 
 
 def rows(text):
@@ -46,10 +31,8 @@ def test_every_row_with_every_digit(folder):
 def test_filters(folder):
     assert KINDS == KIND_NAMES
     printed = rows(output_of("events", folder / "run.h5"))
-    refused = f"{folder / 'run.h5'}: no such disc (got 50; allowed 0 to 49)\n"
-    assert error_of("events", folder / "run.h5", "--disc", 50) == refused
-    some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 20.5))
-    assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 20.5]
+    some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 90.5))
+    assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 90.5]
     assert some
     first, last = (printed[k]["time"] for k in (40, 60))  # of events: the one at --from is printed, that at --to is not
     some = rows(output_of("events", folder / "run.h5", "--from", repr(first), "--to", repr(last)))
@@ -59,7 +42,7 @@ def test_filters(folder):
 
 def test_a_log_that_is_being_written(folder):
     """The reader starts with the run, ends with it, and has every row."""
-    run = [IDEALGAS, "run", "scene.toml", "-o", "live.h5", "-q", "--set", "run.until=2000"]
+    run = [IDEALGAS, "run", "scene.toml", "-o", "live.h5", "-q", "--set", "run.collisions_per_disc=1000"]
     with subprocess.Popen(run, cwd=folder) as writer:
         while not (folder / "live.h5").exists() and writer.poll() is None:
             pass
@@ -99,7 +82,7 @@ def test_a_reader_that_leaves_a_run(folder):
     run = [IDEALGAS, "run", "scene.toml", "-o", "left.h5", "--stream"]
     with subprocess.Popen(run, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         first = process.stdout.readline()
-        assert process.poll() is None  # 200 units of time fill any pipe
+        assert process.poll() is None  # so many events fill any pipe
         process.stdout.close()
         assert process.wait() == 141
         assert process.stderr.read() == "interrupted; `idealgas resume left.h5` continues it\n"
@@ -110,17 +93,3 @@ def test_a_reader_that_leaves_a_run(folder):
     assert len(left) < len(whole)
     output_of("resume", folder / "left.h5")
     assert output_of("events", folder / "left.h5") == whole
-
-
-def test_streams_that_cannot_be(folder):
-    line = error_of("run", "scene.toml", "-o", "no.h5", "--stream", "--json", folder=folder)
-    assert line == "--stream cannot be combined with --json or --watch\n"
-    line = error_of("run", "scene.toml", "-o", "no.h5", "--stream", "--set", "log.events=false", folder=folder)
-    assert line == "scene.toml: --stream requires events (got log.events = false)\n"
-    assert not (folder / "no.h5").exists()
-
-
-def test_a_log_without_events(folder):
-    output_of("run", "scene.toml", "-o", "none.h5", "--set", "log.events=false", folder=folder)
-    done = called("events", folder / "none.h5")
-    assert (done.returncode, "has no events" in done.stderr) == (2, True)

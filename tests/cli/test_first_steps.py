@@ -9,14 +9,12 @@ import tomllib
 
 import numpy as np
 import pytest
-from helpers.support import ROOT, called, error_of, idealgas, output_of
+from helpers.support import ROOT, called, error_of, idealgas, logged, output_of
 from PIL import Image
 
 from idealgas.examples import first_sentence, load_example
 from idealgas.gallery import draw
-from idealgas.log import open_log
 from idealgas.movie.film import paint_frame
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 CONFIGS = ROOT / "configs"
@@ -87,8 +85,7 @@ def test_the_gallery_of_a_scene_is_one_page_with_its_picture(tmp_path):
 
 @pytest.mark.interpreted
 def test_a_picture_of_the_gallery_shows_the_start_of_the_run(tmp_path):
-    simulate(load_example("mixture", ["run.events=10"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(load_example("mixture", ["run.events=10"]), tmp_path / "run.h5") as log:
         paint_frame(log, tmp_path / "frame.png", 0.0, colouring="species", panel="none")
     with Image.open(io.BytesIO(draw("mixture"))) as drawn, Image.open(tmp_path / "frame.png") as frame:
         assert np.array_equal(np.asarray(drawn), np.asarray(frame))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from helpers.needs import AXE
 from helpers.report_pages import FULL, PLAIN, picture, seek
-from helpers.support import called, error_of
+from helpers.support import called
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -219,18 +219,3 @@ def test_a_log_without_events_has_no_player(tmp_path):
     text = (tmp_path / "run.html").read_text(encoding="utf-8")
     assert "No player: no events are recorded." in text
     assert 'id="data-head"' not in text
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("-o", "page.pdf"), "page.pdf: unknown kind of report (allowed: .html)"),
-        (("-o", "page.html", "--from", "1e9"), "empty time window t = 1000000000"),
-        (("-o", "folder.html"), "folder.html: is a folder"),
-    ],
-)
-def test_bad_input_is_one_line(pages, arguments, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder.html").mkdir()
-    assert message in error_of("report", pages("plain")[0], *arguments)
-    assert [path.name for path in tmp_path.iterdir()] == ["folder.html"]

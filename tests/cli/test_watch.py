@@ -134,11 +134,6 @@ def test_only_this_machine_and_this_name(finished):
         assert ended(child) == (0, "")
 
 
-def test_a_log_without_events_is_one_line(tmp_path):
-    simulate(parse_scene(SCENE + "run.until = 1\nlog.events = false\n"), tmp_path / "gas.h5")
-    assert "has no events (made with log.events = false)" in error_of("watch", tmp_path / "gas.h5")
-
-
 @pytest.fixture
 def impatient(finished, monkeypatch):
     """Address of a server of a page that ends slow connections after 0.1 s."""

@@ -71,12 +71,18 @@ def write_rows(writer: LogWriter, stop: int, sizes=(1, 300, 20_000, BLOCK, 77)) 
         if writer.rows >= stop:
             return
         write_checkpoint(writer)
-        batch = writer.batch()
-        size = min(size, stop - writer.rows, len(batch.time))
-        for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
-            if values is not None:
-                column[:size] = values
+        _, size = filled(writer, min(size, stop - writer.rows))
         writer.write(size)
+
+
+def filled(writer: LogWriter, most: int) -> tuple[EventBatch, int]:
+    """The next batch of a writer, with as many of the next rows as it has room for, and their number."""
+    batch = writer.batch()
+    size = min(most, len(batch.time))
+    for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
+        if values is not None:
+            column[:size] = values
+    return batch, size
 
 
 def write_checkpoint(writer: LogWriter) -> None:

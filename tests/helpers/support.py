@@ -12,13 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 from idealgas_cli.main import main
 
 from idealgas.columns import BLOCK, EventBatch, empty_batch
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
+from idealgas.jit import EntryPoint
+from idealgas.log import Log, open_log
 from idealgas.run.layout import row_columns
+from idealgas.run.simulate import simulate
+from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.state import Gas
 
 ROOT = Path(__file__).parents[2]
@@ -66,6 +71,34 @@ def record(simulation: Simulation, stop: Stop, rows: int = BLOCK, events: int = 
 def same_rows(a: EventBatch, b: EventBatch) -> bool:
     """Whether two logs are equal, float for float."""
     return all(np.array_equal(x, y) for x, y in zip(a, b, strict=True) if x is not None or y is not None)
+
+
+@contextlib.contextmanager
+def uncompiled() -> Iterator[None]:
+    """Run the engine in Python, with the same bits: for scenes of so few events that it takes longer to compile it."""
+    compiled = EntryPoint.__call__
+
+    def call(self: EntryPoint, *arguments: Any) -> Any:
+        if self.py_func.__module__.startswith("idealgas.engine"):
+            return self.py_func(*arguments)
+        return compiled(self, *arguments)
+
+    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+        patch.setattr(EntryPoint, "__call__", call)
+        yield
+
+
+def logged(scene: Scene, path: Path) -> Log:
+    """The log of a run of a scene, open."""
+    simulate(scene, path)
+    return open_log(path)
+
+
+def refused(text: str, *overrides: str, name: str = "<scene>") -> list[str]:
+    """The lines with which a scene is refused."""
+    with pytest.raises(SceneError) as caught:
+        parse_scene(text, name, overrides)
+    return caught.value.errors
 
 
 def within(what: str, error: float, bound: float) -> None:

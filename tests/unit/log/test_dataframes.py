@@ -8,6 +8,7 @@ import pandas
 import pytest
 from helpers.log_compare import scene_of
 from helpers.log_samples import write_log
+from helpers.support import logged
 
 from idealgas.columns import Kind
 from idealgas.log import LogError, open_log
@@ -21,8 +22,7 @@ FURTHER = {"mixture": [], "rough": ["angular_velocity"], "periodic": ["image_x",
 @pytest.fixture(scope="module", params=FURTHER)
 def log(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("pandas") / "run.h5"
-    simulate(scene_of(request.param, "run.events=4000"), path)
-    with open_log(path) as log:
+    with logged(scene_of(request.param, "run.events=4000"), path) as log:
         log.further = FURTHER[request.param]
         yield log
 
@@ -46,16 +46,8 @@ def test_events(log):
     (stored,) = log.chunks()
     frame = log.to_pandas()
     assert list(frame.columns) == COMMON + log.further
-    assert list(frame["kind"].cat.categories) == [
-        "disc",
-        "wall",
-        "wall_end",
-        "piston",
-        "thermostat",
-        "steered",
-        "escaped",
-        "fixed_disc",
-    ]
+    kinds = ["disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped", "fixed_disc"]
+    assert list(frame["kind"].cat.categories) == kinds
     check_rows(frame, stored)
 
 
@@ -108,8 +100,7 @@ def test_observables(log):
 
 
 def test_what_walls_gave_has_their_names(tmp_path):
-    simulate(scene_of("heat-bath", "run.events=2000"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(scene_of("heat-bath", "run.events=2000"), tmp_path / "run.h5") as log:
         frame = log.to_pandas("observables")
         _, given = log.observables["wall_energy"]
         for k, wall in enumerate(log.walls):
@@ -117,41 +108,28 @@ def test_what_walls_gave_has_their_names(tmp_path):
 
 
 SMALL = """
-[box]
-size = [5, 5]
-[[species]]
-name = "gas"
-count = 20
-radius = 0.1
-temperature = 1.0
-[run]
-{run}
-[log]
-events = {events}
+box.size = [5, 5]
+species = [{{ name = "gas", count = 20, radius = 0.1, temperature = 1.0 }}]
+run = {{ {run} }}
+log.events = {events}
 """
 
 
-def test_a_gas_without_positions(tmp_path):
-    text = SMALL.format(run='method = "monte_carlo"\ntrials = 500', events="true")
-    simulate(parse_scene(text), tmp_path / "run.h5")
+def test_logs_without_positions_events_or_anything(tmp_path):
+    text = SMALL.format(run='method = "monte_carlo", trials = 500', events="true")
+    simulate(parse_scene(text), tmp_path / "run.h5", force=True)
     with open_log(tmp_path / "run.h5") as log:
         assert list(log.to_pandas().columns) == ["time", "disc", "partner", "kind", "vx", "vy", "trial"]
         assert list(log.to_pandas("discs").columns) == ["time", "disc", "species", "radius", "mass", "vx", "vy"]
-
-
-def test_a_log_without_events(tmp_path):
-    text = SMALL.format(run="until = 2", events="false") + "[rotation]\ninertia = 0.5\nroughness = 1.0\n"
-    simulate(parse_scene(text), tmp_path / "run.h5")
+    text = SMALL.format(run="until = 2", events="false") + "rotation = { inertia = 0.5, roughness = 1.0 }\n"
+    simulate(parse_scene(text), tmp_path / "run.h5", force=True)
     with open_log(tmp_path / "run.h5") as log:
         with pytest.raises(LogError, match="has no events"):
             log.to_pandas()
         assert "angular_velocity" in log.to_pandas("discs")
         pandas.testing.assert_frame_equal(log.to_pandas("discs"), log.to_pandas("discs", times=[0.0]))
         assert len(log.to_pandas("observables")) >= 2
-
-
-def test_a_log_that_nothing_happened_in(tmp_path):
-    simulate(parse_scene(SMALL.format(run="until = 1e-9", events="true")), tmp_path / "run.h5")
+    simulate(parse_scene(SMALL.format(run="until = 1e-9", events="true")), tmp_path / "run.h5", force=True)
     with open_log(tmp_path / "run.h5") as log:
         frame = log.to_pandas()
         assert (list(frame.columns), len(frame)) == (COMMON, 0)

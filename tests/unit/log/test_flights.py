@@ -139,12 +139,15 @@ def test_flights_and_their_pieces(log, part):
     check(log, edges, Flights.joined(log.flights(edges)))
 
 
-def test_by_default_flights_fill_the_log(log):
+def test_by_default_flights_fill_the_log_and_an_event_at_an_edge_ends_the_block_before(log):
     found = Flights.joined(log.flights())
     assert (found.kind != NO_EVENT).sum() == len(log)
     assert (found.block == 0).all()
     assert np.bincount(found.disc, found.end - found.start) == pytest.approx(np.full(9, log.end_time))
     assert found.end[-9:].tolist() == [log.end_time] * 9
+    (times,) = log.chunks(("time",))
+    edges = np.array([0.0, times.time[100], times.time[150], log.end_time])
+    check(log, edges, Flights.joined(log.flights(edges)))
 
 
 def test_states_at_edges_are_those_of_the_log(log):
@@ -156,12 +159,6 @@ def test_states_at_edges_are_those_of_the_log(log):
         assert found.velocity[opening][order] == pytest.approx(state.velocity, abs=1e-12)
         if log.has_positions:
             assert found.position[opening][order] == pytest.approx(state.position, abs=1e-12)
-
-
-def test_an_event_at_an_edge_ends_the_block_before(log):
-    (times,) = log.chunks(("time",))
-    edges = np.array([0.0, times.time[100], times.time[150], log.end_time])
-    check(log, edges, Flights.joined(log.flights(edges)))
 
 
 def test_small_batches_have_the_same_flights_and_whole_pairs(log, monkeypatch):
@@ -187,7 +184,7 @@ def test_small_batches_have_the_same_flights_and_whole_pairs(log, monkeypatch):
         assert (disc[::2] < disc[1::2]).all()
 
 
-def test_some_discs_and_some_columns(log):
+def test_some_discs_and_some_columns_and_a_data_frame(log):
     edges = np.linspace(0, log.end_time, 6)
     whole = Flights.joined(log.flights(edges))
     some = Flights.joined(log.flights(edges, discs=[2, 5]))
@@ -198,9 +195,6 @@ def test_some_discs_and_some_columns(log):
     assert np.array_equal(few.end, whole.end[whole.disc == 7])
     assert np.array_equal(few.new_velocity, whole.new_velocity[whole.disc == 7])
     assert few.disc is None is few.velocity
-
-
-def test_a_data_frame_of_flights(log):
     times = [0.0, log.end_time / 2, log.end_time]
     frame, found = log.to_pandas("flights", times=times), Flights.joined(log.flights(times))
     assert frame["end_vy"].tolist() == found.end_velocity[:, 1].tolist()

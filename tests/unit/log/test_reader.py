@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from helpers.fresh_python import python
 from helpers.log_compare import scene_of
-from helpers.log_samples import DISCS, STEP, checkpoint_arrays, gas, new_writer, rows, write_log
+from helpers.log_samples import DISCS, STEP, checkpoint_arrays, filled, gas, new_writer, rows, write_log
 from helpers.needs import posix
+from helpers.support import logged
 
 from idealgas.columns import BLOCK, Kind
 from idealgas.log import LogError, LogLayout, LogWriter, box_walls, open_log
@@ -46,11 +47,7 @@ def test_row_at_with_equal_times_across_chunks(tmp_path):
     start = gas()
     with LogWriter(tmp_path / "run.h5", start, LogLayout(box_walls(start.box)), scene_text="", seed=0) as writer:
         for size in (BLOCK, BLOCK, BLOCK):
-            batch = writer.batch()
-            for column, values in zip(batch, rows(0, size), strict=True):
-                if values is not None:
-                    column[:size] = values
-            batch.time[:] = 3.0
+            filled(writer, size)[0].time[:] = 3.0
             writer.write(size)
     with open_log(tmp_path / "run.h5") as log:
         assert (log.row_at(3.0), log.row_at(3.0, "right")) == (0, 3 * BLOCK)
@@ -85,10 +82,7 @@ TIMES = [0.0, STEP / 3, 1.0, 1.0, 1.0 + STEP / 7, 2.5, 2999 * STEP]
 def test_states_from_the_start(tmp_path):
     """Without checkpoints every state is the rows' alone."""
     with new_writer(tmp_path / "run.h5") as writer:
-        batch = writer.batch()
-        for column, values in zip(batch, rows(0, 3000), strict=True):
-            if values is not None:
-                column[:3000] = values
+        filled(writer, 3000)
         writer.write(3000)
     with open_log(tmp_path / "run.h5") as log:
         frames = list(log.frames(TIMES))
@@ -118,8 +112,7 @@ def test_states_at_many_times_decode_each_chunk_once(tmp_path, monkeypatch):
     """
     decode, decoded = chunks.decode, []
     monkeypatch.setattr(chunks, "decode", lambda *given: decoded.append(given) or decode(*given))
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(text), tmp_path / "run.h5") as log:
         assert len(log.checkpoints) > 10
         assert len(log) < BLOCK
         times = np.linspace(0, log.end_time, 100)
@@ -138,10 +131,7 @@ def test_states_that_are_not_there(log, times):
 
 def test_half_a_pair_does_not_count(tmp_path):
     with new_writer(tmp_path / "run.h5") as writer:
-        batch = writer.batch()
-        for column, values in zip(batch, rows(0, 6), strict=True):
-            if values is not None:
-                column[:6] = values
+        batch, _ = filled(writer, 6)
         batch.kind[:6] = Kind.DISC
         batch.time[:6] = np.repeat([1, 3, 5], 2) * STEP
         batch.disc[:6] = [3, 9, 4, 8, 2, 7]
@@ -156,10 +146,7 @@ def test_half_a_pair_does_not_count(tmp_path):
 def test_a_log_is_followed(tmp_path):
     with new_writer(tmp_path / "run.h5") as writer, open_log(tmp_path / "run.h5") as log:
         assert (len(log), log.end_time) == (0, 0.0)
-        batch = writer.batch()
-        for column, values in zip(batch, rows(0, 10), strict=True):
-            if values is not None:
-                column[:10] = values
+        filled(writer, 10)
         writer.write(10)
         writer.close({"end_time": 1.0})
         log.refresh()
@@ -185,28 +172,25 @@ def test_other_files(tmp_path, content, kind):
         open_log(tmp_path / "run.h5")
 
 
-def test_hdf5_of_others(tmp_path):
+def test_a_newer_format_and_hdf5_of_others(tmp_path):
     for options in ({}, {"libver": ("v110", "v110")}):
         with h5py.File(tmp_path / "run.h5", "w", **options) as file:
             file["x"] = 1
         with pytest.raises(LogError, match="not a log of idealgas"):
             open_log(tmp_path / "run.h5")
-
-
-@posix
-def test_no_file(tmp_path):
-    with pytest.raises(LogError, match=r"cannot be read: No such file or directory$"):
-        open_log(tmp_path / "run.h5")
-    with pytest.raises(LogError, match=r"cannot be read: Is a directory$"):
-        open_log(tmp_path)
-
-
-def test_a_newer_format(tmp_path):
-    path = write_log(tmp_path / "run.h5", 10)
+    path = write_log(tmp_path / "log.h5", 10)
     with h5py.File(path, "r+", libver=("v110", "v110")) as file:
         file.attrs["format_version"] = 9
     with pytest.raises(LogError, match="has format 9; this version of idealgas reads format 1"):
         open_log(path)
+
+
+@posix
+def test_files_that_are_no_logs(tmp_path):
+    with pytest.raises(LogError, match=r"cannot be read: No such file or directory$"):
+        open_log(tmp_path / "run.h5")
+    with pytest.raises(LogError, match=r"cannot be read: Is a directory$"):
+        open_log(tmp_path)
 
 
 def test_steps_of_time_may_carry_discs_beyond_a_side(tmp_path):
@@ -215,16 +199,14 @@ def test_steps_of_time_may_carry_discs_beyond_a_side(tmp_path):
     species = [{name = "gas", count = 10, radius = 0.1, temperature = 1.0}]
     run = {method = "time_driven", dt = 0.05, until = 20.0}
     """
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(text), tmp_path / "run.h5") as log:
         position = np.concatenate([rows.position for rows in log.chunks()])
         assert position.min() < 0 or (position > log.box).any()
 
 
 def test_print_of_a_log(tmp_path):
     path = tmp_path / "run.h5"
-    simulate(scene_of("mixture", "run.events=100"), path)
-    with open_log(path) as log:
+    with logged(scene_of("mixture", "run.events=100"), path) as log:
         title, discs = log.scene.scene.title, len(log.discs)
         lines = str(log).splitlines()
         assert len(lines) == 3
@@ -233,17 +215,10 @@ def test_print_of_a_log(tmp_path):
         assert all(name in lines[0] for name in log.discs.species_names)
         assert lines[1] == f"t = 0 to {log.end_time:g}: 100 events, complete"
         assert lines[2].startswith(f"{path}: ")
-
-
-def test_print_of_a_log_of_an_interrupted_run(tmp_path):
-    simulate(scene_of("quickstart", "run.events=100000"), tmp_path / "run.h5", interrupted=lambda: True)
-    with open_log(tmp_path / "run.h5") as log:
+    simulate(scene_of("quickstart", "run.events=100000"), path, force=True, interrupted=lambda: True)
+    with open_log(path) as log:
         assert str(log).splitlines()[1] == f"t = 0 to {log.end_time:g}: {len(log):,} event rows, interrupted"
-
-
-def test_print_of_an_odd_title_is_three_lines(tmp_path):
-    path = tmp_path / "run.h5"
-    simulate(scene_of("quickstart", "run.events=100", 'scene.title="a\\nb\\u001b[31m"'), path)
+    simulate(scene_of("quickstart", "run.events=100", 'scene.title="a\\nb\\u001b[31m"'), path, force=True)
     with open_log(path) as log:
         assert len(str(log).splitlines()) == 3
         assert "\x1b" not in str(log)

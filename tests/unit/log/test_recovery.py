@@ -5,7 +5,7 @@ import os
 import h5py
 import numpy as np
 import pytest
-from helpers.log_samples import STEP, check, rows, start_writer, write_log, write_rows
+from helpers.log_samples import STEP, check, filled, rows, start_writer, write_log, write_rows
 
 from idealgas.columns import BLOCK, EventBatch
 from idealgas.errors import OutputError
@@ -55,7 +55,7 @@ def test_a_live_writer_is_not_disturbed(tmp_path):
         assert not log.live
 
 
-def test_the_log_of_a_killed_writer_is_read_unchanged(left):
+def test_the_log_of_a_killed_writer_is_read_unchanged_and_recovered_as_a_copy(left, tmp_path):
     before = left.read_bytes()
     with open_log(left) as log:
         assert check(log) > 2000
@@ -63,6 +63,11 @@ def test_the_log_of_a_killed_writer_is_read_unchanged(left):
     assert left.read_bytes() == before
     with pytest.raises(OSError, match="already open"):
         h5py.File(left)
+    stop = recover(left, tmp_path / "copy.h5")
+    assert left.read_bytes() == before
+    assert_plain(tmp_path / "copy.h5", stop)
+    with pytest.raises(OutputError, match="already exists"):
+        recover(left, tmp_path / "copy.h5")
 
 
 def test_recovery_in_place(left, tmp_path):
@@ -77,15 +82,6 @@ def test_recovery_in_place(left, tmp_path):
     again = path.read_bytes()
     assert recover(path) == stop
     assert path.read_bytes() == again
-
-
-def test_recovery_of_a_copy(left, tmp_path):
-    before = left.read_bytes()
-    stop = recover(left, tmp_path / "copy.h5")
-    assert left.read_bytes() == before
-    assert_plain(tmp_path / "copy.h5", stop)
-    with pytest.raises(OutputError, match="already exists"):
-        recover(left, tmp_path / "copy.h5")
 
 
 @pytest.mark.parametrize("torn", ["events/velocity", "checkpoints/position"])
@@ -119,12 +115,7 @@ def test_continued_after_a_checkpoint(tmp_path, compression, checkpoint, more):
     assert writer.rows == chosen.row
     stop = chosen.row + more
     while writer.rows < stop:
-        batch = writer.batch()
-        size = min(len(batch.time), 50_000, stop - writer.rows)
-        for column, values in zip(batch, rows(writer.rows, writer.rows + size), strict=True):
-            if values is not None:
-                column[:size] = values
-        writer.write(size)
+        writer.write(filled(writer, min(50_000, stop - writer.rows))[1])
     writer.close({"end_time": stop * STEP})
     with open_log(path) as log:
         assert check(log) == stop

@@ -9,6 +9,7 @@ import pyh5md
 import pytest
 from helpers.log_compare import scene_of
 from helpers.needs import program
+from helpers.support import logged
 
 import idealgas
 from idealgas.log import LogError
@@ -24,7 +25,7 @@ def path(request, tmp_path_factory):
     return path
 
 
-def test_states_are_those_of_the_engine(path):
+def test_states_are_those_of_the_engine_at_any_time_and_at_events(path):
     with idealgas.open_log(path) as log, h5py.File(path) as file:
         discs = file["particles/discs"]
         times = log.snapshot_times
@@ -40,18 +41,10 @@ def test_states_are_those_of_the_engine(path):
                 assert np.abs(unwrapped - expected).max() < 1e-12 * size
             if state.angular_velocity is not None:
                 assert np.array_equal(state.angular_velocity, discs["angular_velocity/value"][step])
-
-
-def test_frames_are_states(path):
-    with idealgas.open_log(path) as log:
         times = np.linspace(0, log.end_time, 7)
         for time, frame in zip(times, log.frames(times), strict=True):
             for one, other in zip(frame, log.state_at(time), strict=True):
                 assert np.array_equal(one, other) or one is other is None
-
-
-def test_states_at_events_are_the_rows(path):
-    with idealgas.open_log(path) as log:
         first = len(log) // 2
         for block in log.chunks(None, first, first + 20):
             for row in range(20):
@@ -81,8 +74,7 @@ def test_snapshots_are_h5md(path):
 
 
 def test_without_events_there_are_states_at_checkpoints(tmp_path):
-    simulate(scene_of("quickstart", "log.events=false", "run.events=200000"), tmp_path / "run.h5")
-    with idealgas.open_log(tmp_path / "run.h5") as log:
+    with logged(scene_of("quickstart", "log.events=false", "run.events=200000"), tmp_path / "run.h5") as log:
         last = log.checkpoints[-1]
         assert np.array_equal(log.state_at(last.time).position, last.position)
         with pytest.raises(LogError, match="a log without events has states only at its checkpoints"):

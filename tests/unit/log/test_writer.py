@@ -34,8 +34,13 @@ from idealgas.log.hdf5.table_writer import TableWriter
 
 
 @pytest.mark.parametrize("compression", ["gzip", "none"])
-@pytest.mark.parametrize("stop", [0, 1, 3000, BLOCK, BLOCK + 1, 3 * BLOCK - 5])
-def test_a_log_comes_back(tmp_path, compression, stop):
+@pytest.mark.parametrize(
+    ("stop", "flush_seconds"),
+    [*((stop, 1.0) for stop in (0, 1, 3000, BLOCK, BLOCK + 1, 3 * BLOCK - 5)), (3 * BLOCK + 100, 0.0)],
+)
+def test_a_log_comes_back(tmp_path, monkeypatch, compression, stop, flush_seconds):
+    """Also if it is flushed at every moment."""
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", flush_seconds)
     path = write_log(tmp_path / "run.h5", stop, compression=compression)
     with open_log(path) as log:
         assert check(log) == stop
@@ -43,14 +48,6 @@ def test_a_log_comes_back(tmp_path, compression, stop):
         assert not log.unclosed
         assert log.summary == {"end_time": stop * STEP, "rows": stop}
         assert log.end_time == stop * STEP
-
-
-@pytest.mark.parametrize("compression", ["gzip", "none"])
-def test_a_log_flushed_at_every_moment_comes_back(tmp_path, monkeypatch, compression):
-    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
-    path = write_log(tmp_path / "run.h5", 3 * BLOCK + 100, compression=compression)
-    with open_log(path) as log:
-        assert check(log) == 3 * BLOCK + 100
 
 
 @pytest.mark.parametrize("flush_seconds", [0.0, 1.0])
@@ -100,7 +97,7 @@ def test_rows_appear_while_they_come_slowly(tmp_path, monkeypatch):
         assert seen == 100
 
 
-def test_plain_h5py_reads_it(tmp_path):
+def test_plain_h5py_reads_it_as_h5md(tmp_path):
     path = write_log(tmp_path / "run.h5", 70_000)
     expected = rows(0, 70_000)
     with h5py.File(path) as file:
@@ -112,10 +109,6 @@ def test_plain_h5py_reads_it(tmp_path):
         assert list(file["walls/name"]) == [b"left", b"right", b"bottom", b"top"]
         assert [json.loads(value) for value in file["summary/value"]] == [70_000 * STEP, 70_000]
         assert {len(file["checkpoints"][name]) for name in file["checkpoints"]} == {len(file["checkpoints/time"])}
-
-
-def test_observables_are_h5md(tmp_path):
-    path = write_log(tmp_path / "run.h5", 1000)
     with h5py.File(path) as file:
         assert list(file["h5md"].attrs["version"]) == [1, 1]
         assert {"name"} <= set(file["h5md/author"].attrs)
@@ -150,7 +143,7 @@ def test_further_columns(tmp_path):
         assert np.array_equal(log.checkpoints[0].arrays["image"], image)
 
 
-def test_without_events(tmp_path):
+def test_without_events_and_without_close(tmp_path):
     with new_writer(tmp_path / "run.h5", event_columns=()) as writer:
         write_checkpoint(writer)
         writer.close({"end_time": 5.0})
@@ -159,24 +152,11 @@ def test_without_events(tmp_path):
         assert (len(log), len(log.checkpoints), log.end_time) == (0, 1, 5.0)
         assert list(log.chunks()) == []
         assert log.row_at(1.0) == 0
-
-
-def test_leaving_without_close_is_interrupted(tmp_path):
-    with new_writer(tmp_path / "run.h5") as writer:
+    with new_writer(tmp_path / "left.h5") as writer:
         write_rows(writer, 500)
-    with open_log(tmp_path / "run.h5") as log:
+    with open_log(tmp_path / "left.h5") as log:
         assert (check(log), log.complete, log.summary) == (500, False, {})
         assert log.end_time == 499 * STEP
-
-
-def test_what_is_handed_over_may_change_afterwards(tmp_path):
-    position = np.zeros((DISCS, 2))
-    with new_writer(tmp_path / "run.h5") as writer:
-        for k in range(50):
-            position[:] = k / 10
-            writer.checkpoint(k, k, {"position": position, "velocity": position}, {"hits": 0})
-    with open_log(tmp_path / "run.h5") as log:
-        assert all((checkpoint.position == checkpoint.epoch / 10).all() for checkpoint in log.checkpoints)
 
 
 def test_a_log_is_behind_while_batches_are_to_be_stored(tmp_path, monkeypatch):
@@ -195,7 +175,7 @@ def test_a_log_is_behind_while_batches_are_to_be_stored(tmp_path, monkeypatch):
         assert check(log) == 600
 
 
-def test_long_texts_and_many_checkpoints(tmp_path):
+def test_long_texts_many_checkpoints_and_what_changes_after_it_was_handed_over(tmp_path):
     text = "# " + "x" * 200_000
     with new_writer(tmp_path / "run.h5", scene_text=text) as writer:
         for k in range(1000):
@@ -203,6 +183,13 @@ def test_long_texts_and_many_checkpoints(tmp_path):
     with open_log(tmp_path / "run.h5") as log:
         assert log.scene_text == text
         assert [checkpoint.velocity[3, 1] for checkpoint in log.checkpoints] == list(range(1000))
+    position = np.zeros((DISCS, 2))
+    with new_writer(tmp_path / "other.h5") as writer:
+        for k in range(50):
+            position[:] = k / 10
+            writer.checkpoint(k, k, {"position": position, "velocity": position}, {"hits": 0})
+    with open_log(tmp_path / "other.h5") as log:
+        assert all((checkpoint.position == checkpoint.epoch / 10).all() for checkpoint in log.checkpoints)
 
 
 @pytest.mark.parametrize("discs", [1, 5000])

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.interpreted
 HOLES = np.array([True])
 
 
-def test_a_disc_that_leaves():
+def test_a_disc_that_leaves_and_which_discs_are_inside():
     disc, spins = body(x=1.0, y=2.0, vx=3.0, vy=4.0, m=5.0), Rotation(np.array([6.0, 7.0]), np.ones(2), 0.0, 0.0)
     assert (has_left(disc, HOLES), mass_in_gas(disc, HOLES)) == (False, 5.0)
     leave_gas(disc, 1, spins)
@@ -23,9 +23,6 @@ def test_a_disc_that_leaves():
     assert (disc.vx, disc.vy, spins.omega.tolist()) == (0.0, 0.0, [6.0, 0.0])
     assert (has_left(disc, HOLES), mass_in_gas(disc, HOLES)) == (True, 0.0)
     assert not has_left(disc, None)
-
-
-def test_which_discs_are_inside():
     x = np.array([1.0, math.nan, 0.0])
     assert inside(x, HOLES).tolist() == [True, False, True]
     assert x[inside(x, None)].size == 3

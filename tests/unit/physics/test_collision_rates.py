@@ -23,9 +23,6 @@ def test_contact_value():
     for phi in np.linspace(0, 0.9, 91).tolist():
         exact = (1 - Fraction(7, 16) * Fraction(phi)) / (1 - Fraction(phi)) ** 2
         assert abs(Fraction(contact_value(phi)) - exact) <= gamma(8) * exact
-
-
-def test_a_dilute_gas_has_none_and_arrays_are_taken():
     assert contact_value(0.0) == 1.0
     phi = np.array([0.0, 0.1, 0.5])
     assert contact_value(phi) == pytest.approx([contact_value(p) for p in phi.tolist()], rel=gamma(4))

@@ -51,16 +51,13 @@ def test_what_nearly_cancels_keeps_its_digits():
         assert abs(exact(double_double.subtract(a, b)) - (exact(a) - exact(b))) <= 4 * ULP * abs(exact(a) - exact(b))
 
 
-def test_roots_keep_32_digits():
+def test_roots_keep_32_digits_and_the_low_part_decides_the_order():
     with mpmath.workdps(60):
         for a in numbers(1000, 3, sign=False):
             true = mpmath.sqrt(mpmath.mpf(a[0]) + mpmath.mpf(a[1]))
             high, low = double_double.root(a)
             assert abs(mpmath.mpf(high) + mpmath.mpf(low) - true) <= 10 * ULP * true
     assert double_double.root((0.0, 0.0)) == (0.0, 0.0)
-
-
-def test_order_is_decided_by_the_low_part():
     assert double_double.less((1.0, -1e-20), (1.0, 1e-20))
     assert not double_double.less((1.0, 1e-20), (1.0, 1e-20))
     assert double_double.less((-1.0, 0.0), (1.0, -1e-20))

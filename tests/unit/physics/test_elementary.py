@@ -35,17 +35,13 @@ def test_logarithm_is_within_one_unit_in_the_last_place():
 
 
 @pytest.mark.interpreted
-def test_cosine_and_sine_are_within_one_unit_in_the_last_place():
+def test_cosine_and_sine_are_within_one_unit_in_the_last_place_and_quarter_turns_exact():
     with mpmath.workprec(120):
         worst = [0.0, 0.0]
         for turns in random_numbers(FEW):
             exact = mpmath.cospi(2 * mpmath.mpf(turns)), mpmath.sinpi(2 * mpmath.mpf(turns))
             worst = [max(pair) for pair in zip(worst, map(units, cos_sin_turns(turns), exact), strict=True)]
         assert max(worst) < 1
-
-
-@pytest.mark.interpreted
-def test_quarter_turns_are_exact():
     found = [tuple(map(float, cos_sin_turns(quarters / 4))) for quarters in range(5)]
     assert found == [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)]
 

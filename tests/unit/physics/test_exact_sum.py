@@ -86,15 +86,12 @@ def test_stored_and_restored(terms, more, typical):
     assert again.tobytes() == sums.tobytes()
 
 
-def test_units():
+def test_units_and_the_error_of_a_term():
     for typical in (1.0, 3e-200, 0.7, 1e250, 2.0**-52):
         unit = 2.0 ** unit_exponent(typical)
         assert 2.0**-53 * typical <= unit <= 2.0**-50 * typical
     assert [unit_exponent(size) for size in (0.0, math.inf)] == [0, 0]
     assert math.isfinite(2.0 ** -unit_exponent(5e-324))
-
-
-def test_the_error_of_a_term_is_half_a_unit():
     terms = np.random.default_rng(5).normal(size=10_000)
     exact = sum(map(Fraction, terms.tolist()))
     unit = Fraction(2) ** unit_exponent(1.0)

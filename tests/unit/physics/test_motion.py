@@ -1,4 +1,6 @@
-"""Free flight beside 50 digits, for discs and for arrays."""
+"""Free flight, and when a body under constant acceleration comes down on a plane, beside 50 digits."""
+
+import math
 
 import mpmath
 import numpy as np
@@ -74,19 +76,16 @@ def test_a_disc_flies_along_both_axes(gravity):
         (-0.5, -1.0, 3.0, 0.0),
         (-0.5, 2.0, -1.0, 3.7320508075688773),  # rises out: 2 + √3
         (-4.0, 2.0, -1.0, 2.0),  # never rises so far: when it begins to fall
+        (-1.5, 2.0, -1.0, 3.0),  # rises through zero at 1, falls through it at 3
+        (-1e-17, -1e-9, -1.0, 0.0),
+        (-1.0, 2.0, 1.0, NEVER),
+        (1.0, -1.0, 0.500001, NEVER),
         (1.0, 0.0, 0.0, NEVER),
         (1.0, 2.0, 0.0, NEVER),
     ],
 )
 def test_falls_to_a_plane(height, velocity, acceleration, delay):
     assert time_to_plane(height, velocity, acceleration) == pytest.approx(delay, rel=1e-15)
-
-
-def test_what_stays_above_a_plane_at_both_ends_of_a_flight():
-    assert stays_above(1.0, 0.0, -2.0, 0.99)
-    assert not stays_above(1.0, 0.0, -2.0, 1.01)
-    assert not stays_above(0.0, 1.0, 0.0, 1.0)
-    assert not stays_above(9.0, 0.0, 0.1, 1.0)  # it may have been below
 
 
 def test_length_of_a_path():
@@ -106,3 +105,63 @@ def test_length_of_a_path():
                 arc = lambda u, w: u * mpmath.hypot(u, w) + (w * w * mpmath.asinh(u / w) if w else 0)  # noqa: E731
                 right = (arc(first + g * t, across) - arc(first, across)) / (2 * g)
             assert abs(length - right) <= 8 * 2.0**-53 * right
+
+
+def exact_fall(height, velocity, acceleration):
+    """First time at which the exact parabola is at zero and falls; None if it never is. For a height above zero."""
+    h, v, a = map(exact, (height, velocity, acceleration))
+    discriminant = v * v - 2 * a * h
+    if discriminant < 0 or (v >= 0 and a >= 0):
+        return None
+    root = mpmath.sqrt(discriminant)
+    return 2 * h / (root - v) if v < 0 else (v + root) / -a
+
+
+def test_free_fall():
+    """With v a falls without cancellation: D has two roundings a term, its root 2, the sum 3 and the quotient 4."""
+    draw = np.random.default_rng(1)
+    with mpmath.workdps(50):
+        for _ in range(300):
+            height, speed, pull = 10.0 ** draw.uniform(-6, 6, 3)
+            velocity = speed * draw.choice([-1.0, 1.0])
+            expected = exact_fall(height, velocity, -pull)
+            assert abs(time_to_plane(height, velocity, -pull) - expected) <= gamma(4) * expected
+
+
+def test_a_fall_that_is_slowed_down():
+    """D may cancel. The time is the exact one to 4 roundings for a height changed by 4, so the body is there to 8."""
+    draw = np.random.default_rng(2)
+    met = 0
+    with mpmath.workdps(50):
+        for _ in range(300):
+            height, pull = 10.0 ** draw.uniform(-3, 3, 2)
+            velocity = -math.sqrt(2 * pull * height) * (1 + draw.choice([-1, 1]) * 10.0 ** draw.uniform(-16, 0))
+            found = time_to_plane(height, velocity, pull)
+            h, v, a = map(exact, (height, velocity, pull))
+            if found == NEVER:
+                assert v * v - 2 * a * h < gamma(4) * v * v
+                continue
+            met += 1
+            t = exact(found)
+            terms = abs(h) + abs(v * t) + abs(a * t * t / 2)
+            assert abs(h + v * t + a * t * t / 2) <= gamma(8) * terms
+    assert met > 100
+
+
+def test_what_stays_above():
+    """Until the body is down, to 1e-14 of that time; one that is pulled up is never said to stay above."""
+    draw = np.random.default_rng(3)
+    for _ in range(300):
+        height, speed, pull = 10.0 ** draw.uniform(-6, 6, 3)
+        velocity = speed * draw.choice([-1.0, 1.0])
+        fall = time_to_plane(height, velocity, -pull)
+        assert stays_above(height, velocity, -pull, fall * (1 - 1e-14))
+        assert not stays_above(height, velocity, -pull, fall * (1 + 1e-14))
+        assert not stays_above(-height, velocity, -pull, 0.1 * fall)
+        assert not stays_above(height, speed, pull, fall)
+    assert stays_above(1.0, 1.0, 0.0, NEVER)
+    assert not stays_above(1.0, -1.0, -1.0, NEVER)
+    assert stays_above(1.0, 0.0, -2.0, 0.99)
+    assert not stays_above(1.0, 0.0, -2.0, 1.01)
+    assert not stays_above(0.0, 1.0, 0.0, 1.0)
+    assert not stays_above(9.0, 0.0, 0.1, 1.0)  # it may have been below

@@ -102,15 +102,12 @@ def test_at_a_side_a_disc_is_put_where_wrapping_puts_it(x):
     assert (disc.crossed_x, periodic.image[0, 0]) == (-boxes, boxes)
 
 
-def test_images_are_counted_from_the_records():
+def test_images_are_counted_from_the_records_and_none_without_joined_sides():
     periodic, a, b = sides(), crossed(2, -1), crossed(0, 3)
     assert images_between(periodic, a, b, (1, 0)) == (3, -4)
     assert images_between(periodic, b, a, (0, 0)) == (-2, 4)
     assert images_to_wall(periodic, b, (-1, 1)) == (-1, 4)
     assert shift_by_images(1.0, 2.0, periodic, (1, -2)) == (1.0 - LX, 2.0 + 2 * LY)
-
-
-def test_without_joined_sides_there_are_none():
     assert images_between(None, body(), body(), (1, 0)) == images_to_wall(None, body(), (1, 0)) == NO_IMAGES
     assert shift_by_images(1.0, 2.0, None, (1, 1)) == (1.0, 2.0)
     assert periodic_axes(None) == (False, False)

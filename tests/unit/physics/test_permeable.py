@@ -49,15 +49,6 @@ def test_a_disc_bounces_where_it_touches_or_where_its_centre_is_back(gravity):
     assert min(met) > 30
 
 
-def test_a_disc_at_the_face_does_not_sink():
-    below = np.nextafter(0.5, 0.0)
-    assert closed_face_delay(below, -1.0, 0.0, 0.5) == 0.0
-    assert closed_face_delay(below, 1.0, 0.0, 0.5) == NEVER
-    assert closed_face_delay(below, 1.0, -2.0, 0.5) == pytest.approx(1.0)
-    assert closed_face_delay(-1e-17, -1.0, 0.0, 0.5) == NEVER  # its centre is on the open side
-    assert closed_face_delay(0.0, 0.0, 0.0, 0.5) == NEVER
-
-
 def segment(start, end):
     return make_segments(np.array([start]), np.array([end]))[:1]
 
@@ -72,7 +63,7 @@ def contact(wall, passage, gravity=None, **motion):
     return time, *segment_normal(there, wall[0], passage, None, NO_IMAGES)
 
 
-def test_faces_and_ends():
+def test_faces_ends_and_discs_at_the_face():
     wall = segment((0.0, 0.0), (0.0, 4.0))  # upwards: its left side is that of negative x
     right, left = {"x": 2.5, "y": 2.0, "vx": -1.0, "vy": 0.0}, {"x": -2.5, "y": 2.0, "vx": 1.0, "vy": 0.0}
     assert contact(wall, FROM_LEFT, **right) == (2.0, 1.0, 0.0, False)
@@ -86,6 +77,12 @@ def test_faces_and_ends():
     assert contact(wall, OPEN, **end) is None
     under = {"x": 0.0, "y": -2.5, "vx": 0.0, "vy": 1.0}
     assert contact(wall, FROM_LEFT, **under) == (2.0, 0.0, -1.0, True)
+    below = np.nextafter(0.5, 0.0)
+    assert closed_face_delay(below, -1.0, 0.0, 0.5) == 0.0
+    assert closed_face_delay(below, 1.0, 0.0, 0.5) == NEVER
+    assert closed_face_delay(below, 1.0, -2.0, 0.5) == pytest.approx(1.0)
+    assert closed_face_delay(-1e-17, -1.0, 0.0, 0.5) == NEVER  # its centre is on the open side
+    assert closed_face_delay(0.0, 0.0, 0.0, 0.5) == NEVER
 
 
 def test_gravity_brings_back_what_has_passed():

@@ -108,7 +108,7 @@ def test_what_surely_misses_it(side, falls):
     assert told > (0.3 if falls else 0.99) * met
 
 
-def test_end_stop():
+def test_end_stop_normals_and_sides():
     assert stop_contact(some_piston(v=0.5, t=1.0)) == 3.0
     assert stop_contact(some_piston()) == NEVER
     assert stop_contact(some_piston(x=8.5, a=1.0)) == 1.0
@@ -117,14 +117,15 @@ def test_end_stop():
     assert stop_contact(some_piston(side=5, x=0.0, v=0.5)) == 18.0  # leaves the lower side
     assert (outward(some_piston(3), -1.0), outward(some_piston(2), 1.0)) == (1.0, -1.0)
     assert [outward(some_piston(4), distance) for distance in (0.5, -0.5)] == [1.0, -1.0]
-
-
-def test_normal_towards_the_disc():
     below, above = (body(x=x, y=x, vx=0, vy=0, r=0.5, m=1.0) for x in (2.0, 9.0))
     assert normal_of_piston(below, some_piston(1)) == (-1.0, 0.0)
     assert normal_of_piston(below, some_piston(4)) == (-1.0, 0.0)
     assert normal_of_piston(above, some_piston(4)) == (1.0, 0.0)
     assert normal_of_piston(above, some_piston(5)) == (0.0, 1.0)
+    assert is_piston_side(1, [some_piston()])
+    assert not is_piston_side(0, [some_piston()])
+    assert not is_piston_side(1, None)
+    assert [is_piston_side(side, [some_piston(4), some_piston(1)]) for side in (0, 1)] == [False, True]
 
 
 def test_motion_and_energy_between_hits():
@@ -179,10 +180,3 @@ def test_energy_that_an_elastic_hit_would_not_change(side, along):
     disc = body(x=1.0, y=1.0, vx=-2.0, vy=3.0, m=2.0)
     assert energy_at_piston(disc, 13.0, some_piston(side, v=1.0, m=4.0)) == 15.0
     assert energy_at_piston(disc, 13.0, some_piston(side, v=1.0, m=0.0)) == (along - 1) ** 2
-
-
-def test_sides():
-    assert is_piston_side(1, [some_piston()])
-    assert not is_piston_side(0, [some_piston()])
-    assert not is_piston_side(1, None)
-    assert [is_piston_side(side, [some_piston(4), some_piston(1)]) for side in (0, 1)] == [False, True]

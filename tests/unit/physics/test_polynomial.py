@@ -158,12 +158,7 @@ def test_first_descent(strength):
     assert met > 30
 
 
-def test_a_parabola_that_passes_by():
-    assert first_contact_root(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
-    assert exact_descents(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0) == []
-
-
-def test_a_descent_that_has_begun():
+def test_descents_that_have_begun_or_pass_by():
     assert first_contact_root(1.0, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # touches and comes nearer
     assert first_contact_root(0.5, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # overlaps and comes nearer
     back = first_contact_root(
@@ -171,6 +166,8 @@ def test_a_descent_that_has_begun():
     )  # thrown up from contact: falls back after 2 v/g
     assert back == pytest.approx(6.0, rel=1e-15)
     assert first_contact_root(5.0, 5.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0) == NEVER
+    assert first_contact_root(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
+    assert exact_descents(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0) == []
 
 
 def test_the_gap_near_contact_keeps_its_digits():

@@ -23,7 +23,7 @@ def inelastic(*last, normal=0.7, wall=0.6, contact_duration=0.25):
     return Restitution(normal, wall, contact_duration, np.array(last, float))
 
 
-def test_factors():
+def test_factors_and_records():
     """1 + e, rounded once; exactly 2 of what collided less than the contact duration ago, or without the effect."""
     assert restitution_factor(None, 0, 1, 3.0) == wall_restitution_factor(None, 0, 3.0) == 2.0
     assert restitution_factor(inelastic(0.0, 2.0), 0, 1, 3.0) == 1.7
@@ -32,9 +32,6 @@ def test_factors():
     assert restitution_factor(inelastic(2.875, 0.0), 0, 1, 3.0) == 2.0
     assert wall_restitution_factor(inelastic(2.0, 2.9), 0, 3.0) == 1.6
     assert wall_restitution_factor(inelastic(2.0, 2.9), 1, 3.0) == 2.0
-
-
-def test_collisions_are_recorded():
     effect = inelastic(0.0, 0.0)
     record_collision(effect, 1, 4.5)
     record_collision(None, 1, 5.5)

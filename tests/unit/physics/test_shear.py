@@ -43,14 +43,11 @@ def test_the_image_above_is_ahead_by_its_way_less_whole_widths(shear):
     assert longest_epoch(None) == math.inf
 
 
-def test_relative_motion_is_seen_from_the_image(shear):
+def test_relative_motion_is_seen_from_the_image_and_both_discs_half_way(shear):
     assert less_offset(1.0, 0.5, 0.25, shear, (0, 1)) == (-2.5, -1.5)
     assert less_offset(1.0, 0.5, 0.25, shear, (0, -2)) == (8.0, 4.5)
     assert less_offset_of_nearest(1.0, 3.0, 0.25, shear) == (-2.5, -1.0)
     assert less_offset(1.0, 0.5, 0.25, None, (0, 1)) == (1.0, 0.5)
-
-
-def test_both_discs_are_seen_half_way(shear):
     a, b = body(vx=1.0), body(vx=-1.0)
     enter_common_frame(a, b, shear, (0, 1))
     assert (a.vx, b.vx) == (0.0, 0.0)

@@ -107,7 +107,7 @@ def test_collisions_are_added_together_and_one_by_one():
     assert values(flow.tensor).all()
 
 
-def test_flights_in_the_air():
+def test_flights_in_the_air_and_energy_in_a_moving_frame():
     flow = flow_of()
     record = discs((0, 0, 1, 2, 0.5, 1, 1), (0, 0, -3, 1, 0.25, 1, 2))
     copy = copy_of(flow)
@@ -115,6 +115,9 @@ def test_flights_in_the_air():
     assert values(copy.tensor[KINETIC]).tolist() == [0.5 + 13.5, 1.0 - 4.5, 2.0 + 1.5]
     assert not values(flow.tensor).any()
     assert copy_of(None) is None
+    # From (1, 2) to (3, 1): ½ · 2 (9 + 1 - 1 - 4) at rest, and seen from (1, -1) ½ · 2 (4 + 4 - 0 - 9).
+    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 0.0, 0.0) == 5.0
+    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 1.0, -1.0) == -1.0
 
 
 @pytest.mark.parametrize(("frame", "passed_on"), [(0.5, 0.0), (0.0, 2.25), (1.0, -2.25)])
@@ -131,12 +134,6 @@ def test_heat_flows_relative_to_a_frame(frame, passed_on):
     flights = ((3, 1, 0.5), (1, -1, 0.25), (3, 0, 0.5), (1, 2, 0.5))
     carried = sum(m / 2 * (v - frame) ** 3 * t for m, v, t in flights)
     assert values(flow.heat) == pytest.approx([carried, 0, passed_on, 0], rel=1e-14, abs=1e-14)
-
-
-def test_energy_gained_in_a_moving_frame():
-    """From (1, 2) to (3, 1): ½ · 2 (9 + 1 - 1 - 4) at rest, and seen from (1, -1) ½ · 2 (4 + 4 - 0 - 9)."""
-    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 0.0, 0.0) == 5.0
-    assert energy_gained(2.0, 1.0, 2.0, 3.0, 1.0, 1.0, -1.0) == -1.0
 
 
 @pytest.mark.parametrize(

@@ -38,16 +38,6 @@ def test_random_numbers_are_those_of_splitmix64_for_disc_and_emission():
                 assert uniform(thermal, own, draw) == ((bits >> 11) + 1) * 2.0**-53
 
 
-def test_random_numbers_depend_on_nothing_else():
-    one, other = walls(1.0), walls(9.0, 2.0, discs=3)
-    one.emissions[:] = 3
-    other.emissions[:] = [8, 3, 0]
-    assert [uniform(one, 1, draw) for draw in range(3)] == [uniform(other, 1, draw) for draw in range(3)]
-    assert uniform(one, 1, 0) == uniform(one, 1, 0)
-    numbers = {uniform(walls(1.0, seed=seed), own, draw) for seed in range(3) for own in range(3) for draw in range(3)}
-    assert len(numbers) == 27
-
-
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.5, 5.0])
 def test_emitted_velocities(angle):
     """exp(-m v²/2T) of the normal speed is the first number; the tangential velocity and the spin are Box and Muller's.
@@ -95,7 +85,7 @@ def test_it_is_the_law_of_a_gas_that_streams_out():
             assert abs(mpmath.exp(-exponent) - number) <= 2 * gamma(5) * exponent * number
 
 
-def test_which_walls_emit():
+def test_which_walls_emit_and_on_what_their_random_numbers_depend():
     thermal = walls(-1.0, 0.0, 2.0)
     assert [is_thermal(thermal, wall) for wall in range(3)] == [False, True, True]
     assert not is_thermal(None, 0)
@@ -104,3 +94,10 @@ def test_which_walls_emit():
     collide_with_wall(mirrored, 0, 0.0, 1.0, 0, None, None, thermal)
     assert (cold.vx, cold.vy) == (0.0, 0.0)
     assert (mirrored.vx, mirrored.vy) == (1.0, 2.0)
+    one, other = walls(1.0), walls(9.0, 2.0, discs=3)
+    one.emissions[:] = 3
+    other.emissions[:] = [8, 3, 0]
+    assert [uniform(one, 1, draw) for draw in range(3)] == [uniform(other, 1, draw) for draw in range(3)]
+    assert uniform(one, 1, 0) == uniform(one, 1, 0)
+    numbers = {uniform(walls(1.0, seed=seed), own, draw) for seed in range(3) for own in range(3) for draw in range(3)}
+    assert len(numbers) == 27

@@ -63,9 +63,6 @@ def test_first_collisions_are_drawn_as_the_others():
     draw_first_collisions(thermostat)
     assert thermostat.time.tolist() == [interval(thermostat, own) for own in range(4)]
     assert not thermostat.number.any()
-
-
-def test_without_a_thermostat_nothing_happens():
     disc = body(vx=1.0, vy=2.0, m=1.0)
     andersen_collision(disc, 0, None, None)
     assert (disc.vx, disc.vy) == (1.0, 2.0)

@@ -52,8 +52,15 @@ def test_straight_flight_to_the_body():
     assert straight_body_delay(1.0, 1.0, 0.0, 1.0, 0.2, 2.0) == NEVER
 
 
-def test_the_foot_lies_strictly_between_the_ends():
+def test_the_body_is_met_between_its_ends():
     assert [foot_inside(s, 2.0) for s in (-1.0, 0.0, 1e-300, 2.0, 2.5)] == [False, False, True, False, False]
+    assert accelerated_body_delay(0.5, 1.0, -1.0, 0.0, 1.0, 0.0, 0.5, 2.0) == 0.0  # touches and comes nearer
+    assert accelerated_body_delay(0.5, 1.0, 2.0, 0.0, -1.0, 0.0, 0.5, 2.0) == 4.0  # thrown up from it
+    assert accelerated_body_delay(0.5, 1.0, 2.0, 1.0, -1.0, 0.0, 0.5, 2.0) == NEVER  # comes down beside it
+    assert accelerated_body_delay(0.25, 1.0, 0.5, 0.0, -1.0, 0.0, 0.5, 2.0) == 1.0  # sunk: back at its depth
+    assert accelerated_body_delay(1.5, 1.0, 0.0, 0.0, -2.0, 0.0, 0.5, 2.0) == 1.0  # at rest above it: √(2h/g)
+    assert accelerated_body_delay(-1.5, 1.0, 0.0, 0.0, 2.0, 0.0, 0.5, 2.0) == 1.0
+    assert accelerated_body_delay(1.0, 1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 2.0) == NEVER
 
 
 def descents_to_face(d, s, vn, vt, an, at, r, length):
@@ -92,16 +99,6 @@ def test_a_parabola_to_the_body():
             terms = abs(exact(d)) + exact(r) + abs(exact(vn) * t) + abs(exact(an) * t * t)
             assert abs(height) <= gamma(9) * terms
     assert met > 60
-
-
-def test_a_parabola_from_the_face():
-    assert accelerated_body_delay(0.5, 1.0, -1.0, 0.0, 1.0, 0.0, 0.5, 2.0) == 0.0  # touches and comes nearer
-    assert accelerated_body_delay(0.5, 1.0, 2.0, 0.0, -1.0, 0.0, 0.5, 2.0) == 4.0  # thrown up from it
-    assert accelerated_body_delay(0.5, 1.0, 2.0, 1.0, -1.0, 0.0, 0.5, 2.0) == NEVER  # comes down beside it
-    assert accelerated_body_delay(0.25, 1.0, 0.5, 0.0, -1.0, 0.0, 0.5, 2.0) == 1.0  # sunk: back at its depth
-    assert accelerated_body_delay(1.5, 1.0, 0.0, 0.0, -2.0, 0.0, 0.5, 2.0) == 1.0  # at rest above it: √(2h/g)
-    assert accelerated_body_delay(-1.5, 1.0, 0.0, 0.0, 2.0, 0.0, 0.5, 2.0) == 1.0
-    assert accelerated_body_delay(1.0, 1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 2.0) == NEVER
 
 
 def distance_to(wall, x, y):

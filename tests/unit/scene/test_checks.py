@@ -1,10 +1,12 @@
 """Bounds of checks between tables: the last value that is accepted and the first that is refused, and which it is."""
 
 import math
+import re
 
 import pytest
+from helpers.support import refused
 
-from idealgas.scene import SceneError, parse_scene
+from idealgas.scene import parse_scene
 
 pytestmark = pytest.mark.interpreted
 
@@ -39,6 +41,9 @@ def solids(*curves, number=1):
     return f"box.size = [10, 10]\nwall = [{', '.join(rows)}]\n" + GAS.format(number, 0.1)
 
 
+NINE = "box.size = [9, 9]\n"
+TWO = GAS.format(2, 0.1)
+BATH = "thermostat = {{ temperature = 1, rate = {} }}\n"
 SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8))
 
 
@@ -62,26 +67,15 @@ SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8
         pytest.param(solids(SQUARE, ((4, 3), (6, 2), (6, 4))), None, id="a corner on a side"),
         pytest.param(solids(SQUARE, ((3.9, 3), (6, 2), (6, 4))), "curves that cross", id="a corner in it"),
         pytest.param(solids(SQUARE, ((4, 4), (6, 4), (6, 6))), "no closed curve", id="a corner on a corner"),
-        pytest.param(
-            "box.size = [9, 9]\nrun.trials = 1\n" + GAS.format(2, 0.1), "no trials in event_driven", id="owner"
-        ),
-        pytest.param("box.size = [9, 9]\nlog.snapshot_every = 1.01e-7\n" + GAS.format(2, 0.1), None, id="snapshots"),
-        pytest.param(
-            "box.size = [9, 9]\nlog.snapshot_every = 0.99e-7\n" + GAS.format(2, 0.1), "too many snap", id="more"
-        ),
-        pytest.param(
-            "box.size = [9, 9]\nthermostat = { temperature = 1, rate = 4.99e9 }\n" + GAS.format(2, 0.1), None, id="bath"
-        ),
-        pytest.param(
-            "box.size = [9, 9]\nthermostat = { temperature = 1, rate = 5.01e9 }\n" + GAS.format(2, 0.1),
-            "too many thermostat collisions",
-            id="bath+",
-        ),
+        pytest.param(NINE + "run.trials = 1\n" + TWO, "no trials in event_driven", id="owner"),
+        pytest.param(NINE + "log.snapshot_every = 1.01e-7\n" + TWO, None, id="snapshots"),
+        pytest.param(NINE + "log.snapshot_every = 0.99e-7\n" + TWO, "too many snap", id="more"),
+        pytest.param(NINE + BATH.format("4.99e9") + TWO, None, id="bath"),
+        pytest.param(NINE + BATH.format("5.01e9") + TWO, "too many thermostat collisions", id="bath+"),
     ],
 )
 def test_bounds_of_scenes(text, wrong):
     if wrong is None:
         parse_scene(text)
     else:
-        with pytest.raises(SceneError, match=wrong):
-            parse_scene(text)
+        assert re.search(wrong, "\n".join(refused(text)))

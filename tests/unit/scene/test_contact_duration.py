@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from helpers.support import refused
 
 from idealgas.scene import SceneError, parse_scene
 
@@ -41,19 +42,13 @@ def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
     assert parse_scene(GAS, overrides=[FALL]).restitution == found.restitution
 
 
-def test_a_piston_that_is_pressed_is_a_force():
+def test_a_force_and_what_is_given():
     found = scene(PISTON)
     assert found.body_force == (-0.5 * 8 / 4, 0)
     assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
     assert found.mean_free_time < scene("piston=[{ position=9, velocity=0 }]").mean_free_time
-
-
-def test_what_is_given_stays():
     assert scene(FALL, "restitution.contact_duration=1e-4").restitution.contact_duration == 1e-4
     assert scene(FALL, "restitution={ normal = 1, wall = 1 }").restitution.contact_duration is None
-
-
-def test_under_gravity_discs_may_be_at_rest_at_the_start():
     assert 0 < scene(FALL, "species.gas.speed=0").restitution.contact_duration < math.inf
     with pytest.raises(SceneError, match="no default where nothing moves at the start"):
         scene("species.gas.speed=0")
@@ -73,6 +68,4 @@ def test_rest():
 
 @pytest.mark.parametrize("override", ["box.size=[10]", "gravity.acceleration=3", "piston=3", "species=[]"])
 def test_what_is_wrong_elsewhere_is_said_there(override):
-    with pytest.raises(SceneError) as caught:
-        scene(FALL, override)
-    assert "contact_duration" not in str(caught.value)
+    assert "contact_duration" not in str(refused(GAS, FALL, override))

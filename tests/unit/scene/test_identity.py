@@ -62,15 +62,12 @@ def test_another(digest, overrides):
     assert digest(scene(*overrides)) != digest(scene())
 
 
-def test_a_seed_that_nothing_is_drawn_from_makes_no_other_run():
+def test_a_seed_that_nothing_is_drawn_from_makes_no_other_run_nor_temperatures_of_walls_another_gas():
     assert draws_random_numbers(scene())
     assert not draws_random_numbers(scene(text=DISCS))
     assert run_digest(scene("scene.seed=9", text=DISCS)) == run_digest(scene(text=DISCS))
     hot = "box.left={thermal = 1}"
     assert run_digest(scene(hot, "scene.seed=9", text=DISCS)) != run_digest(scene(hot, text=DISCS))
-
-
-def test_walls_of_another_temperature_hold_the_same_gas():
     assert gas_digest(scene("box.left={thermal = 1}")) == gas_digest(scene("box.left={thermal = 2}"))
     piston = "piston=[{mass = 2, pressure = 1, position = %g}]"
     assert gas_digest(scene(piston % 6)) == gas_digest(scene(piston % 7))

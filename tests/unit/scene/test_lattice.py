@@ -12,13 +12,14 @@ from idealgas.scene import parse_scene
 from idealgas.scene.lattice import triangular_lattice
 
 
-def test_870_discs_in_a_square_are_strained():
+def test_870_discs_in_a_square_are_strained_and_an_odd_number_has_no_lattice():
     found = triangular_lattice(870, (1.0, 1.0))
     assert {found.columns, found.rows} == {29, 30}
     assert found.strain == pytest.approx(29 / 30 / (math.sqrt(3) / 2) - 1)  # 11.6 %
     width, height = found.unstrained
     assert width * height == pytest.approx(1.0)
     assert triangular_lattice(870, (width, height)).strain == pytest.approx(0.0, abs=1e-12)
+    assert triangular_lattice(29, (1.0, 1.0)) is None
 
 
 @pytest.mark.parametrize(
@@ -32,10 +33,6 @@ def test_sites_are_as_far_apart_as_said(number, size):
     assert (sites < size).all()
     images = np.concatenate([sites + np.array(size) * (i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
     assert cKDTree(images).query(sites, k=2)[0][:, 1] == pytest.approx(lattice.nearest)
-
-
-def test_an_odd_number_has_none():
-    assert triangular_lattice(29, (1.0, 1.0)) is None
 
 
 def test_discs_start_on_the_lattice_up_to_a_packing_fraction_of_0_9():

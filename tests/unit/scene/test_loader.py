@@ -1,8 +1,14 @@
+"""Scenes from files and texts: defaults, the lines of all mistakes, and dumps."""
+
+from functools import partial
+
 import pytest
 from helpers.support import ROOT
+from helpers.support import refused as refused_of
 
 from idealgas.errors import UserError
 from idealgas.examples import load_example
+from idealgas.initial.build import make_gas
 from idealgas.scene import Header, Log, Scene, SceneError, Species, load_scene, parse_scene
 from idealgas.toml.dump import dump_document
 from idealgas.toml.table import LARGEST
@@ -18,10 +24,7 @@ until = 1
 """
 
 
-def refused(text, *overrides):
-    with pytest.raises(SceneError) as refusal:
-        parse_scene(text, "s.toml", overrides)
-    return refusal.value.errors
+refused = partial(refused_of, name="s.toml")
 
 
 def test_of_many_mistakes_the_first_are_lines_and_the_others_a_number():
@@ -57,7 +60,7 @@ def test_messages_have_the_names_of_tables():
     ]
 
 
-def test_defaults():
+def test_defaults_and_types():
     scene = parse_scene(MINIMAL)
     assert scene.scene == Header(title="", seed=0)
     assert scene.log == Log(events=True, compression="gzip", checkpoint_every=1)
@@ -66,30 +69,18 @@ def test_defaults():
     assert scene.disc[0].mass == 1.0
     assert scene.species == ()
     assert scene.effects == ()
-
-
-def test_whole_numbers_become_floats():
     width = parse_scene(MINIMAL).box.size[0]
     assert isinstance(width, float)
     assert width == 4.0
-
-
-def test_scenes_are_frozen():
     scene = parse_scene(MINIMAL)
     with pytest.raises(ValueError, match="frozen"):
         scene.run.until = 2.0
-
-
-def test_a_scene_made_in_python_is_checked_too():
-    with pytest.raises(ValueError, match="no stop rule"):
-        Scene.model_validate({"box": {"size": [4, 2]}, "disc": [{"position": [1, 1], "radius": 0.5}], "run": {}})
-
-
-def test_where_a_scene_was_written_is_no_part_of_it():
     assert parse_scene(MINIMAL, "one.toml") == parse_scene("# moved\n" + MINIMAL, "two.toml")
 
 
-def test_the_error_is_a_user_error_and_a_value_error():
+def test_a_scene_made_in_python_is_checked_too_and_its_error_is_a_user_error():
+    with pytest.raises(ValueError, match="no stop rule"):
+        Scene.model_validate({"box": {"size": [4, 2]}, "disc": [{"position": [1, 1], "radius": 0.5}], "run": {}})
     error = SceneError(["first", "second"])
     assert isinstance(error, UserError)
     assert isinstance(error, ValueError)
@@ -102,9 +93,6 @@ def test_an_unreadable_file_is_one_line(tmp_path):
         with pytest.raises(SceneError) as refusal:
             load_scene(path)
         assert refusal.value.errors == [f"{path}: cannot be read ({reason})"]
-
-
-def test_a_file_name_with_a_null_byte_is_one_line():
     with pytest.raises(SceneError) as refusal:
         load_scene("a\0b")
     assert len(refusal.value.errors) == 1
@@ -126,18 +114,12 @@ def test_not_toml(text, line):
     assert error.startswith(line)
 
 
-def test_windows_line_ends_count_as_one_line():
+def test_values_too_large_are_refused_in_a_short_line_of_the_right_number():
     (error,) = refused(MINIMAL.replace("until = 1", "until = 0").replace("\n", "\r\n"))
     assert error == "s.toml:8: run.until: out of range (got 0; allowed > 0)"
-
-
-def test_numbers_too_large_to_compute_with_are_refused():
     (error,) = refused(MINIMAL.replace("radius = 0.5", "radius = 0.5\nmass = 1e200"))
     assert error == f"s.toml:7: disc.0.mass: out of range (got 1e+200; allowed <= {LARGEST:g})"
     assert len(refused(MINIMAL.replace("until = 1", "until = 1" + "0" * 400))) == 1
-
-
-def test_long_values_are_shown_in_part():
     (error,) = refused(MINIMAL.replace("until = 1", f'until = "{"x" * 500}"'))
     assert len(error) < 150
 
@@ -148,22 +130,16 @@ def test_faults_between_tables_are_reported_beside_faults_within_them():
         "s.toml:8: run.until: out of range",
         "s.toml:10: disc.1.position: overlaps disc 0",
     ]
-
-
-def test_discs_that_touch_do_not_overlap():
-    touching = MINIMAL + "[[disc]]\nposition = [2, 1]\nradius = 0.5\n"
-    assert len(parse_scene(touching).disc) == 2
-    assert len(parse_scene(touching, overrides=["disc.1.position=[1.9999999999999998, 1]"]).disc) == 2
-    assert len(refused(touching, "disc.1.position=[1.9999999, 1]")) == 1
-
-
-def test_every_overlap_with_an_earlier_disc_is_reported():
     discs = "".join(f"[[disc]]\nposition = [{x}, 1]\nradius = 0.5\n" for x in (3.5, 0.5, 2.75))
     errors = refused(MINIMAL + discs)
     assert [error.split(" (")[0].split(": ", 1)[1] for error in errors] == [
         "disc.2.position: overlaps disc 0",
         "disc.3.position: overlaps disc 1",
     ]
+    touching = MINIMAL + "[[disc]]\nposition = [2, 1]\nradius = 0.5\n"
+    assert len(parse_scene(touching).disc) == 2
+    assert len(parse_scene(touching, overrides=["disc.1.position=[1.9999999999999998, 1]"]).disc) == 2
+    assert len(refused(touching, "disc.1.position=[1.9999999, 1]")) == 1
 
 
 def test_a_dump_shows_the_defaults():
@@ -183,3 +159,9 @@ def test_an_example_is_loaded_by_its_name():
     with pytest.raises(UserError) as refusal:
         load_example("brownan")
     assert str(refusal.value).startswith('unknown example, did you mean "brownian"?')
+
+
+def test_a_valid_scene_is_accepted_and_its_dump_is_the_same_scene(valid_case):
+    scene = load_scene(valid_case)
+    assert parse_scene(dump_document(scene)) == scene
+    assert len(make_gas(scene)) == len(scene.disc) + sum(s.count for s in scene.species)

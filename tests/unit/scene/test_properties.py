@@ -44,10 +44,13 @@ def together(*names):
     return [override for name in names for override in TABLES[name]]
 
 
-def test_a_plain_box_has_all_defaults():
+def test_a_plain_box_has_all_defaults_and_all_effects_lack_several():
     assert properties() == Properties()
     assert scene().active_effects == ()
     assert scene().lacking("uniform", "isolated", "conserves_motion") == ()
+    everything = scene(*together(*NAMES))
+    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in NAMES if e != "periodic sides")
+    assert everything.lacking() == ()
 
 
 LACKING = {
@@ -90,12 +93,6 @@ def test_what_effects_bring(name):
         assert getattr(properties(*TABLES[effect]), name) == (effect in BRINGING[name])
 
 
-def test_several_properties_at_once():
-    everything = scene(*together(*NAMES))
-    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in NAMES if e != "periodic sides")
-    assert everything.lacking() == ()
-
-
 @pytest.mark.parametrize(
     ("overrides", "changed"),
     [
@@ -111,18 +108,19 @@ def test_what_keys_decide(overrides, changed):
     assert properties(*overrides) == replace(Properties(), **changed)
 
 
-def test_a_piston_is_driven_if_it_moves_whatever_hits_it():
+def test_drives_accelerations_and_temperatures():
     assert properties("piston=[{ velocity = -0.5 }]").driven
     assert not properties("piston=[{ velocity = 0 }]").driven
-
-
-def test_temperatures_by_the_numbers_of_walls():
+    one, other = (replace(Properties(), acceleration=a) for a in ((1.0, 0.0), (0.5, -2.0)))
+    assert (one & other).acceleration == (1.5, -2.0)
     walls = "wall=[{from=[16, 4], to=[18, 5]}, {from=[16, 2], to=[18, 3], temperature=4}]"
     found = properties("box.right={thermal=2}", walls)
     assert found.emits == (None, 2.0, None, None, None, 4.0)
     assert found.temperatures == {2.0, 4.0}
     assert Properties().emits == (None,) * FIRST_SEGMENT
     assert properties("box.right={thermal=2}", *TABLES["thermostat"]).temperatures == {2.0, 3.0}
+    assert all("both" in entry.metadata for entry in fields(Properties))
+    assert len(SIDES) == FIRST_SEGMENT == len(OUTWARD)
 
 
 def wall(gate):
@@ -175,11 +173,6 @@ def test_effects_come_together(names):
     assert one & Properties() == Properties() & one == one
 
 
-def test_accelerations_add_up():
-    one, other = (replace(Properties(), acceleration=a) for a in ((1.0, 0.0), (0.5, -2.0)))
-    assert (one & other).acceleration == (1.5, -2.0)
-
-
 SPREAD = {"acceleration": (1.0, 0.0), "later_accelerations": ((-3.0, 0.5), (2.0, -0.25))}
 
 
@@ -205,10 +198,6 @@ def test_what_follows_from_properties(given, name, value):
     assert getattr(Properties(**given), name) == value
 
 
-def test_every_property_says_how_it_comes_together():
-    assert all("both" in entry.metadata for entry in fields(Properties))
-
-
 # ── walls by their numbers ──
 
 
@@ -223,7 +212,3 @@ def test_sides_by_their_numbers(side):
     start, end = side_ends((20.0, 10.0))[side]
     assert start[axis] == end[axis] == ((20.0, 10.0)[axis] if is_upper(side) else 0.0)
     assert (start[1 - axis], end[1 - axis]) == (0.0, (20.0, 10.0)[1 - axis])
-
-
-def test_segments_follow_the_sides():
-    assert len(SIDES) == FIRST_SEGMENT == len(OUTWARD)

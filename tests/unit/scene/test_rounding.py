@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from helpers.support import logged
 
-from idealgas import open_log, simulate
 from idealgas.scene import SceneError, parse_scene
 from idealgas.scene.checks.overlaps import rounding
 
@@ -28,8 +28,7 @@ def test_the_end_of_a_run_is_a_start(tmp_path, more):
     for seed in range(10):
         path = tmp_path / f"{seed}.h5"
         head = HEAD.replace("run.until = 1", f"run.events = {900 + seed}\nscene.seed = {seed}")
-        simulate(parse_scene(head + more + gas), path)
-        with open_log(path) as log:
+        with logged(parse_scene(head + more + gas), path) as log:
             state, radius = log.state_at(log.end_time), log.discs.radius
             deepest = max(
                 deepest, *(values.max() for values in (log.observables["overlap"][1], log.observables["outside"][1]))

@@ -4,12 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from helpers.support import logged
 from scipy.stats import truncnorm
 
 from idealgas import parse_scene
 from idealgas.initial.build import make_gas
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
 from idealgas.scene.scene import describe_gas, gas_digest
 from idealgas.toml.dump import dump_document
 
@@ -37,26 +36,17 @@ def gas_of(*args, **options):
     return make_gas(scene_of(*args, **options))
 
 
-def test_uniform_radii_have_mean_and_spread_of_their_distribution():
+def test_radii_have_mean_and_spread_of_their_distribution():
     radius = gas_of(UNIFORM).radius
     assert radius.mean() == pytest.approx(0.5, rel=1e-14)
     assert radius.std() == pytest.approx(0.4 / math.sqrt(12), rel=1e-6)  # 1 - 1/N² of the variance
     assert 0.3 < radius.min() < radius.max() < 0.7
-
-
-def test_normal_radii_have_mean_and_spread_of_the_truncated_distribution():
     radius = gas_of(NORMAL).radius
     law = truncnorm((0.25 - 0.4) / 0.1, (0.7 - 0.4) / 0.1, 0.4, 0.1)
     assert radius.mean() == pytest.approx(law.mean(), rel=1e-5)
     assert radius.std() == pytest.approx(law.std(), rel=1e-3)
     assert np.sort(radius)[[9, 499]] == pytest.approx(law.ppf([9.5e-3, 0.4995]), rel=1e-12)
-
-
-def test_values_are_those_of_the_discs_one_after_the_other():
     assert gas_of("{ values = [0.5, 0.25, 0.125] }", count=5).radius.tolist() == [0.5, 0.25, 0.125, 0.5, 0.25]
-
-
-def test_masses_by_density_or_given():
     gas = gas_of(UNIFORM, "{ density = 2.0 }")
     assert gas.mass == pytest.approx(2 * math.pi * gas.radius**2, rel=1e-15)
     assert (gas_of(UNIFORM, "3").mass == 3).all()
@@ -83,8 +73,7 @@ def test_the_gas_is_that_of_every_seed_in_another_order():
 
 def test_a_log_has_the_radius_and_mass_of_each_disc(tmp_path):
     scene = scene_of(UNIFORM, "{ density = 1.0 }", count=50)
-    simulate(scene, tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(scene, tmp_path / "run.h5") as log:
         gas = make_gas(scene)
         assert (log.discs.radius == gas.radius).all()
         assert (log.discs.mass == gas.mass).all()

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.log_compare import scene_of
+from helpers.support import logged
 
 from idealgas.errors import OutputError
 from idealgas.log import LogError, open_log
@@ -24,8 +25,7 @@ FRAMES = 5
 @pytest.fixture(scope="module", params=["mixture", "rough", "periodic"])
 def log(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("export") / "run.h5"
-    simulate(scene_of(request.param, "run.events=4000"), path)
-    with open_log(path) as log:
+    with logged(scene_of(request.param, "run.events=4000"), path) as log:
         yield log
 
 
@@ -157,14 +157,32 @@ def test_gsd(log, frames, tmp_path):
             assert np.array_equal(frame.particles.typeid, log.discs.species)
 
 
-def test_gsd_has_names_in_ascii(tmp_path):
+def test_names_of_species(tmp_path):
+    from ase import data
+    from ase import io as ase
     from gsd import hoomd
 
-    simulate(scene_of("mixture", "run.events=20", 'species.0.name="klein_ü"'), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(scene_of("mixture", "run.events=20", 'species.0.name="klein_ü"'), tmp_path / "run.h5") as log:
         export(log, "gsd", tmp_path / "run.gsd", [0.0])
     with hoomd.open(str(tmp_path / "run.gsd")) as file:
         assert file[0].particles.types[0] == "klein_\\xfc"
+    names = ('species.0.name="He"', 'species.1.name="heavy"')
+    simulate(scene_of("mixture", "run.events=20", *names), tmp_path / "run.h5", force=True)
+    with open_log(tmp_path / "run.h5") as log:
+        export(log, "extxyz", tmp_path / "run.extxyz", [0.0])
+        species = log.discs.species
+    atoms = ase.read(tmp_path / "run.extxyz")
+    assert np.array_equal(atoms.symbols == "He", species == 0)
+    assert np.array_equal(atoms.symbols == "X", species == 1)
+
+    assert set(data.chemical_symbols) - {"X"} == ELEMENTS
+    # Every row of a table repeats them.
+    simulate(scene_of("mixture", "run.events=20", f'species.0.name="{"ü" * 255}"'), tmp_path / "run.h5", force=True)
+    with open_log(tmp_path / "run.h5") as log:
+        export(log, "csv", tmp_path / "frames.csv", [0.0])
+    assert "ü" * 255 in read_table(tmp_path / "frames.csv")["species"]
+    with pytest.raises(SceneError, match=r"species\.a{255}.*\.name: too long \(got .*; allowed up to 255 characters\)"):
+        scene_of("mixture", f'species.0.name="{"a" * 256}"')
 
 
 def test_extended_xyz(log, frames, tmp_path):
@@ -186,25 +204,6 @@ def test_extended_xyz(log, frames, tmp_path):
         assert np.array_equal(atoms.get_momenta()[:, :2], log.discs.mass[:, np.newaxis] * state.velocity)
         kinetic = (log.discs.mass * (state.velocity**2).sum(axis=1)).sum() / 2
         assert atoms.get_kinetic_energy() == pytest.approx(kinetic, rel=1e-13)
-
-
-def test_species_with_names_of_elements_have_their_symbols(tmp_path):
-    from ase import io as ase
-
-    names = ('species.0.name="He"', 'species.1.name="heavy"')
-    simulate(scene_of("mixture", "run.events=20", *names), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        export(log, "extxyz", tmp_path / "run.extxyz", [0.0])
-        species = log.discs.species
-    atoms = ase.read(tmp_path / "run.extxyz")
-    assert np.array_equal(atoms.symbols == "He", species == 0)
-    assert np.array_equal(atoms.symbols == "X", species == 1)
-
-
-def test_every_element_has_its_symbol():
-    from ase import data
-
-    assert set(data.chemical_symbols) - {"X"} == ELEMENTS
 
 
 @pytest.mark.needs("OVITO")
@@ -319,9 +318,8 @@ def test_a_missing_package_is_named(log, kind, package, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_gas_without_positions_has_tables_only(tmp_path):
-    simulate(scene_of("novak-bortz", "run.events=300"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+def test_a_gas_without_positions_or_events_has_tables_only(tmp_path):
+    with logged(scene_of("novak-bortz", "run.events=300"), tmp_path / "run.h5") as log:
         assert export(log, "csv", tmp_path / "events.csv") == len(log)
         assert export(log, "csv", tmp_path / "frames.csv", [0.0]) == 1
         assert "x" not in read_table(tmp_path / "events.csv")
@@ -330,19 +328,8 @@ def test_a_gas_without_positions_has_tables_only(tmp_path):
                 export(log, kind, tmp_path / "out", [0.0])
 
 
-def test_names_are_short_enough_for_a_table(tmp_path):
-    """Every row of a table repeats them."""
-    simulate(scene_of("mixture", "run.events=20", f'species.0.name="{"ü" * 255}"'), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        export(log, "csv", tmp_path / "frames.csv", [0.0])
-    assert "ü" * 255 in read_table(tmp_path / "frames.csv")["species"]
-    with pytest.raises(SceneError, match=r"species\.a{255}.*\.name: too long \(got .*; allowed up to 255 characters\)"):
-        scene_of("mixture", f'species.0.name="{"a" * 256}"')
-
-
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
 def test_a_table_without_events_has_its_columns(kind, tmp_path):
-    simulate(scene_of("mixture", "run.until=1e-9"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(scene_of("mixture", "run.until=1e-9"), tmp_path / "run.h5") as log:
         assert export(log, kind, tmp_path / f"events.{kind}") == 0
     assert list(read_table(tmp_path / f"events.{kind}")) == ["time", "disc", "partner", "kind", "x", "y", "vx", "vy"]

@@ -6,10 +6,6 @@ import pytest
 from idealgas.log.hdf5.superblock import clear_consistency_flags, has_consistency_flags, lookup3
 
 
-def test_lookup3_gives_its_authors_examples():
-    assert lookup3(b"Four score and seven years ago") == 0x17770551
-
-
 def is_marked(path):
     return has_consistency_flags(path.read_bytes())
 
@@ -27,9 +23,10 @@ def file(tmp_path):
     return path
 
 
-def test_checksum_is_that_of_hdf5(file):
+def test_checksums_are_those_of_hdf5_and_of_their_author(file):
     block = file.read_bytes()[:48]
     assert lookup3(block[:44]) == int.from_bytes(block[44:], "little")
+    assert lookup3(b"Four score and seven years ago") == 0x17770551
 
 
 def test_a_mark_is_seen_and_cleared(file):
