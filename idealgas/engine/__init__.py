@@ -1,5 +1,6 @@
 """Methods that advance a gas from event to event, and the epochs in which they run.
 
-Discs have an index, their place in the arrays of an engine, which changes with every epoch, and an id, which does not.
-Times of records count from the start of the epoch; `epoch_start` is that start, counted from the start of the run.
+A disc has an id, which never changes, and an index, its position in the engine's arrays, which changes with every
+epoch. Times in records are local: they count from the start of the epoch. `epoch_start` is the time of that start,
+counted from the start of the run.
 """

@@ -1,7 +1,7 @@
-"""The brute-force method: before every event, all pairs, walls and images are searched for the next one, O(N²).
+"""The brute-force method: before every event, all pairs, walls and images are searched for the next event, O(N²).
 
-It is the reference for the event-driven method: the same laws, the same rule for simultaneous events, no stored
-predictions.
+It is the reference for the event-driven method: it has the same laws and the same rule for simultaneous events, but no
+stored predictions.
 """
 
 import numpy as np
@@ -48,7 +48,7 @@ INNER = -1  # side of inner pistons
 def wall_event(record, i, effects, length_x, length_y, best):
     """The earlier of the event `best` and disc i's next contact with a side, a piston or a wall segment.
 
-    best: an event as `next_event` returns it. length_x, length_y: size of the box.
+    best: event in the form of `next_event`. length_x, length_y: size of the box, length.
     """
     disc = record[i]
     for side in range(4):
@@ -65,7 +65,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
 
 @inline
 def side_time(disc, side, length, shear, effects):
-    """Local time at which a disc touches a side of the box, or crosses a sheared one; NEVER if it does not."""
+    """Local time at which a disc touches a side of the box, or crosses a sheared side; NEVER if it does not."""
     if shear is not None:
         return crossing_time(disc, side, length)
     return contact_with_side(disc, side, length, effects.gravity, effects.vibration)
@@ -73,7 +73,7 @@ def side_time(disc, side, length, shear, effects):
 
 @inline
 def piston_event(disc, i, side, piston, gravity, best):
-    """The earlier of the event `best` and disc i's next contact with the piston at a side, or with the INNER ones."""
+    """The earlier of the event `best` and disc i's next contact with the piston at a side, or with INNER pistons."""
     if piston is not None:
         for k in range(piston.shape[0]):
             if piston[k].outward == 0.0 if side == INNER else piston[k].wall == side:
@@ -101,7 +101,7 @@ def segment_event(disc, i, segments, effects, best):
 
 @inline
 def contact_with_wall(disc, i, k, passage, effects, images):
-    """Local time of disc i's contact with wall k inside the box; NEVER without one."""
+    """Local time of disc i's contact with wall k inside the box; NEVER if there is none."""
     segments, arcs = effects.segments, effects.arcs
     return wall_contact(
         disc, i, k, segments, arcs, passage, effects.gravity, effects.restitution, effects.periodic, images
@@ -134,15 +134,15 @@ def pair_event(record, i, j, effects, best):
 
 @inline
 def image_range(periodic, along_y):
-    """Range of the neighbouring images along an axis: -1 to 1 where it is periodic, else 0 alone."""
+    """Range of the neighbouring images along an axis: -1 to 1 if it is periodic, otherwise only 0."""
     return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
 
 
 @inline
 def sheared_range(shear, most, others):
-    """Range of the images along an axis: -most to most where sides are sheared, else the other one.
+    """Range of the images along an axis: -most to most if sides are sheared, otherwise `others`.
 
-    In an epoch, images move by up to one box, from up to one box ahead, and discs are up to one box apart.
+    An image starts up to one box ahead and moves by up to one box in an epoch, and discs are up to one box apart.
     """
     if shear is not None:
         return (-most, most + 1)
@@ -151,9 +151,9 @@ def sheared_range(shear, most, others):
 
 @inline
 def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
-    """Local time of a disc's next crossing of a periodic side along an axis, and whether it is forward.
+    """Local time of a disc's next crossing of a periodic side along an axis, and whether it is in positive direction.
 
-    Under gravity it is computed from the disc's state at the local time `now`, up to which crossings are counted.
+    Under gravity the time is computed from the disc's state at the local time `now`, up to which crossings are counted.
     """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     if gravity is not None:
@@ -172,7 +172,7 @@ def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
 def boundary_crossing_event(record, i, periodic, gravity, now, best):
     """The earlier of the event `best` and disc i's next crossing of a periodic side.
 
-    A crossing changes no record, but the images in which the disc has to be searched for contacts.
+    A crossing changes no position or velocity, only the images in which contacts of the disc are searched.
     """
     if periodic is not None:
         for axis in range(2):
@@ -187,7 +187,7 @@ def boundary_crossing_event(record, i, periodic, gravity, now, best):
 
 @inline
 def stop_event(piston, best):
-    """The earlier of the event `best` and a piston's arrival at a side, which comes first if they tie."""
+    """The earlier of the event `best` and a piston's arrival at a side; if they are simultaneous, the arrival."""
     if piston is not None:
         for k in range(piston.shape[0]):
             time = stop_contact(piston[k])
@@ -200,9 +200,9 @@ def stop_event(piston, best):
 def next_event(record, box, effects, now):
     """Earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
 
-    now: local time up to which everything has happened. For a BOUNDARY_CROSSING the partner is the axis, and
-    image_x the direction. Events are compared in the order that decides between simultaneous ones: the smaller id
-    first, then walls, then the heat bath, then the other id.
+    now: local time up to which all events have happened. For a BOUNDARY_CROSSING the partner is the axis, and image_x
+    the direction. Events are compared in the order of simultaneous events: the smaller id first, then walls, then the
+    heat bath, then the other id.
     """
     best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):
@@ -229,7 +229,7 @@ def cross_boundary(periodic, disc, axis, forward):
 
 @inline
 def take_out(disc, i, kind, absorbing, rotation):
-    """Take disc i out of the gas if its event of this kind was the last."""
+    """Take disc i out of the gas if an event of this kind was its last."""
     if absorbing is not None and kind == ESCAPED:
         leave_gas(disc, i, rotation)
 
@@ -238,7 +238,7 @@ def take_out(disc, i, kind, absorbing, rotation):
 def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; records are in order of id.
 
-    Returns the number of rows written, and whether everything up to the limit of time has happened.
+    Returns the number of rows written, and whether all events up to the time limit have happened.
     """
     rows = 0
     events = 0
@@ -290,7 +290,7 @@ def advance_events(record, ids, box, effects, limits, epoch_start, batch, counte
 
 
 class BruteForce(Method):
-    """The brute-force method: its records and effects between the start and the end of an epoch."""
+    """The brute-force method, with the records and effects of the current epoch."""
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray

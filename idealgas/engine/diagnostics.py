@@ -1,4 +1,4 @@
-"""Conserved quantities and overlaps of a gas, measured when all discs are at one time."""
+"""Conserved quantities and overlaps of a gas whose discs are all at the same time."""
 
 from typing import NamedTuple
 
@@ -17,9 +17,9 @@ class Diagnostics(NamedTuple):
     Attributes:
         kinetic_energy: sum over the discs, mass length²/time².
         momentum: (2,) f8, sum over the discs, mass length/time.
-        overlap: deepest overlap of two discs, divided by the sum of their radii; 0 without any.
-        outside: largest distance by which a disc reaches beyond a side that is not periodic, divided by its diameter;
-            0 without any.
+        overlap: deepest overlap of two discs, divided by the sum of their radii; 0 if no discs overlap.
+        outside: largest distance by which a disc protrudes beyond a side that is not periodic, divided by its diameter;
+            0 if none protrudes.
     """
 
     kinetic_energy: float
@@ -29,7 +29,7 @@ class Diagnostics(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Coordinates (n,) of discs, length, at a local time, in the form of a record."""
+    """Coordinates (n,) of discs, length, at a local time, with the field names of a record."""
 
     x: np.ndarray
     y: np.ndarray
@@ -37,16 +37,16 @@ class Points(NamedTuple):
 
 
 def deepest_overlap(gas: Gas, periodic: Periodic | None, absorbing: np.ndarray | None) -> float:
-    """Deepest overlap of all pairs of discs, divided by the sum of their radii; 0 without any.
+    """Deepest overlap of two discs, divided by the sum of their radii; 0 if no discs overlap.
 
-    periodic: with the shear at the time of the gas, from which local times count.
+    periodic: its shear must be taken at the time of the gas, from which local times count.
     """
-    here = inside(gas.position[:, 0], absorbing)
-    position, radius, disc = gas.position[here], gas.radius[here], np.arange(len(gas))[here]
+    present = inside(gas.position[:, 0], absorbing)
+    position, radius, disc = gas.position[present], gas.radius[present], np.arange(len(gas))[present]
     period, deepest = (0.0, 0.0), 0.0
     if periodic is not None:
         period = (periodic.Lx * periodic.x, periodic.Ly * periodic.y)
-        if periodic.shear is not None:  # discs at the bottom meet others as images above the top
+        if periodic.shear is not None:  # discs near the bottom meet those near the top as images above it
             low = position[:, 1] < 2 * (1 + MARGIN) * radius.max(initial=0.0)
             above = position[low] + (offset_at(periodic.shear, 0.0), periodic.shear.Ly)
             position, radius, disc = (
@@ -64,12 +64,19 @@ def deepest_overlap(gas: Gas, periodic: Periodic | None, absorbing: np.ndarray |
 def check_invariants(
     gas: Gas, overlap: float, absorbing: np.ndarray | None, periodic: tuple[bool, bool]
 ) -> Diagnostics:
-    """Measure a gas whose deepest overlap (divided by the sum of the radii) is known.
+    """Measure the conserved quantities of a gas, and how far discs protrude beyond the box.
 
-    periodic: whether the sides along x and along y are periodic, so that no disc can be beyond them.
+    Args:
+        gas: the gas.
+        overlap: its deepest overlap, divided by the sum of the radii, which is passed through.
+        absorbing: see `inside`.
+        periodic: whether the sides along x and along y are periodic, so that discs cannot protrude there.
+
+    Returns:
+        The measured values.
     """
-    here = inside(gas.position[:, 0], absorbing)
-    radius, position = gas.radius[here], gas.position[here]
+    present = inside(gas.position[:, 0], absorbing)
+    radius, position = gas.radius[present], gas.position[present]
     reach = (
         np.maximum(radius - x, x + radius - side)
         for x, side, wraps in zip(position.T, gas.box, periodic, strict=True)

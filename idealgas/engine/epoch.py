@@ -1,4 +1,4 @@
-"""Length of an epoch, after which all discs are brought to one time and local times start again from 0."""
+"""Length of an epoch. At its end all discs are brought to the same time, and local times start again from 0."""
 
 import math
 from collections.abc import Sequence
@@ -11,19 +11,19 @@ from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import periodic_axes
 from idealgas.state import Gas
 
-EVENTS_PER_DISC = 64  # most in an epoch; an epoch has at least half as many
-EVENTS_OF_FEW = 1024  # most in an epoch of few discs; it has at least a quarter as many
-MOST_CROSSINGS = 8192  # of the fastest disc through periodic sides: predictions keep such numbers in 16 bits
-FEWEST_PER_DISC = 4  # events, however long the path: starting an epoch costs about as much as one event per disc
-FEWEST_EVENTS = 512  # of all discs, however few: starting an epoch costs at least as much as some hundred events
-UNDECIDED = 1e-6  # so close to a power of two, the sum of the speeds is taken exactly; NumPy's is far closer to that
+EVENTS_PER_DISC = 64  # largest number in an epoch; an epoch has at least half as many
+EVENTS_OF_FEW = 1024  # largest number in an epoch of few discs; it has at least a quarter as many
+MOST_CROSSINGS = 8192  # crossings of periodic sides by the fastest disc: predictions store their number in 16 bits
+FEWEST_PER_DISC = 4  # events per disc, however long the paths: starting an epoch costs about one event per disc
+FEWEST_EVENTS = 512  # events of all discs, however few: starting an epoch costs at least several hundred events
+UNDECIDED = 1e-6  # distance from a power of two within which the speeds are summed exactly; NumPy errs far less
 
 
 def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -> float:
-    """Encounters of all discs with discs and sides per length that each disc moves, 1/length; by kinetic theory.
+    """Number of encounters of all discs per length that each disc moves, 1/length, by kinetic theory.
 
-    periodic: whether the sides along x and along y are periodic. Sides that leave a disc less room than its diameter
-    are left to `narrow_encounters`.
+    It counts encounters with discs and with sides; sides that leave a disc less room than its diameter are treated by
+    `narrow_encounters`. periodic: whether the sides along x and along y are periodic.
     """
     n = len(gas)
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
@@ -34,7 +34,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
 def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:
     """Estimated rate of hits, 1/time, on sides that leave the largest disc less room than its diameter.
 
-    There the direction of motion decides, so it follows from the velocities along that axis.
+    The rate follows from the velocities along that axis, because in a narrow box the direction of motion matters.
     """
     rate, diameter = 0.0, 2.0 * float(gas.radius.max())
     for axis, (length, on) in enumerate(zip(gas.box, periodic, strict=True)):
@@ -52,14 +52,23 @@ def epoch_length(
     thermostat_collisions: float = 0.0,
     fall: float = 0.0,
 ) -> float:
-    """Length of an epoch in time, a power of two, in which each disc has 32 to 64 events; infinite if it has none.
+    """Return the length of an epoch, time: a power of two, in which each disc has 32 to 64 events.
 
-    In a dilute gas it is fewer events, but 256 to 512 of all discs at least, or the epochs would cost more than the
-    events. encounters: see `encounters_per_length`, 1/length. extra_speed: increase of the
-    speeds to be expected from gravity, a piston or a heat bath, length/time. periodic: whether the sides along x and
-    along y are periodic. thermostat_collisions: per time. fall: acceleration along periodic sides, length/time²,
-    by which no disc gains more than the largest speed. Where the last digits decide, the sum of the speeds is exactly
-    rounded, so the length depends neither on the order of the discs nor on the processor.
+    In a dilute gas there are fewer events per disc, but at least 256 to 512 in all; otherwise the epochs would cost
+    more than the events. If the last digits decide, the sum of the speeds is correctly rounded, so that the length
+    depends on neither the order of the discs nor the processor.
+
+    Args:
+        gas: the gas at the start of the epoch.
+        encounters: number of encounters per length, see `encounters_per_length`, 1/length.
+        extra_speed: expected increase of the speeds by gravity, a piston or a heat bath, length/time.
+        periodic: whether the sides along x and along y are periodic.
+        thermostat_collisions: rate of the collisions with the heat bath, 1/time.
+        fall: acceleration along periodic sides, length/time²; in an epoch no disc gains more than the largest speed
+            by it.
+
+    Returns:
+        The length of the epoch; infinite if there are no events.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
@@ -71,7 +80,7 @@ def epoch_length(
     )
 
     def exponent(sum_of_speeds: float) -> float:
-        """Exponent of 2 of the longest time that an epoch may have; infinite if nothing happens."""
+        """Logarithm to base 2 of the longest time that an epoch may take; infinite if there are no events."""
         rate = (sum_of_speeds / n + extra_speed) * encounters + other_events
         longest = fastest / fall if fall else math.inf
         if rate == 0.0:
@@ -89,7 +98,7 @@ def epoch_length(
 
 
 def fall_along_sides(effects: Effects) -> float:
-    """Largest acceleration along periodic sides, length/time²; 0 where sides end every fall."""
+    """Largest acceleration along periodic sides, length/time²; 0 if a side ends every fall."""
     if effects.gravity is None:
         return 0.0
     both = zip(effects.gravity, periodic_axes(effects.periodic), strict=True)
@@ -99,7 +108,7 @@ def fall_along_sides(effects: Effects) -> float:
 def driving_speed(gas: Gas, effects: Effects) -> float:
     """Estimated increase of the mean speed of the discs by gravity, moving walls or a heat bath, length/time.
 
-    For epoch lengths only.
+    The estimate serves only to choose the length of an epoch.
     """
     speed = 0.0
     if effects.gravity is not None:
@@ -115,7 +124,7 @@ def driving_speed(gas: Gas, effects: Effects) -> float:
 
 
 def driving_energy(gas: Gas, effects: Effects) -> float:
-    """Largest energy that pistons with a mass can bring on their ways across the box; 0 without one."""
+    """Largest energy that pistons with a mass can bring into the gas on their way across the box; 0 without pistons."""
     if effects.piston is None:
         return 0.0
     return float(np.abs(effects.piston["m"] * effects.piston["a"]).sum()) * max(gas.box)

@@ -1,4 +1,4 @@
-"""Writing events into a batch; each function returns the number of rows it wrote, 0 where no log is kept."""
+"""Writing events into a batch. Each function that writes a whole event returns its number of rows, 0 without a log."""
 
 import numpy as np
 
@@ -7,12 +7,12 @@ from idealgas.jit import inline, prefetch_next_line
 
 DISC, WALL, WALL_END, PISTON, THERMOSTAT, _, ESCAPED, FIXED_DISC = (int(kind) for kind in Kind)
 U = np.uintp
-NO_END = 1 << 62  # rows, where no log is kept
+NO_END = 1 << 62  # number of rows that stands for no limit, without a log
 
 
 @inline
 def batch_capacity(batch):
-    """Number of rows that may be full when an event is processed: a pair needs two more."""
+    """Number of filled rows from which on no event is processed, because a pair needs two more rows."""
     if batch is not None:
         return batch.time.shape[0] - 1
     return NO_END
@@ -20,7 +20,7 @@ def batch_capacity(batch):
 
 @inline
 def write_event(batch, row, time, own, partner, kind, disc, position, rotation, periodic):
-    """Write one disc's row of an event: its state after the event, with what the batch has columns for."""
+    """Write a disc's row of an event: its state after the event, in the columns that the batch has."""
     u = U(row)
     batch.time[u] = time
     batch.disc[u] = own
@@ -58,7 +58,7 @@ def fetch_next_rows(batch, row, position, angular_velocity, image, trial):
 
 @inline
 def write_pair(batch, row, time, record, ids, i, j, effects):
-    """Write both rows of a collision of discs i and j, that of the smaller id first."""
+    """Write both rows of a collision of discs i and j, the row of the smaller id first."""
     if batch is not None:
         fetch_next_rows(batch, U(row), batch.position, batch.angular_velocity, batch.image, batch.trial)
         a, b = (i, j) if ids[U(i)] < ids[U(j)] else (j, i)
@@ -81,7 +81,7 @@ def write_trial(batch, row, trial):
 
 @inline
 def write_hit(batch, row, time, own, partner, kind, disc, effects):
-    """Write the row of an event of one disc; partner: -1 - k for wall k, or BATH."""
+    """Write the row of an event that involves a single disc; partner: -1 - k for wall k, or BATH."""
     if batch is not None:
         rotation, periodic = effects.rotation, effects.periodic
         write_event(batch, row, time, np.int64(own), np.int64(partner), kind, disc, batch.position, rotation, periodic)

@@ -1,4 +1,4 @@
-"""What a simulation needs of a method, the limits of a call, and how work is shared among threads."""
+"""The interface between a simulation and its method, the limits of a call, and the division of work among threads."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from idealgas.state import Gas
 
 
 class Limits(NamedTuple):
-    """When a call of an engine's kernel ends: at a time, or after a number of events.
+    """Limits at which a call of an engine's kernel ends: a time, and numbers of events.
 
     Attributes:
         until: local time, time.
@@ -30,16 +30,16 @@ class Limits(NamedTuple):
 
 
 class Threads(NamedTuple):
-    """How a method shares its work among threads, without an effect on the result.
+    """How a method shares its work among threads; the result does not depend on it.
 
     Attributes:
         number: number of threads.
         reason: why there are this many.
         slices: number of slices of time that several threads shared.
-        aborted: number of these that one thread had to repeat.
-        min_events: smallest number of events per call of `advance` for which the work can be shared.
-        serial_events: largest number of events per call for which one thread works alone, so that another core is
-            free; 0 if a core is free anyway, or none can be.
+        aborted: number of these slices that one thread had to repeat.
+        min_events: smallest number of events per call of `advance` that several threads can share.
+        serial_events: largest number of events per call for which one thread works alone and leaves another core free;
+            0 if a core is free anyway or none can be.
     """
 
     number: int = 1
@@ -55,8 +55,8 @@ class Method(ABC):
 
     Attributes:
         discs: records of the discs in the present epoch.
-        has_positions: whether its discs have positions; without them, those of the gas stay as they are.
-        single_epoch: whether the run must be one epoch, because digits would be lost between epochs.
+        has_positions: whether the method moves discs; if not, the positions of the gas stay as they are.
+        single_epoch: whether the run must be a single epoch, because digits would be lost between epochs.
     """
 
     discs: Discs
@@ -65,7 +65,7 @@ class Method(ABC):
 
     @property
     def pending(self) -> bool:
-        """Whether rows of past events are still to be delivered by `advance`."""
+        """Whether `advance` still has rows of past events to deliver."""
         return False
 
     @property
@@ -75,11 +75,11 @@ class Method(ABC):
 
     @property
     def extra_state(self) -> Mapping[Column, float]:
-        """State of the method that later epochs depend on, by columns of the log; `advance` returns when it changes."""
+        """State on which later epochs depend, by column of the log; `advance` returns as soon as it changes."""
         return {}
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch with a gas at local time 0."""
+        """Begin an epoch; the gas is at local time 0."""
         self.discs = make_discs(gas, np.arange(len(gas)))
         self._effects = effects
 
@@ -89,9 +89,9 @@ class Method(ABC):
     ) -> tuple[int, bool]:
         """Process events up to the limits, or until the batch is full.
 
-        Returns the number of rows written, and whether everything up to the limit of time has happened.
+        Returns the number of rows written, and whether all events up to the time limit have happened.
         """
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap of a gas in this epoch, divided by the sum of the radii; effects: at the time of the gas."""
+        """Deepest overlap of two discs of a gas, divided by the sum of their radii; effects: at the time of the gas."""
         return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

@@ -1,16 +1,16 @@
 """The Monte Carlo method: discs of a homogeneous gas, without positions, that collide at random.
 
-Trials are a Poisson process; each takes any pair and accepts it in the ratio of its collision rate to the largest
-possible one, so that collisions happen exactly at the rates of their pairs. Such a process has no memory: an epoch
-begins with a new waiting time and its own random numbers, keyed by the seed and the epoch's start. So the velocities
-alone, with a raised v_ref, are enough to continue a run.
+Trials are a Poisson process. Each trial draws a random pair and accepts it with a probability equal to the ratio of its
+collision rate to the largest possible rate, so every pair collides exactly at its rate. Such a process has no memory:
+an epoch begins with a new waiting time and with its own random numbers, keyed by the seed and the start of the epoch.
+To continue a run, the velocities and a raised v_ref are therefore sufficient.
 
-The largest possible rate is that of a pair of the largest discs at the relative speed v_ref. Where v_ref is a default,
-it is raised at the collision after which two discs of the new speed could be faster than it, before the next trial:
-then no pair ever exceeds it, seen or not. This instant depends on the past only, and from it on both the rate of trials
-and the accepted fraction follow the new v_ref; so every pair still collides at its own rate (thinning with a bound that
-depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). Waiting for a trial with a pair that is too fast
-would be wrong: the pair would have collided too rarely until then.
+The largest possible rate is the collision rate of a pair of the largest discs at the relative speed v_ref. A default
+v_ref is raised after any collision from which a disc emerges so fast that two such discs could exceed v_ref, before the
+next trial; no pair is then ever too fast, whether it is drawn or not. The time of the change depends only on the past,
+and from then on both the rate of trials and the accepted fraction follow the new v_ref, so every pair still collides at
+its rate (thinning with a bound that depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). It would be
+wrong to raise v_ref only when a pair that is too fast is drawn: until then the pair would have collided too rarely.
 """
 
 import math
@@ -36,21 +36,21 @@ U = np.uintp
 DRAWS = np.uint64(5)  # random numbers reserved for a trial
 
 V_REF = Column("v_ref", "f8", (), "length/time")
-"""Where the log keeps a reference speed that may be raised."""
+"""Column of the log for a reference speed that may be raised."""
 
-FASTEST_DISC = 0.499  # of v_ref, by a disc that leaves it as it is: just under a half, so that rounding does not matter
-RAISED = 2.5  # times the speed of the disc that was too fast
+FASTEST_DISC = 0.499  # largest speed of a disc in units of v_ref: just under a half, so that rounding does not matter
+RAISED = 2.5  # the new v_ref in units of the speed of the disc that was too fast
 
 
 @inline
 def draw(start, k):
-    """Random number in (0, 1] of a trial; start: counter of the trial, k: index of the number."""
+    """Random number k in (0, 1] of a trial; start: counter of the trial."""
     return unit_interval(mix(start + np.uint64(k) * GOLDEN))
 
 
 @inline
 def random_pair(number, start):
-    """Two different indices of discs, all pairs with the same probability; start: counter of the trial."""
+    """Indices of a random pair of discs; all pairs have the same probability. start: counter of the trial."""
     i = np.int64(number * (1.0 - draw(start, 1)))
     j = np.int64((number - 1) * (1.0 - draw(start, 2)))
     return i, j + (j >= i)
@@ -58,9 +58,9 @@ def random_pair(number, start):
 
 @inline
 def too_fast(a, b, fastest_square):
-    """Square of the speed of the faster one of two discs, (length/time)², if it exceeds a bound; else 0.
+    """Squared speed of the faster of two discs, (length/time)², if it exceeds the bound `fastest_square`; otherwise 0.
 
-    fastest_square: the bound, None if there is none.
+    fastest_square: None if there is no bound.
     """
     if fastest_square is not None:
         square = max(a.vx * a.vx + a.vy * a.vy, b.vx * b.vx + b.vy * b.vy)
@@ -73,15 +73,28 @@ def advance_trials(
     record, ids, effects, until, most_collisions, most_trials,
     key, trial_time, fastest, fastest_square, one_sided, epoch_start, batch, counters,
 ):  # fmt: skip
-    """Try pairs up to local time `until`, or to a limit, or until the batch is full or a disc is too fast.
+    """Try pairs until the local time `until`, a limit or the end of the batch is reached, or a disc is too fast.
 
-    Returns the number of rows written; whether everything up to `until` has happened; a rate: relative speed times sum
-    of the radii (length²/time) of a pair that exceeds `fastest`, else 0; and the square of the speed of a disc that
-    exceeds `fastest_square` after the last collision, (length/time)², else 0.
+    Args:
+        record: (N,) DISC by index.
+        ids: (N,) u4, id of the disc at each index.
+        effects: parameters and state of the effects.
+        until: local time, time.
+        most_collisions: number of collisions still allowed.
+        most_trials: number of trials still allowed.
+        key: key of the epoch's random numbers.
+        trial_time: mean time between trials.
+        fastest: largest allowed product of relative speed and sum of the radii, length²/time.
+        fastest_square: square of the largest allowed speed of a disc, (length/time)²; None without a bound.
+        one_sided: whether all impact parameters have the same sign.
+        epoch_start: time at the start of the epoch.
+        batch: memory for the rows of events; None without a log.
+        counters: (1,) COUNTERS, updated.
 
-    most_collisions, most_trials: numbers still allowed. key: of the epoch's random numbers. trial_time: mean time
-    between trials. fastest: largest relative speed times sum of the radii, length²/time. fastest_square: square of a
-    disc's largest speed, (length/time)², or None. one_sided: whether impact parameters have one sign only.
+    Returns:
+        The number of rows written; whether all events up to `until` have happened; the product of relative speed and
+        sum of the radii (length²/time) of a pair that exceeds `fastest`, or 0; the squared speed of a disc that
+        exceeds `fastest_square` after the last collision, (length/time)², or 0.
     """
     counter = counters[0]
     number = record.shape[0]
@@ -128,27 +141,27 @@ def advance_trials(
 
 
 class MonteCarlo(Method):
-    """The Monte Carlo method: its records and effects between the start and the end of an epoch."""
+    """The Monte Carlo method, with the records and effects of the current epoch."""
 
     has_positions = False
 
     def __init__(self, seed: int, v_ref: float, one_sided: bool = False, rises: bool = False) -> None:
-        """Set the seed and v_ref, the relative speed at which a pair of the largest discs is accepted for certain.
+        """Set the seed and v_ref, the relative speed at which a pair of the largest discs is always accepted.
 
-        v_ref: length/time. one_sided: whether impact parameters have one sign only. rises: whether v_ref is raised
-        where it is too small, instead of ending the run.
+        v_ref: length/time. one_sided: whether all impact parameters have the same sign. rises: whether v_ref is raised
+        when it is too small, instead of ending the run.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
         self._extra_state: dict[Column, float] = {V_REF: v_ref} if rises else {}
 
     @property
     def extra_state(self) -> dict[Column, float]:
-        """The reference speed, if it may be raised."""
+        """Reference speed, if it may be raised."""
         return self._extra_state
 
     @property
     def v_ref(self) -> float:
-        """Relative speed at which a pair of the largest discs is accepted for certain, length/time."""
+        """Relative speed at which a pair of the largest discs is always accepted, length/time."""
         return self.extra_state.get(V_REF, self._v_ref)
 
     def start(self, gas: Gas, effects: Effects) -> None:
@@ -160,7 +173,7 @@ class MonteCarlo(Method):
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Try pairs, see `advance_trials`; UserError if a pair is faster than a given v_ref allows."""
+        """Try pairs, see `advance_trials`; UserError if a pair is too fast for a given v_ref."""
         record, ids, _ = self.discs
         v_ref, most = self.v_ref, min(limits.events, limits.collisions)
         fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.extra_state else None
@@ -185,6 +198,6 @@ class MonteCarlo(Method):
 
 
 def epoch_key(seed: int, epoch_start: float) -> np.uint64:
-    """Key of an epoch's random numbers, from the seed and the epoch's start (time)."""
+    """Key of an epoch's random numbers, from the seed and the time of the epoch's start."""
     words = np.array([seed, np.float64(epoch_start).view(np.uint64)], np.uint64)
     return np.random.SeedSequence(words.view(np.uint32).tolist()).generate_state(1, np.uint64)[0]

@@ -1,8 +1,9 @@
 """The brute-force method in multiprecision arithmetic, for smooth elastic discs in a reflecting box.
 
-The laws are those of every method, compiled for each number type of `physics.arithmetic`; simultaneous events are
-ordered as in `brute_force`. All pairs are searched for the next event; as a contact depends on two records only, it is
-computed again only when one of them has changed. Local times count from the start of the run, which is a single epoch.
+The laws of motion and collision are the same as in the other methods, compiled for each number type of
+`physics.arithmetic`. Simultaneous events are ordered as in `brute_force`. All pairs are searched for the next event;
+because a contact depends on two records only, it is computed again only when one of these has changed. Local times
+count from the start of the run, which is a single epoch.
 """
 
 from collections import namedtuple
@@ -28,11 +29,14 @@ ELASTIC = 2.0  # 1 + the coefficient of restitution
 
 
 Disc = namedtuple("Disc", "x y vx vy t r m")
-"""One disc, with the numbers of `DISC` in one type."""
+"""A disc, with the numbers of `DISC` in a single number type."""
 
 
 class Columns(NamedTuple):
-    """All discs in order of id: each number a column (N,) f4 or f8, or (N, 2) f8 for pairs; and the size of the box."""
+    """All discs in order of id, and the size of the box.
+
+    Each column is (N,) f4 or f8, or (N, 2) f8 for double-double numbers.
+    """
 
     x: np.ndarray
     y: np.ndarray
@@ -49,7 +53,7 @@ class Next(NamedTuple):
 
     Attributes:
         time: column of local times, time.
-        partner: (N,) i4, id of the other disc, -1 - k for side k, or NO_PARTNER.
+        partner: (N,) i4, id of the partner, -1 - k for side k, or NO_PARTNER.
     """
 
     time: np.ndarray
@@ -57,7 +61,7 @@ class Next(NamedTuple):
 
 
 def column_of(values: np.ndarray, precision: str) -> np.ndarray:
-    """Floats (n,) as a column of numbers of a precision: "float32", "float64" or "double-double"."""
+    """Convert floats (n,) to a column of the precision "float32", "float64" or "double-double"."""
     if precision == "float32":
         return np.array(values, np.float32)
     if precision == "float64":
@@ -66,7 +70,7 @@ def column_of(values: np.ndarray, precision: str) -> np.ndarray:
 
 
 def make_columns(gas: Gas, precision: str) -> Columns:
-    """The discs of a gas at local time 0, as columns of a precision."""
+    """Columns of the discs of a gas at local time 0; precision: as in `column_of`."""
     arrays = (*gas.position.T, *gas.velocity.T, np.zeros(len(gas)), gas.radius, gas.mass, np.array(gas.box))
     return Columns(*(column_of(values, precision) for values in arrays))
 
@@ -85,7 +89,7 @@ def pair_time(c, i, j):
 
 @inline
 def find_next(c, upcoming, i):
-    """Find and store the next event of disc i: sides come before discs, and these are in order of id."""
+    """Find and store the next event of disc i; of simultaneous events, sides come first, then discs in order of id."""
     best = number(NEVER, load(c.t, i))
     partner = NO_PARTNER
     for side in range(4):
@@ -103,7 +107,7 @@ def find_next(c, upcoming, i):
 
 @inline
 def offer(c, upcoming, i, j):
-    """Store the contact of disc i with disc j, whose record has changed, if it is disc i's next event."""
+    """Store the contact of disc i with disc j, whose record has changed, if it is the next event of disc i."""
     time, best = pair_time(c, i, j), load(upcoming.time, i)
     if time < best or (j < upcoming.partner[i] and time <= best):
         store(upcoming.time, i, time)
@@ -119,7 +123,7 @@ def find_all(c, upcoming):
 
 @inline
 def find_again(c, upcoming, i, j):
-    """Update all next events after an event of discs i and j, or of disc i and a side if j < 0."""
+    """Update the next event of every disc after a collision of discs i and j, or of disc i and a side if j < 0."""
     for k in range(c.t.shape[0]):
         partner = upcoming.partner[k]
         if k in (i, j) or partner == i or (j >= 0 and partner == j):
@@ -141,7 +145,7 @@ def move(c, i, time):
 
 @inline
 def reverse(velocity, i):
-    """Reverse one component of disc i's velocity; velocity: column."""
+    """Reverse a component of disc i's velocity; velocity: column of this component."""
     speed = load(velocity, i)
     store(velocity, i, number(0.0, speed) - speed)
 
@@ -180,7 +184,7 @@ def write_record(c, i, disc):
 def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; discs are in order of id.
 
-    Returns the number of rows written, and whether everything up to the limit of time has happened. record: the discs
+    Returns the number of rows written, and whether all events up to the time limit have happened. record: the discs
     rounded to float64, updated.
     """
     rows = 0
@@ -221,7 +225,7 @@ def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, ba
 
 @njit
 def turn_back(c, time):
-    """Move all discs to a local time, reverse their velocities, and make local times count from there."""
+    """Move all discs to a local time, reverse their velocities, and let local times count from there."""
     end = number(time, load(c.t, 0))
     for i in range(c.t.shape[0]):
         move(c, i, end)
@@ -242,7 +246,7 @@ class PreciseBruteForce(Method):
     def __init__(self, precision: str, start: Columns | None = None) -> None:
         """Set the precision: "float32", "float64" or "double-double".
 
-        start: the discs at the start of the run, if they have more digits than those of a gas.
+        start: the discs at the start of the run, if they have more digits than a gas can store.
         """
         self._precision, self._start = precision, start
 

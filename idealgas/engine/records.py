@@ -1,4 +1,4 @@
-"""Arrays of the engines: one 64-byte record for each disc, in an order that is not the order of ids."""
+"""Arrays of the engines: a 64-byte record for each disc. Their order in memory differs from the order of ids."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ DISC = np.dtype(
         ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),  # position, length; velocity, length/time
         ("t", "f8"),  # local time of the record, from the start of the epoch
         ("r", "f8"), ("m", "f8"),  # radius, length; mass
-        ("crossed_x", "i2"), ("crossed_y", "i2"),  # boundary crossings since then, see `periodic`
+        ("crossed_x", "i2"), ("crossed_y", "i2"),  # boundary crossings since that time, see `periodic`
         ("count", "u4"),  # events of this disc in this epoch
     ],
     align=True,
@@ -24,21 +24,21 @@ DISC = np.dtype(
 
 U = np.uintp
 
-MOST_AT_ONCE = 100_000  # events per disc at one instant: far more than touching discs ever need
+MOST_AT_ONCE = 100_000  # events per disc at the same instant: far more than touching discs ever need
 
 COUNTERS = np.dtype(
     [
         ("events", "i8"), ("disc_collisions", "i8"), ("wall_hits", "i8"),  # in this epoch
         ("thermostat_collisions", "i8"),
         ("time", "f8"),  # local time of the last event
-        ("events_at_this_time", "i8"),  # number of events in a row at that time
+        ("events_at_this_time", "i8"),  # number of consecutive events at that time
         ("trials", "i8"), ("trial_time", "f8"),  # Monte Carlo trials since time 0; local time of the last trial
     ]
 )  # fmt: skip
 
 
 class InelasticCollapseError(Exception):
-    """A disc has collisions without end at one instant."""
+    """A disc has endless collisions at one instant."""
 
 
 class Discs(NamedTuple):
@@ -56,9 +56,9 @@ class Discs(NamedTuple):
 
 
 def make_discs(gas: Gas, order: np.ndarray) -> Discs:
-    """Records of a gas at local time 0; order: (N,) the ids in their order in memory."""
+    """Records of a gas at local time 0; order: (N,) ids in memory order."""
     record = aligned(len(gas), DISC)
-    fields = record.view(np.ndarray)  # a record array takes far longer to find them
+    fields = record.view(np.ndarray)  # access to the fields of a record array is far slower
     columns = (*gas.position.T, *gas.velocity.T, gas.radius, gas.mass)
     for name, column in zip(("x", "y", "vx", "vy", "r", "m"), columns, strict=True):
         fields[name] = column[order]
@@ -69,9 +69,10 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 @inline
 def check_clock(time, now, events_at_this_time, n):
-    """Number of events in a row at one instant, after an event at local time `time` that follows one at `now`.
+    """Number of consecutive events at the same instant, after an event at local time `time` follows an event at `now`.
 
-    InelasticCollapseError if they are too many to end, ValueError if time runs backwards. n: number of discs.
+    InelasticCollapseError if there are so many that they seem endless, ValueError if time runs backwards. n: number of
+    discs.
     """
     if time < now:
         raise ValueError("time ran backwards")
@@ -84,9 +85,9 @@ def check_clock(time, now, events_at_this_time, n):
 
 @inline
 def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now, events_at_this_time):
-    """Add the events of one call of a kernel to the counters: all events of no other kind are wall hits.
+    """Add the events of a kernel call to the counters; events of no other kind are wall hits.
 
-    now: local time of the last event. events_at_this_time: number of events in a row at that time.
+    now: local time of the last event. events_at_this_time: number of consecutive events at that time.
     """
     counter.events += events
     counter.disc_collisions += disc_collisions
@@ -98,23 +99,23 @@ def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now
 
 @njit
 def synchronise(record, ids, time, gravity, periodic, flow, absorbing, position, velocity):
-    """Move every disc to one local time, wrap its position into the box, and store position and velocity by id.
+    """Move every disc to a local time, wrap its position into the box, and store position and velocity by id.
 
-    Where momentum flow is recorded, it then has all up to that time. position, velocity: (N, 2) f8, length and
+    If the momentum flow is recorded, it is completed up to that time. position, velocity: (N, 2) f8, length and
     length/time.
     """
     if flow is not None:
         complete_flights(record, time, gravity, flow, absorbing)
     for i in range(record.shape[0]):
         disc = record[U(i)]
-        own = U(ids[U(i)])
+        disc_id = U(ids[U(i)])
         if absorbing is None or not has_left(disc, absorbing):
             advance(disc, time, gravity)
             if periodic is not None:
-                wrap(disc, own, periodic)
-        position[own, 0], position[own, 1] = disc.x, disc.y
-        velocity[own, 0], velocity[own, 1] = disc.vx, disc.vy
+                wrap(disc, disc_id, periodic)
+        position[disc_id, 0], position[disc_id, 1] = disc.x, disc.y
+        velocity[disc_id, 0], velocity[disc_id, 1] = disc.vx, disc.vy
 
 
-UNLIMITED = 1 << 62  # number of events, where there is no limit
-LATEST = 0.25 * NEVER  # time, where there is no limit
+UNLIMITED = 1 << 62  # number of events that stands for no limit
+LATEST = 0.25 * NEVER  # time that stands for no limit

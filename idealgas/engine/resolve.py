@@ -1,4 +1,7 @@
-"""Effect of an event on the records: the discs, or disc and wall, move to its time, collide, and are counted."""
+"""Effect of an event on the records: the discs, or a disc and a wall, move to its time and collide, and it is counted.
+
+In all functions `own` is the id of the disc.
+"""
 
 import numpy as np
 
@@ -37,14 +40,14 @@ def energy_of(disc, own, rotation):
 
 @inline
 def add_energy(sums, k, energy):
-    """Add an energy (mass length²/time²) to sum k, where these energies are recorded."""
+    """Add an energy (mass length²/time²) to sum k, if these energies are recorded."""
     if sums is not None:
         add(sums[U(k)], energy)
 
 
 @inline
 def record_wall_energy(wall, given, lost, wall_energy, dissipated, thermal):
-    """Record the energies that a wall gave to a disc and that were lost; a thermal wall loses none."""
+    """Record the energy that a wall gave to a disc, and the energy dissipated; a thermal wall dissipates none."""
     if wall_energy is not None:
         add(wall_energy[U(wall)], given)
     if dissipated is not None and not is_thermal(thermal, wall):
@@ -76,11 +79,11 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
 @inline
 def collide_and_record(a, b, a_id, b_id, images, before, shear, dissipated, effects):
-    """Collide two discs whose records are at the time of contact, and record the energy that is lost.
+    """Collide two discs whose records are at the time of contact, and record the energy dissipated.
 
-    Through sheared sides they collide in the frame half-way between both. The moving image of a partner beyond the top
-    does work, u times the momentum that passes the top, which is recorded too. before: velocities (a_vx, a_vy, b_vx,
-    b_vy) before the collision, length/time.
+    Through sheared sides the discs collide in the frame half-way between their two frames. The moving image of a
+    partner beyond the top does work equal to u times the momentum transferred through the top, which is recorded too.
+    before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
     """
     if shear is not None:
         enter_common_frame(a, b, shear, images)
@@ -108,7 +111,7 @@ def arrive(disc, time, flow, gravity):
 
 @inline
 def bounce(disc, own, nx, ny, wall, time, effects):
-    """Reflect or emit a disc, whose record is at the time of contact, at a wall at rest; record the energies.
+    """Reflect or emit a disc at a wall at rest, and record the energies; the record must be at the time of contact.
 
     wall: number of the wall. Returns the momentum (px, py) that the disc received, mass length/time.
     """
@@ -124,9 +127,9 @@ def bounce(disc, own, nx, ny, wall, time, effects):
 
 @inline
 def absorb(disc, own, wall, time, effects):
-    """Count the last event of a disc, whose record is at the time of contact, at an absorbing wall; see `bounce`.
+    """Absorb a disc at a wall, which takes its whole energy and momentum; the record must be at the time of contact.
 
-    The wall takes its whole energy and momentum.
+    Returns the momentum (px, py) that the disc received, mass length/time.
     """
     finish(disc, own, time, effects.restitution, effects.periodic)
     place = place_in_space(disc, own, effects.periodic)
@@ -137,7 +140,10 @@ def absorb(disc, own, wall, time, effects):
 
 @inline
 def meet_segment(disc, own, nx, ny, segment, segments, at_end, time, absorbing, effects):
-    """Reflect, emit or absorb a disc at a wall inside the box; return the momentum, see `bounce`, and the kind."""
+    """Reflect, emit or absorb a disc at a wall inside the box.
+
+    Returns the momentum (px, py) that the disc received, mass length/time, and the kind of the event.
+    """
     if absorbing is not None and absorbing[U(segment)]:
         px, py = absorb(disc, own, FIRST_SEGMENT + segment, time, effects)
         return px, py, ESCAPED
@@ -149,7 +155,7 @@ def meet_segment(disc, own, nx, ny, segment, segments, at_end, time, absorbing, 
 
 @inline
 def bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects):
-    """Reflect or emit a disc at a side of the box, which may vibrate; see `bounce`."""
+    """Do the work of `bounce` at a side of the box that may vibrate."""
     speed = side_velocity(vibration, side, time)
     before = energy_of(disc, own, effects.rotation)
     vx = disc.vx
@@ -169,14 +175,14 @@ def bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects):
 
 @inline
 def resolve_side(disc, own, side, time, effects):
-    """Collide a disc with a side of the box at a local time, or let it cross a sheared one."""
+    """Collide a disc with a side of the box at a local time, or let it cross a sheared side."""
     arrive(disc, time, effects.flow, effects.gravity)
     meet_side(disc, own, side, time, effects.shear, effects.vibration, effects.flow, effects)
 
 
 @inline
 def meet_side(disc, own, side, time, shear, vibration, flow, effects):
-    """Do the work of `resolve_side` for a record at the time of contact."""
+    """Do the work of `resolve_side`; the record must be at the time of contact."""
     if shear is not None:
         cross_side(disc, own, side, shear, effects)
         return
@@ -191,7 +197,7 @@ def meet_side(disc, own, side, time, shear, vibration, flow, effects):
 
 @inline
 def cross_side(disc, own, side, shear, effects):
-    """Move a disc that has reached a sheared side to the opposite one; no contact duration begins."""
+    """Move a disc that has reached a sheared side to the opposite side; this does not begin a contact duration."""
     vx = disc.vx
     rows = cross(disc, side, shear)
     add_energy(effects.wall_energy, side, 0.5 * disc.m * (disc.vx - vx) * (disc.vx + vx))
@@ -201,7 +207,7 @@ def cross_side(disc, own, side, shear, effects):
 
 @inline
 def face_of(wall, left):
-    """Number of the left or the right face of a wall inside the box; the sides have one face each."""
+    """Number of the left or the right face of a wall inside the box; a side of the box has a single face."""
     return 2 * wall - FIRST_SEGMENT + (0 if left else 1)
 
 
@@ -223,7 +229,7 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 @inline
 def resolve_piston(disc, own, k, time, piston, effects):
-    """Collide a disc with piston k at a local time; return the number of the piston among the walls."""
+    """Collide a disc with piston k at a local time; return the wall number of the piston."""
     if piston is not None:
         p = piston[U(k)]
         arrive(disc, time, effects.flow, effects.gravity)
@@ -249,7 +255,7 @@ def resolve_piston(disc, own, k, time, piston, effects):
 
 @inline
 def resolve_stop(k, time, piston):
-    """Reverse the velocity of piston k at a side of the box, which it reaches at a local time."""
+    """Reverse the velocity of piston k, which reaches a side of the box at a local time."""
     if piston is not None:
         p = piston[U(k)]
         advance_piston(p, time)
@@ -259,7 +265,7 @@ def resolve_stop(k, time, piston):
 
 @inline
 def resolve_thermostat_collision(disc, own, time, thermostat, effects):
-    """Give a disc a new velocity from the heat bath at a local time; no contact duration begins."""
+    """Give a disc a new velocity from the heat bath at a local time; this does not begin a contact duration."""
     if thermostat is not None:
         arrive(disc, time, effects.flow, effects.gravity)
         energy = energy_of(disc, own, effects.rotation)

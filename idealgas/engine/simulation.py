@@ -30,11 +30,11 @@ from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
 TRAJECTORY = 4
-"""Version of the trajectory, to be raised by hand whenever a change of the program changes the log of a scene."""
+"""Version of the trajectory. Raise it by hand whenever a change to the program changes the log of a scene."""
 
 
 class Stop(NamedTuple):
-    """When a run ends: at a time or at a number, whichever is reached first.
+    """The end of a run: a time and numbers of events, of which the first to be reached ends it.
 
     Attributes:
         time: time since the start of the run.
@@ -58,10 +58,10 @@ class Totals(NamedTuple):
     Attributes:
         events: all events that are logged.
         disc_collisions: collisions of two discs.
-        wall_hits: hits of walls, piston included.
-        thermostat_collisions: of discs with a heat bath.
-        steered: discs whose velocities or acceleration were changed from outside.
-        escaped: discs that have left the gas through absorbing walls; their last hits are wall hits.
+        wall_hits: collisions of discs with walls, including pistons.
+        thermostat_collisions: collisions of discs with the heat bath.
+        steered: discs whose velocity or acceleration was changed from outside.
+        escaped: discs that have left the gas through absorbing walls; each last hit also counts as a wall hit.
         trials: pairs tried by Monte Carlo.
     """
 
@@ -80,16 +80,18 @@ def _nobody() -> np.ndarray:
 
 @dataclass
 class Simulation:
-    """A gas that is advanced by events; all follows from gas, effects, time and totals at the start of an epoch.
+    """A gas that advances from event to event.
+
+    The gas, the effects, the time and the totals at the start of an epoch determine everything that follows.
 
     Attributes:
         gas: the gas at the start of the epoch.
-        method: method that finds the events, not used by another simulation.
+        method: method that finds the events; no other simulation may use it.
         effects: parameters and state of the effects; the simulation changes the state.
-        time: time of the start of the epoch.
+        time: time at the start of the epoch.
         epoch: number of the epoch, from 0.
         totals: numbers of events up to the start of the epoch.
-        steered: ids of the discs whose velocities or acceleration were changed from outside at the start of the epoch.
+        steered: ids of the discs whose velocity or acceleration was changed from outside at the start of the epoch.
     """
 
     gas: Gas
@@ -107,7 +109,7 @@ class Simulation:
         self._begin()
 
     def _begin(self) -> None:
-        """Begin an epoch with the present gas, effects and time."""
+        """Begin an epoch with the current gas, effects and time."""
         done, steered = self.totals, len(self.steered)
         self.totals = done._replace(events=done.events + steered, steered=done.steered + steered)
         until_change = next_change(self.effects, self.time) - self.time
@@ -127,11 +129,20 @@ class Simulation:
         self._local_now = 0.0
 
     def advance(self, stop: Stop, batch: EventBatch | None, events: int = UNLIMITED, pause: float = LATEST) -> int:
-        """Process events until the epoch is over, the stop is reached or the batch is full; return the rows filled.
+        """Process events until the epoch is over, the stop is reached or the batch is full.
 
-        events: largest number of events in this call. pause: time at which to return with `paused` set, unless it is
-        later than the end of the epoch or the stop; it changes no event. UserError if a disc has collisions without end
-        at one instant, or if a sum exceeds its range.
+        Args:
+            stop: end of the run.
+            batch: memory for the rows of events; None to keep no log.
+            events: largest number of events in this call.
+            pause: time at which to return with `paused` set, unless the epoch or the run ends earlier; a pause changes
+                no event.
+
+        Returns:
+            The number of rows filled.
+
+        Raises:
+            UserError: a disc has endless collisions at one instant, or a sum exceeds its range.
         """
         done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
@@ -153,9 +164,9 @@ class Simulation:
     def slices(
         self, stop: Stop, batch: EventBatch | None = None, events: int = UNLIMITED, pause: float = LATEST
     ) -> Iterator[int]:
-        """Advance to the stop or the pause, through as many epochs as that takes.
+        """Advance to the stop or the pause, through as many epochs as necessary.
 
-        After each call of `advance` the number of rows that it filled, from the batch's first row on, is yielded.
+        Yields the number of rows filled, from the first row of the batch on, after each call of `advance`.
         """
         while not self.finished(stop):
             yield self.advance(stop, batch, events, pause)
@@ -165,12 +176,12 @@ class Simulation:
                 self.next_epoch()
 
     def run(self, stop: Stop = NO_STOP, pause: float = LATEST) -> None:
-        """Advance to the stop or the pause, through as many epochs as that takes, without a batch."""
+        """Advance to the stop or the pause, through as many epochs as necessary, without a log."""
         for _ in self.slices(stop, pause=pause):
             pass
 
     def finished(self, stop: Stop) -> bool:
-        """Whether the stop is reached, and all rows up to it have been handed on."""
+        """Whether the stop is reached and all rows up to it have been delivered."""
         if self.method.pending:
             return False
         done = self.counters
@@ -193,35 +204,35 @@ class Simulation:
         )
 
     def _counted(self) -> dict[str, Any]:
-        """The counters of this epoch by name."""
+        """Counters of this epoch by name."""
         return dict(zip(COUNTERS.names or (), self._counters.item(), strict=True))
 
     @property
     def last_event_time(self) -> float:
-        """Time of the last event, or the epoch's start if there was none in it."""
+        """Time of the last event of the epoch, or of the epoch's start if there was none."""
         return self.time + self._counted()["time"]
 
     @property
     def reached(self) -> float:
-        """Time at which the last `advance` ended: its limit or, if that was not reached, the time of the last event."""
+        """Time at which the last `advance` ended: the time limit or, if it was not reached, the last event."""
         return self.time + self._local_now
 
     def state(self) -> tuple[Gas, Effects]:
-        """Copies of the gas, its images and its momentum flow, and the effects, at the time reached."""
+        """Return the gas and the effects at the time reached; images and momentum flow are copies."""
         periodic, flow = copy_of(self.effects.periodic), stress.copy_of(self.effects.flow)
         record = self.method.discs.record
-        moved = np.array(record.view(np.uint8)).view(record.dtype)  # copied as bytes: seven times as fast
+        moved = np.array(record.view(np.uint8)).view(record.dtype)  # copying bytes is seven times as fast
         gas = self._synchronised(moved, self._local_now, periodic, flow)
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
-        """An error raised in a kernel, which cannot name the time, with the time of the last event."""
+        """Return an error of a kernel, which cannot format the time, with the time of the last event."""
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(
         self, record: np.ndarray, local_time: float, periodic: Periodic | None, flow: StressAccumulator | None
     ) -> Gas:
-        """The gas at a local time, to which the records are brought, and the images and the momentum flow too."""
+        """Bring records, images and momentum flow to a local time, and return the gas at that time."""
         ids = self.method.discs.id
         position, velocity = np.empty((2, len(record), 2))
         try:
@@ -239,13 +250,13 @@ class Simulation:
         self._begin()
 
     def reverse(self) -> None:
-        """End the epoch at the time reached, where `epoch_over` is set, and reverse all velocities."""
+        """End the epoch at the time reached (`epoch_over` must be set), and reverse all velocities."""
         self._end_epoch()
         self._reverse()
         self._begin()
 
     def set_velocities(self, discs: np.ndarray, velocity: np.ndarray) -> None:
-        """End the epoch at the time reached, where `epoch_over` is set, and give discs (n,) new velocities (n, 2)."""
+        """End the epoch at the time reached (`epoch_over` must be set), and give discs (n,) new velocities (n, 2)."""
         self._end_epoch()
         velocities = self.gas.velocity.copy()
         velocities[discs] = velocity
@@ -256,13 +267,13 @@ class Simulation:
         self._begin()
 
     def reschedule(self, schedule: Any) -> None:
-        """End the epoch at the time reached, where `epoch_over` is set, with other changes in time from there on."""
+        """End the epoch at the time reached (`epoch_over` must be set), and replace the schedule of later changes."""
         self.effects = self.effects._replace(schedule=schedule)
         self._end_epoch()
         self._begin()
 
     def _end_epoch(self) -> None:
-        """Move all discs to the time reached, and make the changes up to there."""
+        """Move all discs to the time reached, and apply the scheduled changes up to that time."""
         self.length = self._local_now
         self.gas = self._synchronised(self.method.discs.record, self.length, self.effects.periodic, self.effects.flow)
         self.totals = self.counters
@@ -273,7 +284,7 @@ class Simulation:
         self.epoch += 1
 
     def _change(self, time: float) -> None:
-        """Make the changes up to a time, and record the energy that they give."""
+        """Apply the scheduled changes up to a time, and record the energy that they give to the gas."""
         if next_change(self.effects, self.time) > time:
             return
         before, gravity = sum(energy_parts(self.effects, self.gas).values()), self.effects.gravity
@@ -292,17 +303,17 @@ class Simulation:
         self._steer(np.arange(len(self.gas)), reversed_velocity(self.gas.velocity))
 
     def _steer(self, discs: np.ndarray, velocity: np.ndarray) -> None:
-        """Change the velocities to (N, 2), those of some discs (n,), between two epochs; discs that left have none."""
+        """Set all velocities (N, 2) between two epochs, and mark the discs (n,) as steered unless they have left."""
         if self.effects.absorbing is not None:
             discs = discs[~np.isnan(self.gas.position[discs, 0])]
         self.gas, self.steered = replace(self.gas, velocity=velocity), np.union1d(self.steered, discs)
 
     def check_invariants(self) -> Diagnostics:
-        """Conserved quantities and overlaps at the start of the epoch."""
+        """Return the conserved quantities and overlaps at the start of the epoch."""
         return self._check(self.gas, self.time)
 
     def check_invariants_of(self, gas: Gas) -> Diagnostics:
-        """Conserved quantities and overlaps of a gas that `state` returned."""
+        """Return the conserved quantities and overlaps of a gas that `state` returned."""
         return self._check(gas, self.reached)
 
     def _check(self, gas: Gas, time: float) -> Diagnostics:

@@ -1,9 +1,10 @@
-"""The time-driven method: discs fly for a step, then those that overlap or reach outside, and approach, collide.
+"""The time-driven method: all discs move for a step; then those that overlap, or leave the box, and approach collide.
 
-For comparison with the event-driven method: its errors grow with its step. A contact is found late, by half a step
-on average, with a rotated line of centres; a contact that begins and ends between two steps is missed. It is as fast as
-such a method gets: near pairs are listed once, by cells, and the list serves until two discs may have come `skin`
-nearer (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
+It serves for comparison with the event-driven method; its errors grow with the step. A contact is found late, by half a
+step on average, and with a rotated line of centres; a contact that begins and ends between two steps is missed. The
+method is implemented as fast as possible: near pairs are listed with the help of cells, and the list is used until two
+discs may have approached by `skin` (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of
+Liquids, 2nd ed. (2017), ch. 5.3).
 """
 
 import math
@@ -23,23 +24,23 @@ from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes
 from idealgas.state import Gas
 
 U = np.uintp
-NEAR = 3.0  # mean number of discs within reach that was fastest
+NEAR = 3.0  # mean number of listed neighbours of a disc; the fastest choice in benchmarks
 LEAST_SKIN = 0.2  # in diameters
 CELLS_PER_DISC = 4  # at most
 
 STEP = np.dtype(
     [
         ("number", "i8"),  # number of the step, counted from time 0
-        ("cursor", "i8"),  # discs, then pairs, that are finished in this step
+        ("cursor", "i8"),  # number of discs, and then pairs, that are finished in this step
         ("pairs", "i8"),  # number of listed pairs
         ("furthest", "f8"),  # square of the largest displacement of a disc in this step, length²
-        ("spent", "f8"),  # by how much two discs may have approached since they were listed, length
+        ("spent", "f8"),  # distance by which two discs may have approached since the pairs were listed, length
     ]
 )
 
 
 class Nearby(NamedTuple):
-    """List of near pairs, and the cells by which it is made.
+    """List of near pairs, and the cells from which it is built.
 
     Attributes:
         pairs: (M, 2) i4, indices of the two discs of each near pair.
@@ -96,7 +97,7 @@ def sort_into_cells(record, ids, box, near, periodic):
 
 @inline
 def neighbour_cell(near, column, row, k, periodic):
-    """Index of one of a cell's four neighbours (k = 0 to 3) to the right and above; -1 if there is none."""
+    """Index of neighbour k of a cell, of the four neighbours (k = 0 to 3) to the right and above; -1 if it has none."""
     column += 1 if k == 0 else k - 2
     row += 0 if k == 0 else 1
     if is_periodic(periodic, False) and near.columns > 1:
@@ -109,17 +110,17 @@ def neighbour_cell(near, column, row, k, periodic):
 
 @njit
 def list_pairs(record, ids, box, near, periodic):
-    """List the pairs of discs with a gap below the skin, as far as there is room; return the number of all of them."""
+    """List the pairs of discs with a gap below the skin, as far as there is room; return the number of such pairs."""
     sort_into_cells(record, ids, box, near, periodic)
     count = 0
     for c in range(near.columns * near.rows):
         for k in range(-1, 4):
-            other = c if k < 0 else neighbour_cell(near, c % near.columns, c // near.columns, k, periodic)
-            if other < 0:
+            neighbour = c if k < 0 else neighbour_cell(near, c % near.columns, c // near.columns, k, periodic)
+            if neighbour < 0:
                 continue
             for p in range(near.first[U(c)], near.first[U(c + 1)]):
                 i = near.order[U(p)]
-                for q in range(p + 1 if k < 0 else near.first[U(other)], near.first[U(other + 1)]):
+                for q in range(p + 1 if k < 0 else near.first[U(neighbour)], near.first[U(neighbour + 1)]):
                     j = near.order[U(q)]
                     x, y = separation(record[U(i)], record[U(j)], periodic)
                     reach = record[U(i)].r + record[U(j)].r + near.skin
@@ -133,7 +134,7 @@ def list_pairs(record, ids, box, near, periodic):
 
 @inline
 def side_beyond(disc, box, periodic):
-    """Side of the box beyond which a disc reaches while it moves outwards; -1 if there is none."""
+    """Side of the box beyond which a disc protrudes while it moves outwards; -1 if there is none."""
     if not is_periodic(periodic, False):
         if disc.x < disc.r and disc.vx < 0.0:
             return 0
@@ -149,9 +150,9 @@ def side_beyond(disc, box, periodic):
 
 @inline
 def fly(record, step, box, time, effects):
-    """Move discs to a local time, from the cursor on, to the first that reaches beyond a side.
+    """Move the discs from the cursor on to a local time, up to the first that protrudes beyond a side.
 
-    Returns that side, or -1 if no disc reaches beyond one.
+    Returns that side, or -1 if no disc protrudes.
     """
     furthest = step.furthest
     side = -1
@@ -175,7 +176,7 @@ def fly(record, step, box, time, effects):
 def find_overlap(record, step, near, periodic):
     """Move the cursor to the first listed pair of discs that overlap and approach.
 
-    Returns their overlap divided by the sum of the radii, or -1 if there is no such pair.
+    Returns the overlap divided by the sum of the radii, or -1 if there is no such pair.
     """
     cursor = step.cursor - record.shape[0]
     depth = -1.0
@@ -197,9 +198,9 @@ def find_overlap(record, step, near, periodic):
 def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, epoch_start, batch, counters):
     """Take steps up to the limits, or until the batch or the list of pairs is full.
 
-    Returns the number of rows written, and whether everything up to the limit of time has happened. A limit may be
+    Returns the number of rows written, and whether all events up to the time limit have happened. A limit may be
     reached in the middle of a step; the next call continues from there. step: (1,) STEP, updated. dt: length of a step,
-    time. deepest: (1,) f8, deepest overlap of a collision, divided by the sum of the radii, updated.
+    time. deepest: (1,) f8, deepest overlap in a collision, divided by the sum of the radii, updated.
     """
     s = step[0]
     number = record.shape[0]
@@ -250,7 +251,7 @@ def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, ep
 
 def first_step_after(time: float, dt: float) -> int:
     """Number of the first step that ends after a time; step k ends at the float nearest to k dt."""
-    number = math.floor(time / dt)  # a quotient that is rounded may be one off, either way
+    number = math.floor(time / dt)  # because the quotient is rounded, this may be off by 1 in either direction
     while number * dt > time:
         number -= 1
     while number * dt <= time:
@@ -259,7 +260,7 @@ def first_step_after(time: float, dt: float) -> int:
 
 
 class TimeDriven(Method):
-    """The time-driven method: its records and effects in an epoch; steps end at multiples of dt (time)."""
+    """The time-driven method, with the records and effects of the current epoch; steps end at multiples of dt."""
 
     def __init__(self, dt: float) -> None:
         """Set the length of a step, dt (time)."""
@@ -268,7 +269,7 @@ class TimeDriven(Method):
         self._overlap = 0.0
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch; its start may divide a step in two, as discs fly on unchanged."""
+        """Begin an epoch; it may begin within a step, as the discs just continue to move."""
         super().start(gas, effects)
         self._near = make_nearby(gas, periodic_axes(effects.periodic))
         list_pairs(*self.discs, self._near, effects.periodic)
@@ -293,5 +294,5 @@ class TimeDriven(Method):
         )  # fmt: skip
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap in a collision of this epoch (at its start: of the last one), over the sum of the radii."""
+        """Deepest overlap in a collision of this epoch (at its start: the previous one), over the sum of the radii."""
         return self._overlap if self._step[0].number == 0 else float(self._deepest[0])

@@ -1,7 +1,7 @@
-"""Cells of the neighbour search: nearly square, at least one diameter wide, with a ring of empty ones around them.
+"""Cells of the neighbour search: nearly square, at least one diameter wide, and surrounded by a ring of empty cells.
 
-Each cell has a doubly linked list of the discs whose centres it contains. Where some discs are far larger than the
-others, these have coarse cells of their own: Ogarko & Luding, Comput. Phys. Commun. 183, 931 (2012).
+Each cell has a doubly linked list of the discs whose centres it contains. Discs that are far larger than the rest have
+separate, coarse cells: Ogarko & Luding, Comput. Phys. Commun. 183, 931 (2012).
 """
 
 import math
@@ -14,14 +14,14 @@ from idealgas.jit import aligned, inline
 LINK = np.dtype(
     [
         ("next", "i4"), ("previous", "i4"),  # indices of discs in the same cell, or -1
-        ("column", "i2"), ("row", "i2"),  # of the cell
+        ("column", "i2"), ("row", "i2"),  # column and row of the cell
     ],
     align=True,
 )  # fmt: skip
-MARGIN = 1e-9  # by which a cell is wider than a diameter, relative
-MOST_A_SIDE = 30_000  # columns or rows: a disc's are stored in 16 bits
-OTHER_WORK = 20.0  # discs that could be searched in the time for the rest of an event
-WORTH_SPLITTING = 0.5  # part of the time per event with coarse cells from which on these are used
+MARGIN = 1e-9  # relative excess of a cell's width over a diameter
+MOST_A_SIDE = 30_000  # largest number of columns or rows: those of a disc are stored in 16 bits
+OTHER_WORK = 20.0  # number of discs that could be searched in the time that the rest of an event takes
+WORTH_SPLITTING = 0.5  # coarse cells are used if they reduce the time per event below this fraction
 
 U = np.uintp
 
@@ -51,15 +51,15 @@ class Cells(NamedTuple):
 
 
 class CoarseCells(NamedTuple):
-    """Cells of discs that are far larger than the others; each covers ratio × ratio cells of the others.
+    """Cells of discs that are far larger than the rest; each covers ratio × ratio fine cells.
 
-    They are as wide as the largest and the smaller discs together: large discs meet others in adjacent cells, and one
-    another up to two cells apart.
+    A coarse cell is as wide as the sum of the largest radii of large and of small discs. Large discs therefore meet
+    small ones in adjacent coarse cells, and each other up to two cells apart.
 
     Attributes:
-        cells: the cells; they share the array `link` with those of the other discs.
-        ratio: number of columns, and of rows, of the other cells in each of them.
-        limit: radius beyond which a disc is in them, length.
+        cells: the coarse cells; they share the array `link` with the fine cells.
+        ratio: number of fine columns, and of fine rows, in a coarse cell.
+        limit: radius beyond which a disc is in the coarse cells, length.
     """
 
     cells: Cells
@@ -68,7 +68,7 @@ class CoarseCells(NamedTuple):
 
 
 def discs_per_cell(packing_fraction: float) -> float:
-    """Mean number of discs per cell that was fastest: 0.4 at a packing fraction of 0.1 and more, 0.8 at 0.01."""
+    """Fastest mean number of discs per cell in benchmarks: 0.4 at packing fractions of 0.1 and above, 0.8 at 0.01."""
     return min(max(0.4 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.4), 4.0)
 
 
@@ -86,7 +86,7 @@ def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling:
 
 
 def make_levels(radius: np.ndarray, box: tuple[float, float], filling: float) -> tuple[Cells, CoarseCells | None]:
-    """Empty cells for discs of some radii (N,), length, and coarse ones for the largest if the search is then faster.
+    """Empty cells for discs with radii (N,), length, and coarse cells for the largest if these speed up the search.
 
     box: width and height, length. filling: mean number of discs per cell.
     """
@@ -107,13 +107,13 @@ def make_levels(radius: np.ndarray, box: tuple[float, float], filling: float) ->
 def split_radius(radius: np.ndarray, area: float, filling: float) -> float:
     """Radius beyond which discs have coarse cells, length; infinite if equal cells are nearly as fast.
 
-    An event of a disc takes time in proportion to the number of others in the cells that are searched, and the rate of
-    events to the sum of its radius and the mean radius.
+    The time for an event of a disc is assumed proportional to the number of discs in the cells that are searched, and
+    the rate of its events to the sum of its radius and the mean radius.
     """
     density, largest, reach = len(radius) / area, float(radius.max()), radius + radius.mean()
 
     def searched(limit: float) -> float:
-        """Time per event, in units of that for one disc in the cells."""
+        """Time per event, in units of the time for a disc in the cells."""
         large = radius > limit
         small = radius[~large].max()
         fine, coarse = (max(filling / density, (small + r) ** 2) for r in (small, largest))
@@ -128,7 +128,7 @@ def split_radius(radius: np.ndarray, area: float, filling: float) -> float:
 def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
     """Column and row (N,) of the cells of positions (N, 2), length.
 
-    A disc that rounding put outside the box belongs to the nearest cell.
+    A disc that is outside the box because of rounding belongs to the nearest cell.
     """
     column, row = (position / (cells.width, cells.height)).astype(np.int64).T + 1
     return np.minimum(np.maximum(column, 1), cells.columns - 2), np.minimum(np.maximum(row, 1), cells.rows - 2)
@@ -142,7 +142,7 @@ def order_by_cell(position: np.ndarray, cells: Cells) -> np.ndarray:
 
 @inline
 def own_cells(cells, coarse, disc):
-    """The cells that a disc is in."""
+    """Return the cells that a disc is in, coarse or fine."""
     if coarse is not None:
         return coarse.cells if disc.r > coarse.limit else cells
     return cells
@@ -150,7 +150,7 @@ def own_cells(cells, coarse, disc):
 
 @inline
 def find_cell(cells, i, disc):
-    """Store in disc i's link the column and row of the cell of its position, see `cell_of`."""
+    """Store the column and row of the cell at disc i's position in its link, see `cell_of`."""
     link = cells.link[U(i)]
     link.column = min(max(np.int64(disc.x / cells.width) + 1, 1), cells.columns - 2)
     link.row = min(max(np.int64(disc.y / cells.height) + 1, 1), cells.rows - 2)
@@ -158,7 +158,7 @@ def find_cell(cells, i, disc):
 
 @inline
 def enter(cells, i):
-    """Insert disc i at the head of its cell's list; without branches: where there is no other disc, i stands for it."""
+    """Insert disc i at the head of its cell's list; to avoid branches, i stands in for a neighbour that is missing."""
     link = cells.link[U(i)]
     cell = np.int64(link.row) * cells.columns + np.int64(link.column)
     head = cells.head[U(cell)]
@@ -170,7 +170,7 @@ def enter(cells, i):
 
 @inline
 def leave(cells, i):
-    """Remove disc i from its cell's list; without branches, see `enter`."""
+    """Remove disc i from its cell's list, without branches as in `enter`."""
     link = cells.link[U(i)]
     cell = np.int64(link.row) * cells.columns + np.int64(link.column)
     before = link.previous

@@ -1,4 +1,4 @@
-"""Next contact of a disc: with the discs in the cells around it, and with the wall segments of its own cell."""
+"""Next contact of a disc, with the discs in the cells around it or with the wall segments of its cell."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ U = np.uintp
 
 @inline
 def images_to(state, k, has_images, record, i, j, periodic):
-    """Numbers of box lengths (x, y) between the records of disc i and of disc j, which is candidate k."""
+    """Numbers of box lengths (x, y) between the records of disc i and disc j, which is candidate k."""
     if periodic is not None:
         seen = state.images[U(k)]
         image = (np.int64(seen.x), np.int64(seen.y)) if has_images else NO_IMAGES
@@ -35,7 +35,7 @@ def images_to(state, k, has_images, record, i, j, periodic):
 
 @inline
 def store_contact(state, record, i, j, k, has_images, time, periodic):
-    """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next."""
+    """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next contact."""
     prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
@@ -46,9 +46,9 @@ def store_contact(state, record, i, j, k, has_images, time, periodic):
 
 @inline
 def filter_colliding(record, state, count, has_images, i, gravity, periodic):
-    """Keep of the candidates, extended by the further discs of their cells, those that disc i will touch.
+    """Extend the candidates by the other discs of their cells, and keep those that disc i will touch.
 
-    Returns their number. Few are left, so that only few roots and quotients are computed; the loop has no branches.
+    Returns the number kept. It is small, so few roots and quotients have to be computed; the loop has no branches.
     """
     candidates = state.candidates
     disc = record[U(i)]
@@ -72,9 +72,9 @@ def filter_colliding(record, state, count, has_images, i, gravity, periodic):
 
 @inline
 def comes_earlier(prediction, ids, own, rank, partner, time, images):
-    """Whether a contact of disc `own` (id) comes before the one predicted for it; of one time by the rule for those.
+    """Whether a contact of disc `own` (id) precedes its predicted contact, also by the rule for simultaneous events.
 
-    rank: of what it meets. partner: the same as it is stored in a prediction.
+    rank: id or wall rank of the partner. partner: the partner as it is stored in a prediction.
     """
     if time != prediction.contact:
         return time < prediction.contact
@@ -85,26 +85,26 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
 
 @noinline
 def predict_tied_contact(record, ids, state, count, has_images, i, effects):
-    """Store disc i's earliest contact among the candidates, by the rule for simultaneous events.
+    """Store disc i's earliest contact with the candidates, also by the rule for simultaneous events.
 
-    It leaves out collisions that would change no digit of a velocity.
+    Collisions that would not change a digit of a velocity are left out.
     """
     prediction = state.prediction[U(i)]
-    own = np.int64(ids[U(i)])
+    a_id = np.int64(ids[U(i)])
     for k in range(count):
         j = state.candidates[U(k)]
-        other = np.int64(ids[U(j)])
+        b_id = np.int64(ids[U(j)])
         images = images_to(state, k, has_images, record, i, j, effects.periodic)
         time = contact_time(
-            record[U(i)], record[U(j)], own, other, effects.gravity, effects.restitution, effects.periodic, images
+            record[U(i)], record[U(j)], a_id, b_id, effects.gravity, effects.restitution, effects.periodic, images
         )
-        if comes_earlier(prediction, ids, own, other, j, time, images):
+        if comes_earlier(prediction, ids, a_id, b_id, j, time, images):
             store_contact(state, record, i, j, k, has_images, time, effects.periodic)
 
 
 @inline
 def own_walls(walls, coarse_walls, coarse, disc):
-    """Wall segments by cell, of the cells that a disc is in."""
+    """Return the wall segments by cell, of the cells that a disc is in, coarse or fine."""
     if coarse is not None:
         return coarse_walls if disc.r > coarse.limit else walls
     return walls
@@ -112,21 +112,21 @@ def own_walls(walls, coarse_walls, coarse, disc):
 
 @inline
 def predict_segment_contact(record, ids, state, i, effects):
-    """Store disc i's contact with a wall segment of its cell if that is its earliest."""
+    """Store disc i's contact with a wall segment of its cell if it is the disc's earliest contact."""
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     walls = own_walls(state.walls, state.coarse_walls, state.coarse, disc)
     link = cells.link[U(i)]
     cell = U(np.int64(link.row) * cells.columns + np.int64(link.column))
     first, last = walls.start[cell], walls.start[cell + U(1)]
-    if first < last:  # seldom: to call a function for every disc would take a third of the time
-        own, prediction = np.int64(ids[U(i)]), state.prediction[U(i)]
-        predict_entry_contacts(disc, ids, prediction, own, walls, first, last, effects.periodic, effects)
+    if first < last:  # rarely: calling a function for every disc would take a third of the time
+        disc_id, prediction = np.int64(ids[U(i)]), state.prediction[U(i)]
+        predict_entry_contacts(disc, ids, prediction, disc_id, walls, first, last, effects.periodic, effects)
 
 
 @noinline
 def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, periodic, effects):
-    """Store a disc's contact with a wall segment, of some entries of cells, if that is its earliest."""
+    """Store a disc's contact with a wall segment of a range of entries if it is the disc's earliest contact."""
     for entry in range(first, last):
         k = walls.item[U(entry)]
         images = images_to_item(walls, U(entry), disc, periodic)
@@ -147,11 +147,11 @@ def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, perio
 
 @inline
 def predict_contact(record, ids, state, i, crossing_code, now, segments, effects):
-    """Find disc i's earliest contact with a disc in its own cell or the eight around it, or with a wall segment.
+    """Find disc i's earliest contact with a disc in its cell or the eight cells around it, or with a wall segment.
 
-    crossing_code: direction in which it has just crossed into its cell, see PREDICTION: then the contact found before
-    stays valid, and may only be preceded by one in the cells that came within reach. SIDE_OF_BOX or more otherwise.
-    Simultaneous contacts and contacts at the present time are rare; `predict_tied_contact` decides them.
+    If the disc has just crossed into its cell, crossing_code is the direction, see PREDICTION: its predicted contact
+    remains valid and can only be preceded by a contact in the cells that came within reach. Otherwise it is SIDE_OF_BOX
+    or more. Simultaneous contacts and contacts at the current time are rare and left to `predict_tied_contact`.
     """
     disc, prediction = record[U(i)], state.prediction[U(i)]
     if crossing_code < SIDE_OF_BOX:

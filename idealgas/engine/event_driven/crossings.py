@@ -1,4 +1,4 @@
-"""The time at which a disc crosses into the next cell, meets a side of the box or the heat bath; and cell crossings."""
+"""Next time at which a disc enters another cell, or meets a side of the box or the heat bath; and cell crossings."""
 
 import numpy as np
 
@@ -21,7 +21,8 @@ def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_
     """Next cell crossing or side contact along one axis in straight flight.
 
     Returns its local time, whether it is in the positive direction, and whether it is a contact with a side of the box.
-    cell: column or row. size: of a cell, length. cells_across: columns or rows. length: of the box.
+    cell: column or row of the disc. size: size of a cell, length. cells_across: number of columns or rows. length:
+    length of the box.
     """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     forward = velocity > 0.0
@@ -41,8 +42,8 @@ def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_
 def accelerated_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull):
     """Next cell crossing or side contact along one axis under gravity.
 
-    Arguments and results are those of `straight_crossing`; pull: acceleration along the axis, length/time². Cell
-    crossings are computed from the disc's state at the local time `now`, when it is in its cell; side contacts from its
+    Arguments and results are as in `straight_crossing`; pull: acceleration along the axis, length/time². Cell crossings
+    are computed from the disc's state at the local time `now`, when it is in its cell, and side contacts from its
     record.
     """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
@@ -67,8 +68,8 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
 def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, piston, vibration):
     """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
 
-    The time is NEVER at the side of a piston, where contacts belong to it, and at a vibrating side. A disc reaches a
-    sheared side when its centre does.
+    The time is NEVER at a side with a piston, which predicts these contacts itself, and at a vibrating side. A disc
+    reaches a sheared side when its centre does.
     """
     cell = np.int64(link.row) if along_y else np.int64(link.column)
     size = cells.height if along_y else cells.width
@@ -83,7 +84,7 @@ def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, pis
         time, forward, at_side = accelerated_crossing(
             disc, along_y, cell, size, across, length, crossings, is_periodic, now, pull
         )
-    else:  # without acceleration along this axis both laws give the same bits
+    else:  # without acceleration along this axis, both functions would give the same bits
         time, forward, at_side = straight_crossing(disc, along_y, cell, size, across, length, crossings, is_periodic)
     side = (2 if along_y else 0) + (1 if forward else 0)
     if shear is not None and at_side:
@@ -97,7 +98,7 @@ def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, pis
 
 @inline
 def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects):
-    """Store in disc i's prediction the time and kind of its next cell crossing, side or thermostat collision."""
+    """Store the time and kind of disc i's next cell crossing, side contact or thermostat collision."""
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     link = cells.link[U(i)]
@@ -107,7 +108,7 @@ def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects)
     y_time, up, y_side = axis_crossing(
         disc, link, True, cells, now, effects.gravity, effects.periodic, effects.shear, effects.piston, vibration
     )
-    along_y = y_time < x_time  # either is as likely: to branch on it would take 7 % of all time
+    along_y = y_time < x_time  # both are equally likely: a branch would take 7 % of the total time
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)
     prediction = state.prediction[U(i)]
@@ -137,7 +138,7 @@ def keep_vibrating_contact_if_earlier(prediction, disc, cells, vibration, effect
 
 @inline
 def move_to_cell(record, state, i, shear):
-    """Move disc i to the list of the cell of its position after an event at a sheared side."""
+    """Move disc i to the list of the cell at its position after an event at a sheared side."""
     if shear is not None:
         leave(state.cells, i)
         find_cell(state.cells, i, record[U(i)])
@@ -146,9 +147,9 @@ def move_to_cell(record, state, i, shear):
 
 @inline
 def cross_cell(record, state, i, crossing_code, periodic):
-    """Move disc i from its cell's list to that of the next cell; crossing_code: direction, see PREDICTION.
+    """Move disc i from its cell's list to the list of the next cell; crossing_code: direction, see PREDICTION.
 
-    A disc that crosses a periodic side enters the cell at the opposite one, and its crossing is counted.
+    A disc that crosses a periodic side enters the cell at the opposite side, and the crossing is counted.
     """
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)

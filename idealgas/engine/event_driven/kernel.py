@@ -1,7 +1,8 @@
 """The loop over the events of the event-driven method.
 
-A contact belongs to the disc of the pair that predicted it last; if its partner has had an event since, it is stale and
-predicted again. One thread may own all discs, or several threads one slab of the box each, see `synchronization`.
+A contact belongs to the disc of the pair that predicted it last. If the partner has had an event since then, the
+contact is stale and is predicted again. Either one thread owns all discs, or each of several threads owns a slab of the
+box, see `synchronization`.
 """
 
 from enum import IntEnum
@@ -46,9 +47,9 @@ class Repredict(IntEnum):
     """Why a disc's events are predicted again; smaller numbers are codes of cell crossings, see PREDICTION."""
 
     STALE = SIDE_OF_BOX
-    """Its contact is stale: only the contact is predicted again."""
+    """The contact is stale, and only the contact is predicted again."""
     EVENT = SIDE_OF_BOX + 1
-    """Its record has changed in an event."""
+    """The record has changed in an event."""
     START = SIDE_OF_BOX + 2
     """An epoch begins."""
 
@@ -60,9 +61,9 @@ def place(record, ids, position, velocity, state, coarse, absorbing):
     if coarse is not None:
         coarse.cells.head[:] = -1
     for i in range(record.shape[0]):
-        disc, own = record[U(i)], U(ids[U(i)])
-        disc.x, disc.y = position[own, 0], position[own, 1]
-        disc.vx, disc.vy = velocity[own, 0], velocity[own, 1]
+        disc, disc_id = record[U(i)], U(ids[U(i)])
+        disc.x, disc.y = position[disc_id, 0], position[disc_id, 1]
+        disc.vx, disc.vy = velocity[disc_id, 0], velocity[disc_id, 1]
         disc.t = 0.0
         disc.crossed_x = disc.crossed_y = 0
         disc.count = 0
@@ -77,7 +78,7 @@ def place(record, ids, position, velocity, state, coarse, absorbing):
 
 @inline
 def predict(record, ids, state, i, change, now, effects, subdomain):
-    """Predict disc i's next events again, as far as they may have changed, and schedule the earliest of them.
+    """Predict those of disc i's next events that may have changed, and schedule the earliest.
 
     change: a `Repredict`, or the code of the crossing by which the disc entered its cell.
     """
@@ -99,7 +100,7 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
 
 @inline
 def take_out(record, ids, state, i, kind, absorbing, rotation):
-    """Take disc i out of its cell and of the gas if its event of this kind was the last."""
+    """Take disc i out of its cell and of the gas if an event of this kind was its last."""
     if absorbing is not None and kind == ESCAPED:
         leave(own_cells(state.cells, state.coarse, record[U(i)]), i)
         leave_gas(record[U(i)], ids[U(i)], rotation)
@@ -107,37 +108,38 @@ def take_out(record, ids, state, i, kind, absorbing, rotation):
 
 @inline
 def resolve_event(record, ids, state, i, other, at_contact, time, batch, rows, clock, effects):
-    """Resolve the next event of disc i, which is a collision with disc `other` unless that is -1, and write its rows.
+    """Resolve the next event of disc i and write its rows.
 
-    time: of the event, local. clock: the same since the start of the run. Returns the number of rows, and the kind of
-    the event.
+    other: index of the disc with which it collides, or -1. at_contact: whether the event is its predicted contact.
+    time: local time of the event. clock: the same time since the start of the run. Returns the number of rows, and the
+    kind of the event.
     """
-    prediction, disc, own = state.prediction[U(i)], record[U(i)], np.int64(ids[U(i)])
+    prediction, disc, disc_id = state.prediction[U(i)], record[U(i)], np.int64(ids[U(i)])
     if other >= 0:
         images = images_of(prediction)
-        resolve_pair(disc, record[U(other)], own, np.int64(ids[U(other)]), time, images, effects)
+        resolve_pair(disc, record[U(other)], disc_id, np.int64(ids[U(other)]), time, images, effects)
         return write_pair(batch, rows, clock, record, ids, i, other, effects), DISC
     if at_contact:
         segment = FIRST_WALL_SEGMENT - prediction.partner
-        kind = resolve_segment(disc, own, segment, time, images_of(prediction), effects.segments, effects)
-        written = write_hit(batch, rows, clock, own, -1 - FIRST_SEGMENT - segment, kind, disc, effects)
+        kind = resolve_segment(disc, disc_id, segment, time, images_of(prediction), effects.segments, effects)
+        written = write_hit(batch, rows, clock, disc_id, -1 - FIRST_SEGMENT - segment, kind, disc, effects)
         take_out(record, ids, state, i, kind, effects.absorbing, effects.rotation)
         return written, kind
     if prediction.crossing_code == THERMOSTAT_COLLISION:
-        resolve_thermostat_collision(disc, own, time, effects.thermostat, effects)
-        return write_hit(batch, rows, clock, own, BATH, THERMOSTAT, disc, effects), THERMOSTAT
+        resolve_thermostat_collision(disc, disc_id, time, effects.thermostat, effects)
+        return write_hit(batch, rows, clock, disc_id, BATH, THERMOSTAT, disc, effects), THERMOSTAT
     side = prediction.crossing_code - SIDE_OF_BOX
-    resolve_side(disc, own, side, time, effects)
+    resolve_side(disc, disc_id, side, time, effects)
     move_to_cell(record, state, i, effects.shear)
-    return write_hit(batch, rows, clock, own, -1 - side, WALL, disc, effects), WALL
+    return write_hit(batch, rows, clock, disc_id, -1 - side, WALL, disc, effects), WALL
 
 
 @inline
 def resolve_event_of_piston(record, ids, state, leaf, at_contact, time, batch, rows, clock, piston, effects):
-    """Resolve the next event of a piston, whose leaf in the schedule is given; arguments as of `resolve_event`.
+    """Resolve the next event of the piston with a leaf of the schedule; the other arguments are as in `resolve_event`.
 
-    Returns the number of rows, and the index of the disc that it hits, or -1: it has met a side, or its contact is
-    stale.
+    Returns the number of rows, and the index of the disc that the piston hits; -1 if it has met a side of the box or
+    its contact is stale.
     """
     prediction, k = state.prediction[U(leaf)], leaf - record.shape[0]
     i = np.int64(-1)
@@ -147,20 +149,20 @@ def resolve_event_of_piston(record, ids, state, leaf, at_contact, time, batch, r
             resolve_stop(k, time, piston)
         elif record[U(prediction.partner)].count == prediction.partner_count:
             i = np.int64(prediction.partner)
-            own = np.int64(ids[U(i)])
+            disc_id = np.int64(ids[U(i)])
             remove(state.tree, state.prediction, ids, i)
-            wall = resolve_piston(record[U(i)], own, k, time, piston, effects)
-            written = write_hit(batch, rows, clock, own, -1 - wall, PISTON, record[U(i)], effects)
+            wall = resolve_piston(record[U(i)], disc_id, k, time, piston, effects)
+            written = write_hit(batch, rows, clock, disc_id, -1 - wall, PISTON, record[U(i)], effects)
         predict_piston(record, ids, state, leaf, piston, effects)
     return written, i
 
 
 @njit
 def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, subdomain):
-    """Process events up to the limits, or until the batch is full; at the start of an epoch, predict all of them first.
+    """Process events up to the limits, or until the batch is full; at the start of an epoch, first predict all events.
 
-    Returns the number of rows written, and whether all events up to the limit of time have happened. subdomain: the
-    slab whose events these are; None for all discs.
+    Returns the number of rows written, and whether all events up to the time limit have happened. subdomain: the slab
+    whose events are processed; None for all discs.
     """
     events = 0
     collisions = 0
@@ -180,11 +182,11 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 predict(record, ids, state, k, np.int64(Repredict.START), 0.0, effects, subdomain)
     time = 0.0
     change = np.int64(Repredict.START)
-    i = other = np.int64(-1)
+    i = partner = np.int64(-1)
     while True:
-        while i >= 0:  # one call for all changes: another would double the machine code
+        while i >= 0:  # a single call for all changes: a second call would double the machine code
             predict(record, ids, state, i, change, time, effects, subdomain)
-            i, other = other, np.int64(-1)
+            i, partner = partner, np.int64(-1)
         if change > Repredict.STALE:
             if change == Repredict.EVENT:
                 events += 1
@@ -219,16 +221,16 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             if record[U(prediction.partner)].count != prediction.partner_count:
                 change = np.int64(Repredict.STALE)
                 continue
-            other = np.int64(prediction.partner)
-            tied = has_other_event(state.tree, state.prediction, i, other, time) and state.tree.tie_time[0] != time
-            remove(state.tree, state.prediction, ids, other)
+            partner = np.int64(prediction.partner)
+            tied = has_other_event(state.tree, state.prediction, i, partner, time) and state.tree.tie_time[0] != time
+            remove(state.tree, state.prediction, ids, partner)
         next_time, _ = next_event(state.tree)
         if tied or (next_time == time and state.tree.tie_time[0] != time):
-            if subdomain is not None and other >= 0 and not is_owned(state, other, subdomain):
-                other = np.int64(-1)
-            resolve_ties(state.tree, state.prediction, ids, i, other)
+            if subdomain is not None and partner >= 0 and not is_owned(state, partner, subdomain):
+                partner = np.int64(-1)
+            resolve_ties(state.tree, state.prediction, ids, i, partner)
             change = np.int64(Repredict.STALE)
-            i = other = np.int64(-1)
+            i = partner = np.int64(-1)
             continue
         clock = epoch_start + time
         if of_piston:
@@ -239,7 +241,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                 change = np.int64(Repredict.STALE)
                 continue
         else:
-            written, kind = resolve_event(record, ids, state, i, other, at_contact, time, batch, rows, clock, effects)
+            written, kind = resolve_event(record, ids, state, i, partner, at_contact, time, batch, rows, clock, effects)
             collisions += 1 if kind == DISC else 0
             thermostat_collisions += 1 if kind == THERMOSTAT else 0
         rows += written

@@ -1,7 +1,7 @@
-"""The event-driven method: cells find the neighbours, a tournament tree finds the next event.
+"""The event-driven method: cells find the neighbours, and a tournament tree finds the next event.
 
-Every prediction is a pure function of the records involved, so the trajectory does not depend on cells, scheduler or
-batches.
+Every prediction is a pure function of the records involved, so the trajectory does not depend on the cells, the
+scheduler or the batches.
 """
 
 import numpy as np
@@ -26,17 +26,17 @@ from idealgas.engine.records import make_discs
 from idealgas.state import Gas
 
 MAX_UNSORTED = 4096
-"""Number of discs that fit into the caches: they are not sorted in memory again at each epoch."""
+"""Number of discs that fit into the processor's caches; up to this number discs are sorted in memory only once."""
 
 
 def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool) -> Threads:
-    """How the work will be shared; threads: as in `EventDriven`. piston, shear: whether the gas has them."""
+    """Return how the work will be shared; threads: as in `EventDriven`. piston, shear: whether the gas has them."""
     cells, coarse = make_levels(gas.radius, gas.box, discs_per_cell(gas.packing_fraction))
     return _share(cells, coarse, threads, len(gas), _far(piston, shear))
 
 
 def _far(piston: bool, shear: bool) -> str:
-    """Why discs may collide with what is not near them; empty if they do not."""
+    """Reason why discs may collide with distant partners; empty if they cannot."""
     if piston:
         return "any disc may meet the piston"
     return "any disc may meet others through sheared sides" if shear else ""
@@ -45,37 +45,37 @@ def _far(piston: bool, shear: bool) -> str:
 def _share(
     cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, far: str, tuning: Tuning = DEFAULT_TUNING
 ) -> Threads:
-    """Number of threads for n discs in cells, see `choose_threads`; one if some discs reach over many rows."""
+    """Choose the number of threads for n discs in cells, see `choose_threads`; one if large discs span many rows."""
     if coarse is not None and not far:
         return Threads(1, "the largest discs reach over many rows of cells")
     return choose_threads(threads, cells.rows - 2, n, far, tuning)
 
 
 class EventDriven(Method):
-    """The event-driven method: its records, effects and predictions between the start and the end of an epoch."""
+    """The event-driven method, with the records, effects and predictions of the current epoch."""
 
     _state: EventDrivenState
     _shared: Threads
 
     def __init__(self, filling: float | None = None, threads: int | None = 1, tuning: Tuning = DEFAULT_TUNING) -> None:
-        """Set parameters that change the speed only.
+        """Set parameters that only change the speed.
 
-        filling: mean number of discs per cell; None to choose it by the packing fraction. threads: None for as many as
-        are worthwhile. tuning: of the threads.
+        filling: mean number of discs per cell; None to derive it from the packing fraction. threads: number of threads;
+        None for as many as are worthwhile. tuning: parameters of the threads.
         """
         self._filling = filling
         self._threads = threads
         self.workers = Workers(tuning)
         self._decomposition: DomainDecomposition | None = None
         self._walls: tuple[bytes, WallCells, WallCells | None] | None = None
-        self._radius: np.ndarray | None = None  # of the discs for which there is memory
+        self._radius: np.ndarray | None = None  # radii of the discs for which memory is allocated
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: put all discs in their cells. The discs and the set of effects never change in a run."""
-        another = self._radius is not gas.radius
-        if another:
+        """Begin an epoch: put all discs in their cells. The discs and the set of effects do not change during a run."""
+        is_new_run = self._radius is not gas.radius
+        if is_new_run:
             self._allocate(gas, effects)
-        if another or len(gas) > MAX_UNSORTED:
+        if is_new_run or len(gas) > MAX_UNSORTED:
             self._sort(gas, effects)
         self._effects = effects
         walls, coarse_walls = self._wall_cells(effects)
@@ -90,7 +90,7 @@ class EventDriven(Method):
         )
 
     def _allocate(self, gas: Gas, effects: Effects) -> None:
-        """Allocate cells and memory for the discs of a run, of which only positions and velocities change."""
+        """Allocate cells and memory for the discs of a run, during which only positions and velocities change."""
         self._radius = gas.radius
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         cells, coarse = make_levels(gas.radius, gas.box, filling)
@@ -104,21 +104,21 @@ class EventDriven(Method):
         """Sort the discs in memory by cell."""
         position = gas.position
         if effects.absorbing is not None:
-            position = np.nan_to_num(position)  # nan of discs that have left
+            position = np.nan_to_num(position)  # the positions of discs that have left are nan
         self.discs = make_discs(gas, order_by_cell(position, self._state.cells))
 
     @property
     def threads(self) -> Threads:
-        """How the work is shared, with the numbers of shared and aborted slices of the run so far."""
+        """How the work is shared, with the numbers of shared and aborted slices in the run so far."""
         return self._shared._replace(slices=self.workers.counts["slices"], aborted=self.workers.aborted)
 
     @property
     def pending(self) -> bool:
-        """Whether rows of past events are still to be delivered by `advance`."""
+        """Whether `advance` still has rows of past events to deliver."""
         return self._decomposition is not None and self._decomposition.pending
 
     def _wall_cells(self, effects: Effects) -> tuple[WallCells | None, WallCells | None]:
-        """Wall segments of each cell and coarse cell, from the previous epoch unless a gate has opened or closed."""
+        """Wall segments of each cell and coarse cell, reused from the previous epoch unless a gate opened or closed."""
         segments, coarse, radius = effects.segments, self._state.coarse, self._radius
         if segments is None or radius is None:
             return None, None
@@ -126,7 +126,9 @@ class EventDriven(Method):
         if self._walls is None or self._walls[0] != active:
             small = radius if coarse is None else radius[radius <= coarse.limit]
             cells = [(self._state.cells, small)] + ([] if coarse is None else [(coarse.cells, radius)])
-            made = [make_wall_cells(segments, effects.arcs, effects.periodic, own, float(r.max())) for own, r in cells]
+            made = [
+                make_wall_cells(segments, effects.arcs, effects.periodic, level, float(r.max())) for level, r in cells
+            ]
             self._walls = active, made[0], None if coarse is None else made[1]
         return self._walls[1:]
 

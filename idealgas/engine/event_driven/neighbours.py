@@ -1,4 +1,4 @@
-"""Discs that a disc may meet: those in the cells around it, and near a far larger disc or for it in coarse cells."""
+"""Discs that a disc may meet: the discs in the cells around it and, if discs are far larger, in coarse cells."""
 
 import math
 
@@ -13,9 +13,9 @@ U = np.uintp
 
 @inline
 def wrapped_index(index, count, is_periodic):
-    """Column or row of a cell, wrapped along a periodic axis, and the image in which the cell is seen: -1, 0 or 1.
+    """Column or row of a cell, wrapped along a periodic axis, and the image of the cell: -1, 0 or 1.
 
-    count: number of columns or rows, ring included.
+    count: number of columns or rows, including the ring.
     """
     if is_periodic:
         if index < 1:
@@ -27,7 +27,7 @@ def wrapped_index(index, count, is_periodic):
 
 @noinline
 def append_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
-    """Do the work of `append_line` where some of the cells lie beyond a side of the box, and may be wrapped."""
+    """Do the work of `append_line` if some of the cells lie beyond a side of the box, and may be wrapped."""
     for step in range(3):
         c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
         r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
@@ -40,9 +40,9 @@ def append_wrapped_line(cells, candidates, images, count, column, row, along_y, 
 
 @inline
 def append_sheared_rows(cells, candidates, images, count, column, row, along_y, shear):
-    """Append what comes within reach through sheared sides, where some of the cells of `append_line` lie beyond them.
+    """Append the discs that come within reach through sheared sides, if cells of `append_line` lie beyond them.
 
-    Discs may be in the cells of the column, or of those to either side.
+    The disc may be in a cell of this column or of the columns to either side.
     """
     if shear is not None:
         if row < 1:
@@ -54,10 +54,11 @@ def append_sheared_rows(cells, candidates, images, count, column, row, along_y, 
 
 @noinline
 def append_sheared_row(cells, candidates, images, count, column, along_y, image_y, shear):
-    """Append the first discs of the cells of the opposite row that a disc may touch in its cell during the epoch.
+    """Append the first discs of those cells of the opposite row that a disc in its cell may touch during the epoch.
 
-    column: as in `append_line`; the disc's is the next one or, along y, one of the two beside it. image_y: 1 or -1, the
-    image of the row. The image above moves from one offset to the other, and discs touch in adjacent columns.
+    column: as in `append_line`; the column of the disc is the next column or, along y, one of the two beside it.
+    image_y: 1 or -1, image of the row. During the epoch the image above moves from the first offset to the second, and
+    discs can touch if their columns are adjacent.
     """
     across = cells.columns - 2
     first, last = (column - 1, column + 1) if along_y else (column + 1, column + 1)
@@ -75,15 +76,15 @@ def append_sheared_row(cells, candidates, images, count, column, along_y, image_
 
 @inline
 def is_inside(cells, column, row, columns, rows):
-    """Whether a block of cells, from (column, row) on, is all in the box; columns, rows: their numbers."""
+    """Whether a block of cells, from (column, row) on, lies entirely in the box; columns, rows: size of the block."""
     return (column >= 1) & (row >= 1) & (column + columns < cells.columns) & (row + rows < cells.rows)
 
 
 @inline
 def append_line(state, count, column, row, along_y):
-    """Append the first discs of three cells in a row or column, from (column, row) on, to `count` candidates.
+    """Append the first discs of three cells in a row or column, from (column, row) on, to the `count` candidates.
 
-    Returns the new number of candidates. The cells are in the box or its ring; no image is recorded.
+    Returns the new number of candidates. The cells are in the box or its ring; images are not recorded.
     """
     cells = state.cells
     stride = cells.columns if along_y else 1
@@ -98,11 +99,11 @@ def append_line(state, count, column, row, along_y):
 
 @noinline
 def append_coarse_cells(state, coarse, i, disc, crossing_code, periodic):
-    """Make the first discs near a large disc, or the first large ones near a small disc, the candidates.
+    """Make the first discs near a large disc, or the first large discs near a small disc, the candidates.
 
-    Small and large discs are near in adjacent coarse cells, large ones in two. crossing_code: direction in which the
-    disc has just crossed into its cell: only those that came within reach then. SIDE_OF_BOX for all. Returns their
-    number.
+    A small and a large disc are near each other in adjacent coarse cells, two large discs up to two coarse cells apart.
+    crossing_code: direction in which the disc has just crossed into its cell, to append only the discs that came within
+    reach; SIDE_OF_BOX to append all. Returns the number of candidates.
     """
     link = state.cells.link[U(i)]
     column, row = np.int64(link.column), np.int64(link.row)
@@ -119,9 +120,9 @@ def append_coarse_cells(state, coarse, i, disc, crossing_code, periodic):
 
 @noinline
 def append_coarse_block(state, coarse, count, of_small, column, row, reach, crossing_code, periodic):
-    """Append the first small, or large, discs in the coarse cells that are up to `reach` from (column, row).
+    """Append the first small, or large, discs in the coarse cells up to `reach` away from (column, row).
 
-    After a crossing only those in the direction of the crossing.
+    After a crossing, only the cells in the direction of the crossing are searched.
     """
     low_x, high_x, low_y, high_y = column - reach, column + reach, row - reach, row + reach
     forward = reach if crossing_code & 1 else -reach
@@ -158,9 +159,9 @@ def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
 
 @inline
 def neighbours(state, coarse, i, disc, periodic):
-    """Make the first discs of disc i's own cell and of the eight around it the candidates.
+    """Make the first discs of disc i's cell and of the eight cells around it the candidates.
 
-    Returns their number, and whether their images are recorded: else all are seen as they are in the box.
+    Returns their number, and whether their images are recorded; if not, all are in the image (0, 0).
     """
     count = 0
     if coarse is not None:
@@ -183,9 +184,9 @@ def neighbours(state, coarse, i, disc, periodic):
 
 @inline
 def new_neighbours(state, coarse, i, disc, crossing_code, periodic):
-    """Make the first discs of the three cells that came within reach of disc i the candidates; see `neighbours`.
+    """Make the first discs of the three cells that came within reach of disc i the candidates.
 
-    crossing_code: direction in which it crossed into its cell, see PREDICTION.
+    crossing_code: direction in which the disc crossed into its cell, see PREDICTION. Returns the same as `neighbours`.
     """
     count = 0
     if coarse is not None:

@@ -1,4 +1,4 @@
-"""Pistons in the schedule: one more leaf of the tree for each, which owns the contacts of all discs with the piston."""
+"""Pistons in the schedule: each has a leaf of the tree, to which the contacts of all discs with the piston belong."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ U = np.uintp
 
 @inline
 def keep_if_earlier(record, ids, prediction, j, piston, effects):
-    """Store disc j's contact with a piston as the piston's next if it is the earliest; return whether it is."""
+    """Store disc j's contact with a piston if it is the piston's earliest contact; return whether it is."""
     if has_left(record[U(j)], effects.absorbing):
         return False
     if misses_piston_until(record[U(j)], piston, effects.gravity, prediction.contact):
@@ -32,9 +32,9 @@ def keep_if_earlier(record, ids, prediction, j, piston, effects):
 
 @inline
 def predict_piston(record, ids, state, leaf, piston, effects):
-    """Predict the next event of a piston, a contact with a disc or a side of the box, and enter it in the schedule.
+    """Predict the next event of a piston, a contact with a disc or a side of the box, and schedule it.
 
-    leaf: of the piston.
+    leaf: leaf of the piston in the tree.
     """
     if piston is not None:
         p = piston[U(leaf - ids.shape[0])]

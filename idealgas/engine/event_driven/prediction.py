@@ -1,9 +1,9 @@
-"""Predictions for each disc, its next contact and its next crossing, and the order of simultaneous events.
+"""Predictions for each disc, of its next contact and its next crossing, and the order of simultaneous events.
 
-Of simultaneous events, the smaller pair (smaller id, other id) comes first, where walls precede the heat bath and that
-precedes any disc. Of simultaneous contacts with one partner in two images, that image comes first that is fewer box
-lengths away from the disc with the smaller id, counted along x and then along y. The rule uses ids only, never indices
-in memory, so every method and every renumbering gives the same order.
+Simultaneous events are ordered by the pair (smaller id, other id), in which walls precede the heat bath, and the heat
+bath precedes all discs. Of simultaneous contacts with the same partner in two images, the image with the smaller number
+of box lengths, counted from the disc with the smaller id along x and then along y, comes first. The rule uses ids only,
+never indices in memory, so the order is the same for every method and every renumbering.
 """
 
 import numpy as np
@@ -16,32 +16,32 @@ PREDICTION = np.dtype(
     [
         ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
         ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or the heat bath
-        ("partner", "i4"),  # index of the other disc, -1 for none, -2 - k for wall segment k
-        ("partner_count", "u4"),  # the partner's count when predicted: the contact is stale once it differs
-        ("image_x", "i2"),  # box lengths to the partner's record or the segment, where sides are periodic
+        ("partner", "i4"),  # index of the partner, -1 for none, -2 - k for wall segment k
+        ("partner_count", "u4"),  # the partner's count at the prediction: once it differs, the contact is stale
+        ("image_x", "i2"),  # box lengths to the partner's record or the segment, if sides are periodic
         ("image_y", "i2"),
-        ("crossing_code", "i4"),  # 0-3: to the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
+        ("crossing_code", "i4"),  # 0-3: enters the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
     ],
     align=True,
 )
 SIDE_OF_BOX = 4
 THERMOSTAT = SIDE_OF_BOX + HEAT_BATH
-"""Codes of other events than cell crossings: SIDE_OF_BOX plus the number of the side or the heat bath."""
+"""Codes of events other than cell crossings: SIDE_OF_BOX plus the number of the side or the heat bath."""
 
-NO_CONTACT = 0.5 * NEVER  # before NEVER: a pair without a contact, at NEVER, is not simultaneous with it
+NO_CONTACT = 0.5 * NEVER  # less than NEVER, so that a pair that never meets does not seem simultaneous with it
 
-U = np.uintp  # unsigned: negative indices need not be checked for
+U = np.uintp  # unsigned, so that the compiler need not check for negative indices
 
 FIRST_WALL = -(1 << 31)
-"""Rank of wall 0 among a disc's partners, which are walls before discs; wall k has the rank FIRST_WALL + k."""
+"""Rank of wall 0 among the partners of a disc. Wall k has the rank FIRST_WALL + k, so walls come before discs."""
 
 FIRST_WALL_SEGMENT = -2
-"""What stands for wall segment 0 among the partners of a prediction; segment k is FIRST_WALL_SEGMENT - k."""
+"""Number of wall segment 0 as the partner in a prediction; segment k has the number FIRST_WALL_SEGMENT - k."""
 
 
 @inline
 def precedes(a, b, c, d):
-    """Whether the event of ids (a, b) comes before the simultaneous one of (c, d); b and d may be wall ranks."""
+    """Whether the event of ids (a, b) precedes the simultaneous event of ids (c, d); b and d may be wall ranks."""
     a_low, a_high = (b, a) if 0 <= b < a else (a, b)
     c_low, c_high = (d, c) if 0 <= d < c else (c, d)
     return a_low < c_low or (a_low == c_low and a_high < c_high)
@@ -49,7 +49,7 @@ def precedes(a, b, c, d):
 
 @inline
 def image_precedes(own, other, images, others):
-    """Whether a disc meets a partner in the image `images` before it meets it, at the same time, in the image `others`.
+    """Whether a disc's contact with a partner in the image `images` precedes the simultaneous one in `others`.
 
     images, others: numbers of box lengths (x, y). own: id of the disc. other: id or wall rank of the partner.
     """
@@ -65,7 +65,7 @@ def images_of(prediction):
 
 @inline
 def partner_rank(ids, partner):
-    """Rank of a disc's partner in the order of simultaneous events: its id, or the rank of a wall."""
+    """Rank of a disc's partner in the order of simultaneous events: the id of a disc, or the rank of a wall."""
     if partner >= 0:
         return np.int64(ids[U(partner)])
     return np.int64(FIRST_WALL + FIRST_SEGMENT + (FIRST_WALL_SEGMENT - partner))
@@ -75,30 +75,30 @@ def partner_rank(ids, partner):
 def contact_is_next(prediction, ids, i):
     """Whether a disc's next event is its contact, not its crossing.
 
-    A crossing into a cell precedes all events of its time.
+    A crossing into a cell precedes all simultaneous events.
     """
     if prediction.contact != prediction.crossing:
         return prediction.contact < prediction.crossing
     if prediction.crossing_code < SIDE_OF_BOX or prediction.partner == -1 or i >= ids.shape[0]:
         return False
-    own = np.int64(ids[U(i)])
+    disc_id = np.int64(ids[U(i)])
     side = np.int64(FIRST_WALL + (prediction.crossing_code - SIDE_OF_BOX))
-    return precedes(own, partner_rank(ids, prediction.partner), own, side)
+    return precedes(disc_id, partner_rank(ids, prediction.partner), disc_id, side)
 
 
 @inline
 def event_ids(prediction, ids, i):
-    """The two ids by which a disc's next event is ordered among simultaneous ones.
+    """The two ids by which a disc's next event is ordered among simultaneous events.
 
-    Leaves beyond the discs are pistons': they meet a disc in their contact, a side of the box in their crossing.
+    Leaves beyond the discs belong to pistons: their contact is with a disc, their crossing with a side of the box.
     """
     contact = contact_is_next(prediction, ids, i)
     side = np.int64(FIRST_WALL + (prediction.crossing_code - SIDE_OF_BOX))
     if i >= ids.shape[0]:
         return (np.int64(ids[U(prediction.partner)]), side) if contact else (np.int64(-1), side)
-    own = np.int64(ids[U(i)])
+    disc_id = np.int64(ids[U(i)])
     if contact:
-        return own, partner_rank(ids, prediction.partner)
+        return disc_id, partner_rank(ids, prediction.partner)
     if prediction.crossing_code < SIDE_OF_BOX:
-        return np.int64(-1), own
-    return own, side
+        return np.int64(-1), disc_id
+    return disc_id, side

@@ -1,9 +1,10 @@
-"""Prefetching the memory of discs whose events come soon: for a gas too large for the caches.
+"""Prefetching the memory of discs that will soon have events, for a gas that does not fit into the caches.
 
-The disc that becomes the first in its part of the schedule has an event soon: with 8 to 64 parts, two levels below the
-root, about ten events later. (Directly below the root there may be only two, and the first of one is often next.) Each
-step needs what the previous one has fetched, so it follows an event later: first the disc's record, prediction and node
-of the schedule; then the cells around it, and its partner; then the discs in the cells that its event will search.
+A disc that becomes first in its part of the schedule will soon have an event: with 8 to 64 parts, two levels below the
+root, about ten events later. (Directly below the root there may be only two parts, whose first disc is often the next.)
+The memory is fetched in three steps, each an event after the step on whose data it depends: first the disc's record,
+prediction and node of the schedule; then the cells around it, and its partner; then the discs in the cells that its
+event will search.
 """
 
 import numpy as np
@@ -12,7 +13,7 @@ from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 from idealgas.jit import aligned, inline, prefetch
 
 FROM = 6_000
-"""Number of discs from which prefetching is faster."""
+"""Number of discs from which on prefetching is faster."""
 
 NEAR = 32_768
 """Largest number of discs for which the parts directly below the root suffice, if there are at least three."""
@@ -21,9 +22,9 @@ U = np.uintp
 
 
 def make_pipeline(n: int, levels: int) -> np.ndarray | None:
-    """Indices of two discs for which memory is being fetched, and level of the parts; None for a gas of few discs.
+    """Indices of two discs whose memory is being fetched, and the level of the parts; None for a gas of few discs.
 
-    levels: of the schedule, whose last is the root.
+    levels: number of levels of the schedule, of which the last is the root.
     """
     if n < FROM:
         return None
@@ -36,13 +37,13 @@ def make_pipeline(n: int, levels: int) -> np.ndarray | None:
 
 @inline
 def first_of_part(tree, level, i):
-    """Index of the disc with the next event in the part of the tree, a node of that level, that has disc i."""
+    """Index of the disc with the next event in disc i's part of the tree, a node of this level."""
     return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
 
 
 @inline
 def fetch_disc(tree, record, state, i):
-    """Fetch disc i's record, prediction, link and place in the schedule."""
+    """Fetch disc i's record, prediction, link and nodes in the schedule."""
     prefetch(record, U(i))
     prefetch(state.prediction, U(i))
     prefetch(state.cells.link, U(i))
@@ -55,7 +56,7 @@ def fetch_disc(tree, record, state, i):
 
 @inline
 def cell_around(cells, i):
-    """Index of disc i's cell, also while another thread moves it across a periodic side."""
+    """Index of disc i's cell; it is valid even while another thread moves the disc across a periodic side."""
     link = cells.link[U(i)]
     row = min(max(np.int64(link.row), np.int64(1)), cells.rows - 2)
     return row * cells.columns + min(max(np.int64(link.column), np.int64(1)), cells.columns - 2)
@@ -105,7 +106,7 @@ def fetch_candidates(cells, record, i, prediction):
 
 @inline
 def prefetch_next(pipeline, record, state, i):
-    """Fetch memory for the new first disc of disc i's part, whose event was removed, and for the previous two."""
+    """Fetch memory for the new first disc of the part from which disc i was removed, and for the previous two discs."""
     if pipeline is not None:
         third, second = pipeline[0], pipeline[1]
         first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # a piston is no disc

@@ -1,11 +1,11 @@
 """The scheduler: an implicit 8-ary tournament tree with one leaf per disc, whose root is the next event.
 
-The keys of a level are contiguous in memory, padded with times after NEVER; the index of the winning disc is stored
-next to each key. An event is removed before the next ones of its discs are predicted, so that the processor does both
-at once; to push these takes a comparison or two, as most are not the earliest of their group.
+The keys of a level are contiguous in memory, padded with times after NEVER; the index of the winning disc is stored for
+each key. An event is removed before the next events of its discs are predicted, so that the processor can do both in
+parallel. Pushing an event takes one or two comparisons, because most events are not the earliest of their group.
 
-Simultaneous events are rare, except for the contact that both discs of a pair predict. The tree therefore finds any of
-the earliest events, and its ties are resolved by the order of ids only if the next event has the same time.
+Simultaneous events are rare, except for a contact that both discs of the pair have predicted. The tree therefore finds
+any of the earliest events, and ties are resolved by the order of ids only if the next event has the same time.
 """
 
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from idealgas.jit import aligned, inline, njit, noinline
 from idealgas.physics.motion import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
-NO_TIE = -1.0  # no time
+NO_TIE = -1.0  # before all times
 
 U = np.uintp
 
@@ -27,11 +27,11 @@ class Tree(NamedTuple):
 
     Attributes:
         time: (total,) f8, local time of the earliest event below each node.
-        key: (total,) i8, the same memory; times are not negative, so their bits have the same order.
-        winner: (total,) i4, index of the disc with that event.
+        key: (total,) i8, the same memory as `time`; times are not negative, so their bits have the same order.
+        winner: (total,) i4, index of the disc with the earliest event below each node.
         start: (levels,) i8, first node of each level.
-        tie_time: (1,) f8, latest time at which ties were resolved: the winners are then the events that come first.
-            At other times any of several simultaneous events may be the winner.
+        tie_time: (1,) f8, latest time at which ties were resolved. At this time the winners are the first events by
+            the order of ids; at other times any of several simultaneous events may be the winner.
     """
 
     time: np.ndarray
@@ -66,7 +66,7 @@ def clear(tree):
 
 @inline
 def first_of_four(key, first):
-    """Earliest key of four consecutive nodes, and a node that has it."""
+    """Earliest key of four consecutive nodes, and a node with this key."""
     k0 = key[U(first)]
     k1 = key[U(first + 1)]
     k2 = key[U(first + 2)]
@@ -80,7 +80,7 @@ def first_of_four(key, first):
 
 @inline
 def first_of_group(key, group, width):
-    """Earliest key of a group of eight nodes, or of four on a level of width 4, and a node that has it."""
+    """Earliest key of a group of eight nodes, or of four on a level of width 4, and a node with this key."""
     k0, n0 = first_of_four(key, group)
     if width == 4:
         return k0, n0
@@ -90,7 +90,7 @@ def first_of_group(key, group, width):
 
 @noinline
 def comes_first(predictions, ids, i, j):
-    """Whether disc i's next event comes before that of disc j at the same time."""
+    """Whether disc i's next event precedes the simultaneous next event of disc j."""
     a, b = event_ids(predictions[U(i)], ids, i)
     c, d = event_ids(predictions[U(j)], ids, j)
     return precedes(a, b, c, d)
@@ -98,9 +98,9 @@ def comes_first(predictions, ids, i, j):
 
 @noinline
 def resolve_path(tree, predictions, ids, i, time):
-    """Resolve ties in the groups of disc i on all levels whose earliest event is at a time.
+    """Resolve ties in those groups of disc i, on all levels, whose earliest event is at a given time.
 
-    The winner of a group becomes the first, in the order of ids, of those with this time.
+    Of the discs of a group with this time, the first by the order of ids becomes the winner.
     """
     group = np.int64(i)
     base = 0
@@ -113,38 +113,38 @@ def resolve_path(tree, predictions, ids, i, time):
             first = np.int64(-1)
             for node in range(group, min(group + 8, parent)):
                 if tree.time[U(node)] == time:
-                    other = np.int64(tree.winner[U(node)])
-                    if first < 0 or comes_first(predictions, ids, other, first):
-                        first = other
+                    candidate = np.int64(tree.winner[U(node)])
+                    if first < 0 or comes_first(predictions, ids, candidate, first):
+                        first = candidate
             tree.winner[U(parent)] = first
         group = parent
 
 
 @inline
 def push(tree, predictions, ids, i):
-    """Insert the next event of disc i, which has none in the tree, and climb while it is the earliest."""
+    """Insert the next event of disc i, whose leaf is empty, and climb the tree while the event is the earliest."""
     _, key, winner, start, tie_time = tree
     prediction = predictions[U(i)]
     time = min(prediction.contact, prediction.crossing)
     tree.time[U(i)] = time
-    own = key[U(i)]
+    new_key = key[U(i)]
     node = np.int64(i)
     base = 0
     for level in range(1, start.shape[0]):
         offset = (node - base) >> 3
         base = start[U(level)]
         node = base + offset
-        if own >= key[U(node)]:
-            is_later = own > key[U(node)] or time != tie_time[0]
+        if new_key >= key[U(node)]:
+            is_later = new_key > key[U(node)] or time != tie_time[0]
             if is_later or not comes_first(predictions, ids, np.int64(i), np.int64(winner[U(node)])):
                 return
-        key[U(node)] = own
+        key[U(node)] = new_key
         winner[U(node)] = i
 
 
 @inline
 def remove(tree, predictions, ids, i):
-    """Remove disc i's event from the tree, and climb while it was the earliest."""
+    """Remove disc i's event from the tree, and climb the tree while it was the earliest."""
     times, key, winner, start, tie_time = tree
     removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
@@ -168,21 +168,21 @@ def remove(tree, predictions, ids, i):
 
 @inline
 def update(tree, predictions, ids, i):
-    """Replace the event of disc i in the tree by its next event."""
+    """Replace the event of disc i in the tree by its newly predicted next event."""
     remove(tree, predictions, ids, i)
     push(tree, predictions, ids, i)
 
 
 @inline
 def next_event(tree):
-    """Local time of the next event, and index of its disc, or of the disc with one of several simultaneous events."""
+    """Local time of the next event, and index of its disc; of several simultaneous events, any may be returned."""
     root = tree.start[U(tree.start.shape[0] - 1)]
     return tree.time[U(root)], np.int64(tree.winner[U(root)])
 
 
 @inline
 def has_other_event(tree, predictions, i, j, time):
-    """Whether disc j has, at the time of its collision with disc i, an event other than this collision."""
+    """Whether disc j has another event at the time of its collision with disc i."""
     prediction = predictions[U(j)]
     same = (prediction.partner == i) & (prediction.contact == time) & (prediction.crossing > time)
     return (tree.time[U(j)] == time) & (not same)
@@ -190,9 +190,9 @@ def has_other_event(tree, predictions, i, j, time):
 
 @noinline
 def resolve_ties(tree, predictions, ids, i, j):
-    """Put back the next events of disc i and, unless it is -1, of disc j, and resolve all ties at their time.
+    """Put back the next event of disc i and, unless j is -1, of disc j, and resolve all ties at their time.
 
-    Ties are rare, so a search through an eighth of the tree is fast enough.
+    Ties are so rare that a search through an eighth of the tree is fast enough.
     """
     push(tree, predictions, ids, i)
     if j >= 0:
@@ -209,7 +209,7 @@ def resolve_ties(tree, predictions, ids, i, j):
 
 @njit
 def build(tree, predictions, link, low, high):
-    """Build the tree of the discs in the rows of cells from `low` to before `high`, and of no others."""
+    """Build the tree of only those discs that are in the rows of cells from `low` to before `high`."""
     clear(tree)
     for i in range(link.shape[0]):
         if low <= link[U(i)].row < high:

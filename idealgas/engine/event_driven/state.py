@@ -1,4 +1,4 @@
-"""State of the event-driven method beyond the discs' records, rebuilt at the start of each epoch."""
+"""State of the event-driven method in addition to the discs' records; it is rebuilt at the start of each epoch."""
 
 from typing import NamedTuple
 
@@ -20,16 +20,16 @@ class EventDrivenState(NamedTuple):
 
     Attributes:
         cells: cells of the neighbour search.
-        coarse: coarse cells of the largest discs; None if all are in the same cells.
+        coarse: coarse cells of the largest discs; None if all discs are in the same cells.
         tree: schedule of the discs' next events.
-        prediction: (N,) PREDICTION by index, next events of each disc; with K pistons (N + K,), the last
-            ones are theirs.
+        prediction: (N,) PREDICTION by index, next events of each disc; with K pistons (N + K,), of which the last K
+            are predictions for the pistons.
         candidates: i4 scratch memory for indices of discs that may be in contact.
         images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
-        coarse_walls: wall segments of each coarse cell; None without either.
-        pipeline: (3,) i8, see `make_pipeline`; None for a gas that the caches hold.
-        unpredicted: (1,) bool, whether an epoch begins of which nothing is predicted yet.
+        coarse_walls: wall segments of each coarse cell; None without segments or without coarse cells.
+        pipeline: (3,) i8, see `make_pipeline`; None for a gas that fits into the caches.
+        unpredicted: (1,) bool, whether the predictions of the epoch have still to be made.
     """
 
     cells: Cells
@@ -45,9 +45,9 @@ class EventDrivenState(NamedTuple):
 
 
 def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effects) -> EventDrivenState:
-    """Event-driven state of n discs, without any prediction, and before the walls are known."""
+    """Event-driven state of n discs, without predictions and without walls."""
     leaves = n if effects.piston is None else n + len(effects.piston)
-    most = 9 if effects.shear is None else 25  # images in which each disc is a candidate, in a box of one cell
+    most = 9 if effects.shear is None else 25  # number of images of each disc among the candidates in a one-cell box
     room = most * n + 16
     tree = make_tree(leaves)
     return EventDrivenState(
@@ -66,6 +66,6 @@ def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effect
 
 @inline
 def record_image(images, k, x, y):
-    """Store the image (x, y) in which candidate k is seen."""
+    """Store the image (x, y) of candidate k."""
     images[np.uintp(k)].x = x
     images[np.uintp(k)].y = y

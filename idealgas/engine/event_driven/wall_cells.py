@@ -11,7 +11,7 @@ from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, perio
 
 
 class WallCells(NamedTuple):
-    """Wall segments of each cell: cell c has the entries from start[c] to before start[c + 1].
+    """Wall segments of each cell; the entries of cell c are those from start[c] to before start[c + 1].
 
     Attributes:
         start: (cells + 1,) i4, first entry of each cell.
@@ -27,9 +27,9 @@ class WallCells(NamedTuple):
 def make_wall_cells(
     segments: np.recarray, arcs: np.recarray | None, periodic: Periodic | None, cells: Cells, largest_radius: float
 ) -> WallCells:
-    """Enter every present segment in all cells that have a point within the largest radius (length) of it.
+    """Enter every active segment in all cells that have a point within the largest radius (length) of it.
 
-    A small margin makes sure that rounding leaves no cell out.
+    A small margin ensures that no cell is left out because of rounding.
     """
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
     across, along = (range(-1, 2) if is_periodic else (0,) for is_periodic in periodic_axes(periodic))
@@ -37,9 +37,9 @@ def make_wall_cells(
     for k in np.flatnonzero(segments.active):
         arc = None if arcs is None or arcs[k].radius == 0 else arcs[k]
         for image in ((x, y) for x in across for y in along):
-            found = _cells_near(segments[k], arc, image, cells, reach)
-            cell_parts.append(found)
-            item_parts.append(np.full((len(found), 3), (k, *image), np.int32))
+            nearby = _cells_near(segments[k], arc, image, cells, reach)
+            cell_parts.append(nearby)
+            item_parts.append(np.full((len(nearby), 3), (k, *image), np.int32))
     cell, item = np.concatenate(cell_parts), np.concatenate(item_parts)
     order = np.argsort(cell, kind="stable")
     start = np.searchsorted(cell[order], np.arange(cells.columns * cells.rows + 1))
@@ -50,7 +50,7 @@ def make_wall_cells(
 
 @inline
 def images_to_item(walls, entry, disc, periodic):
-    """Numbers of box lengths (x, y) between a disc's record and the segment of an entry of its cell."""
+    """Numbers of box lengths (x, y) between a disc's record and the wall segment of an entry."""
     if periodic is not None:
         return images_to_wall(periodic, disc, (walls.image[entry, 0], walls.image[entry, 1]))
     return NO_IMAGES
@@ -74,7 +74,7 @@ def _cells_near(
     centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
     if arc is None:
         normal = np.array([-tangent[1], tangent[0]])
-        near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it lies between
+        near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no parallel line separates them
     else:
         centre = centre.reshape(-1, 2)
         away = np.hypot(*(centre - nearest_on_arc(centre, length * tangent, arc)).T)

@@ -1,1 +1,1 @@
-"""Several threads for one gas: domain decomposition into slabs, with the same log for any number of threads."""
+"""Simulation of one gas by several threads: domain decomposition into slabs, with the same log for any number."""

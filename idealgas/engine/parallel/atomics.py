@@ -1,6 +1,7 @@
 """Atomic operations on words of memory that several threads share.
 
-Loads acquire and stores release: a thread that loads a value also sees all that was written before it was stored.
+Loads acquire and stores release: a thread that loads a value also sees everything that was written before the value was
+stored.
 """
 
 import platform
@@ -8,16 +9,16 @@ import platform
 from idealgas.jit import CACHE_LINE, inline, intrinsic
 
 LINE = CACHE_LINE // 8
-"""Words per cache line: words that different threads write often are at least this far apart."""
+"""Words per cache line. Words that different threads write often are at least this far apart."""
 
 SPINS = 100
-"""Rounds of waiting after which a thread yields the processor, which the other thread may need."""
+"""Rounds of waiting after which a thread yields the processor, because another thread may need it."""
 
 _HINTS = {
     **dict.fromkeys(("x86_64", "AMD64"), ("llvm.x86.sse2.pause", ())),
     **dict.fromkeys(("aarch64", "arm64"), ("llvm.aarch64.hint", (1,))),
 }
-"""LLVM intrinsic that hints to the processor that a thread is waiting, with its arguments."""
+"""LLVM intrinsic, with its arguments, that hints to the processor that a thread is waiting."""
 
 
 def _pointer(context, builder, kind, array, index):
@@ -26,7 +27,7 @@ def _pointer(context, builder, kind, array, index):
 
 @intrinsic
 def load(typingctx, array, index):
-    """The word array[index]; array: i8 or f8."""
+    """Return the word array[index]; array: i8 or f8."""
 
     def code(context, builder, signature, arguments):
         return builder.load_atomic(_pointer(context, builder, signature.args[0], *arguments), "acquire", 8)
@@ -48,7 +49,7 @@ def store(typingctx, array, index, value):
 
 @intrinsic
 def exchange(typingctx, array, index, value):
-    """Set array[index] to a value and return what it was; array: i8."""
+    """Set array[index] to a value and return the previous value; array: i8."""
 
     def code(context, builder, signature, arguments):
         word = _pointer(context, builder, signature.args[0], *arguments[:2])
@@ -59,7 +60,7 @@ def exchange(typingctx, array, index, value):
 
 @intrinsic
 def add(typingctx, array, index, value):
-    """Add a value to array[index] and return what it was; array: i8."""
+    """Add a value to array[index] and return the previous value; array: i8."""
 
     def code(context, builder, signature, arguments):
         word = _pointer(context, builder, signature.args[0], *arguments[:2])
@@ -70,7 +71,7 @@ def add(typingctx, array, index, value):
 
 @intrinsic
 def pause(typingctx):
-    """Hint to the processor that this thread waits for a word to change."""
+    """Hint to the processor that this thread is waiting for a word to change."""
     from llvmlite import ir
     from numba import types
 

@@ -1,13 +1,13 @@
-"""Automatic choice between several threads and one, by the time that each took most recently."""
+"""Automatic choice between several threads and one, by the time per event that each took most recently."""
 
 import time
 
 RETRY_AFTER = 20
-"""The slower mode is tried again after this many times the duration of the last slice."""
+"""The slower mode is tried again after this multiple of the duration of the last slice."""
 
 
 class ThreadAutotuner:
-    """The currently faster mode: several threads or one."""
+    """Chooses the currently faster mode: several threads or one."""
 
     def __init__(self) -> None:
         """Begin without a measurement."""
@@ -15,7 +15,7 @@ class ThreadAutotuner:
         self._retry_at = 0.0  # time at which to try the slower mode again
 
     def use_threads(self) -> bool:
-        """Whether to use several threads; the slower mode is tried now and then, for a small part of the time."""
+        """Whether to use several threads; now and then, for a small part of the time, the slower mode is tried."""
         if self.undecided:
             return False in self._cost
         return self._faster if time.perf_counter() < self._retry_at else not self._faster
@@ -26,15 +26,15 @@ class ThreadAutotuner:
         return len(self._cost) < 2
 
     def is_trial(self, shared: bool) -> bool:
-        """Whether a slice in one mode serves to measure it; shared: the mode with several threads."""
+        """Whether a slice serves to measure its mode; shared: whether that is the mode with several threads."""
         return self.undecided or shared != self._faster
 
     def note(self, shared: bool, events: int, seconds: float) -> None:
-        """Record the duration of a slice."""
+        """Record the duration of a slice; shared: whether several threads shared it."""
         if events > 0:
             trial = self.is_trial(shared)
             self._cost[shared] = seconds / events
-            if trial or self.is_trial(shared):  # or this mode was the faster one until now
+            if trial or self.is_trial(shared):  # the second case: this mode was the faster one until now
                 self._retry_at = time.perf_counter() + RETRY_AFTER * seconds
 
     @property

@@ -1,7 +1,7 @@
 """Domain decomposition: several threads advance one gas, with the same result as one thread, bit for bit.
 
-Each thread processes the events of the discs in its slab, in slices of time. If an event of a slice could have happened
-in another order, the slice is aborted: all its changes are rolled back, and one thread repeats it.
+Each thread processes the events of the discs in its slab, in slices of time. If events of a slice may have happened in
+the wrong order, the slice is aborted: all its changes are rolled back, and one thread repeats it.
 """
 
 import time
@@ -33,26 +33,26 @@ REASONS = {VIOLATION: "causality", TIE: "tie", FULL: "full", CLOCK: "clock", FAI
 """Names of the reasons for which a slice is aborted."""
 
 STOP = "stop"
-"""One more reason: the slice exceeded a number of events."""
+"""A further reason: the slice exceeded a limit on the number of events."""
 
 SLICE_FRACTION = 0.8
-"""Fraction of the events up to a limit that a slice is planned for: one that exceeds the limit is wasted."""
+"""Planned events of a slice as a fraction of the events up to a limit; a slice that exceeds the limit is wasted."""
 
 TRIAL_FACTOR = 2
-"""Events of a slice that measures a mode, in units of the minimum of a slice, unless the number per disc is larger.
+"""Events of a slice that measures a mode, in units of the minimum of a slice.
 
-The cost of a slice in addition to its events grows with the discs. On a busy machine a shared slice may take forty
-times as long as a serial one.
+SERIAL_TRIAL or PARALLEL_TRIAL may require more events. The cost of a slice in addition to its events grows with the
+number of discs. On a busy machine a shared slice may take forty times as long as a serial slice.
 """
 
 SERIAL_TRIAL, PARALLEL_TRIAL = 0.25, 0.5
-"""Events per disc of such a slice, on one thread and on several."""
+"""Events per disc of a slice that measures a mode, for one thread and for several."""
 
 MIN_RATE_EVENTS = 64
-"""Number of events from which a rate is measured."""
+"""Smallest number of events from which a rate is measured."""
 
 PREDICTIONS_PER_EVENT = 6
-"""Predictions at the start of an epoch that take as long as one event."""
+"""Number of predictions at the start of an epoch that take as long as an event."""
 
 RATE_DIVISOR = 8
 """Divisor of a rate that predicted far too many events."""
@@ -62,9 +62,9 @@ class Workers:
     """Threads, memory and measurements that last for a run.
 
     Attributes:
-        counts: numbers of shared slices, of aborted ones by reason, and of migrations and their side effects.
-        rate: events and collisions of two discs per time in the last slice; None before the first.
-        autotuner: choice between several threads and one; None to use several threads always.
+        counts: numbers of shared slices, of aborted slices by reason, and of migrations and their side effects.
+        rate: rates of all events and of collisions of two discs in the last slice, 1/time; None before the first.
+        autotuner: choice between several threads and one; None to always use several threads.
     """
 
     def __init__(self, tuning: Tuning = DEFAULT_TUNING) -> None:
@@ -78,11 +78,11 @@ class Workers:
 
     @property
     def aborted(self) -> int:
-        """Number of aborted slices of the run so far."""
+        """Number of aborted slices in the run so far."""
         return sum(self.counts[why] for why in (*REASONS.values(), STOP))
 
     def memory(self, batch: EventBatch | None, slabs: int) -> EventBatch | None:
-        """Memory for the rows of all slabs, an equal part for each, with the columns of a batch; None without a log."""
+        """Memory for the rows of all slabs, in equal parts, with the columns of a batch; None without a log."""
         if batch is None:
             return None
         rows = self.tuning.buffer * slabs
@@ -91,18 +91,18 @@ class Workers:
         return self._rows
 
     def run(self, work: Callable[[int], None], number: int, abort_slice: Callable[[], None]) -> None:
-        """Call work(0) to work(number - 1) in parallel, each in its own thread, the first in this one."""
+        """Call work(0) to work(number - 1) in parallel, the first in this thread and each of the others in its own."""
         self._pool = self._pool or ThreadPoolExecutor(number - 1, "slab")
-        others = [self._pool.submit(work, k) for k in range(1, number)]
+        futures = [self._pool.submit(work, k) for k in range(1, number)]
         try:
             work(0)
-            wait(others)
+            wait(futures)
         finally:  # Ctrl-C interrupts this thread
-            if not all(other.done() for other in others):
+            if not all(future.done() for future in futures):
                 abort_slice()
-                wait(others)
-        for other in others:
-            other.result()
+                wait(futures)
+        for future in futures:
+            future.result()
 
 
 class DomainDecomposition:
@@ -128,13 +128,13 @@ class DomainDecomposition:
 
     @property
     def pending(self) -> bool:
-        """Whether rows of the last slice are still to be delivered."""
+        """Whether `advance` still has rows of the last slice to deliver."""
         return self._pending is not None and len(self._pending) > 0
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Process events up to the limits, see `advance_events`; rows beyond the batch come with the next calls."""
+        """Process events up to the limits, see `advance_events`; rows that do not fit are left for the next calls."""
         if self.pending:
             return self._deliver(batch)
         end, autotuner = self._slice_end(limits, batch, counters[0]), self._workers.autotuner
@@ -152,17 +152,17 @@ class DomainDecomposition:
             rows, arrived = self._run_serial(limits, epoch_start, batch, counters)
         if (
             autotuner is not None and aborted != STOP
-        ):  # a rising rate of events, as in a melting lattice, is not slowness
+        ):  # when the rate of events rises, as in a melting lattice, a slice is wasted although threads are not slow
             autotuner.note(shared, self._work_done(counters) - before, time.perf_counter() - started)
         return rows, arrived
 
     def _work_done(self, counters: np.ndarray) -> int:
-        """Work done in the epoch: events, and predictions at its start converted to events."""
+        """Work done in the epoch, in events; the predictions at its start are converted to events."""
         predictions = len(self._discs.record) if self._state.unpredicted[0] else 0
         return int(counters[0]["events"]) - predictions // PREDICTIONS_PER_EVENT
 
     def _slice_end(self, limits: Limits, batch: EventBatch | None, counter: Any) -> float:
-        """Local time up to which to share the next slice; 0 if none is worthwhile."""
+        """Local time up to which the threads should share the next slice; 0 if sharing is not worthwhile."""
         if self._workers.rate is None:
             return 0.0
         (events, collisions), tuning = self._workers.rate, self._workers.tuning
@@ -176,7 +176,7 @@ class DomainDecomposition:
         return until if (until - now) * events >= tuning.min_events else 0.0
 
     def _trial_events(self, per_disc: float) -> int:
-        """Events of a slice that measures a mode; per_disc: events per disc."""
+        """Number of events of a slice that measures a mode; per_disc: minimum per disc."""
         least = max(TRIAL_FACTOR * self._workers.tuning.min_events, MIN_RATE_EVENTS)
         return max(least, int(per_disc * len(self._discs.record)))
 
@@ -245,14 +245,17 @@ class DomainDecomposition:
         return ""
 
     def _deliver(self, batch: EventBatch | None) -> tuple[int, bool]:
-        """Deliver the rows of a slice, which ends with the last of them."""
+        """Fill the batch with rows of the last slice; the slice is over when all its rows are delivered."""
         rows = 0
         if batch is not None and self._pending is not None:
             rows = self._pending.fill(batch)
         return rows, self._reaches_limit and not self.pending
 
     def _run_threads(self, until: float, batch: EventBatch | None, flag: int) -> str:
-        """Run all threads up to a local time, from a flag; return why they were aborted, or an empty string."""
+        """Run all threads up to a local time; return the reason why they were aborted, or an empty string.
+
+        flag: initial flag; if it is not 0, the threads stop at once.
+        """
         record, ids, _ = self._discs
         if not self._slabs:
             self._slabs = [_Slab(self._state, self._effects, len(record)) for _ in self._subdomains]
@@ -269,7 +272,7 @@ class DomainDecomposition:
             try:
                 rows = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
                 self._slabs[k].run(record, ids, limits, rows, self._subdomains[k], unpredicted)
-            except Exception:  # raised by a kernel: it is raised again when one thread repeats the slice
+            except Exception:  # errors of a kernel are raised again when one thread repeats the slice
                 abort_slice()
 
         self._built = False
@@ -281,7 +284,7 @@ class DomainDecomposition:
         return REASONS.get(int(words[FLAG]), "")
 
     def _mutable_arrays(self) -> list[np.ndarray]:
-        """All arrays that events change, except sums and schedulers, as bytes."""
+        """Return all arrays that events change, except sums and schedulers, as bytes."""
         state, effects = self._state, self._effects._replace(flow=None)
         arrays = [self._discs.record, state.prediction, state.cells.head, state.cells.link]
         for effect in effects:
@@ -290,7 +293,7 @@ class DomainDecomposition:
         return [np.ascontiguousarray(array).view(np.uint8) for array in arrays]
 
     def _save(self) -> None:
-        """Save a copy of all arrays that the slice may change."""
+        """Save copies of all arrays that the slice may change."""
         if not hasattr(self, "_saved"):
             self._saved = [np.empty_like(array) for array in self._mutable_arrays()]
         for copy, array in zip(self._saved, self._mutable_arrays(), strict=True):
@@ -304,7 +307,7 @@ class DomainDecomposition:
 
 
 class _Slab:
-    """Scheduler, scratch memory, sums, counters and number of rows of one thread."""
+    """Scheduler, scratch memory, sums, counters and number of rows of a thread."""
 
     def __init__(self, state: EventDrivenState, effects: Effects, n: int) -> None:
         self._state = state._replace(
@@ -321,7 +324,7 @@ class _Slab:
     def run(
         self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, subdomain: Subdomain, unpredicted: bool
     ) -> None:
-        """Process the slab's events up to a limit of time.
+        """Process the slab's events up to a time limit.
 
         rows: memory for the events, with local times; None without a log. unpredicted: whether an epoch begins.
         """

@@ -15,15 +15,22 @@ class TiedRowsError(Exception):
 
 
 def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
-    """Indices of all rows of a slice in order of time.
+    """Return the indices of all rows of a slice in order of time.
 
-    time: local times, in equal parts of memory for the slabs. filled: number of rows of each slab, from the beginning
-    of its part, in the order in which they happened; they are not sorted if a clock was set back. TiedRowsError if
-    simultaneous rows are not adjacent rows of one slab, as their order is then undefined.
+    Args:
+        time: local times; each slab has an equal part of this memory.
+        filled: number of rows of each slab, counted from the beginning of its part. They are in the order in which
+            they were processed, which is not the order of time if a clock was set back.
+
+    Returns:
+        (rows,) i8.
+
+    Raises:
+        TiedRowsError: simultaneous rows are not adjacent rows of the same slab, so their order is undefined.
     """
-    order, own = np.empty(sum(filled), np.int64), np.empty(len(time), np.int64)
+    order, sorted_rows = np.empty(sum(filled), np.int64), np.empty(len(time), np.int64)
     place, head = np.empty(len(filled), np.int64), np.empty(len(filled))
-    if not merge(time, np.array(filled), own, place, head, order):
+    if not merge(time, np.array(filled), sorted_rows, place, head, order):
         raise TiedRowsError
     return order
 
@@ -32,8 +39,8 @@ def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
 def merge(time, filled, own, place, head, order):
     """Merge the rows of all slabs into `order`, see `time_order`; return False if their order is undefined.
 
-    filled: (slabs,) i8. own: i8, as many as times, overwritten with each slab's sorted rows. place: (slabs,) i8 and
-    head: (slabs,) f8, overwritten with the position in `own` of each slab's next row, and its time.
+    filled: (slabs,) i8. own: i8 of the same length as `time`, overwritten with each slab's sorted rows. place: (slabs,)
+    i8 and head: (slabs,) f8, overwritten with the position in `own` of each slab's next row, and its time.
     """
     slabs = filled.shape[0]
     room = time.shape[0] // slabs
@@ -44,8 +51,8 @@ def merge(time, filled, own, place, head, order):
     before = -1
     for n in range(order.shape[0]):
         k = 0
-        for other in range(1, slabs):
-            k = other if head[U(other)] < head[U(k)] else k
+        for slab in range(1, slabs):
+            k = slab if head[U(slab)] < head[U(k)] else k
         row = own[U(place[U(k)])]
         if before >= 0 and time[U(row)] == time[U(before)] and (row != before + 1 or row % room == 0):
             return False
@@ -58,7 +65,7 @@ def merge(time, filled, own, place, head, order):
 
 @inline
 def insertion_sort(time, start, stop, own):
-    """Sort the rows from `start` to before `stop` by time; insertion is fast as nearly all are in order."""
+    """Sort the rows from `start` to before `stop` by time; insertion is fast, as nearly all rows are in order."""
     for row in range(start, stop):
         at = row
         while at > start and time[U(own[U(at - 1)])] > time[U(row)]:
@@ -69,7 +76,7 @@ def insertion_sort(time, start, stop, own):
 
 @inline
 def gather_scalars(to, rows, order):
-    """Copy a scalar column of the rows in an order, if the batch has it."""
+    """Copy a scalar column of the rows in the given order, if the batch has it."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k)] = rows[U(order[U(k)])]
@@ -77,7 +84,7 @@ def gather_scalars(to, rows, order):
 
 @inline
 def gather_vectors(to, rows, order):
-    """Copy a column of two components of the rows in an order, if the batch has it."""
+    """Copy a column with two components of the rows in the given order, if the batch has it."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k), 0] = rows[U(order[U(k)]), 0]
@@ -86,7 +93,7 @@ def gather_vectors(to, rows, order):
 
 @njit
 def gather_rows(rows, order, epoch_start, batch):
-    """Copy rows with local times into a batch in an order; epoch_start: time."""
+    """Copy rows with local times into a batch in the given order; epoch_start: time."""
     for k in range(order.shape[0]):
         batch.time[U(k)] = epoch_start + rows.time[U(order[U(k)])]
     gather_scalars(batch.disc, rows.disc, order)
@@ -99,10 +106,10 @@ def gather_rows(rows, order, epoch_start, batch):
 
 
 class PendingRows:
-    """Rows that are still to be delivered."""
+    """Rows that have still to be delivered."""
 
     def __init__(self, rows: EventBatch, order: np.ndarray, epoch_start: float) -> None:
-        """Begin with rows with local times, and their order; epoch_start: time."""
+        """Begin with rows with local times and their order; epoch_start: time."""
         self._rows, self._order, self._epoch_start = rows, order, epoch_start
         self._next = 0
 
@@ -111,7 +118,7 @@ class PendingRows:
         return len(self._order) - self._next
 
     def fill(self, batch: EventBatch) -> int:
-        """Fill a batch, with both rows of a pair or neither; return the number of rows."""
+        """Fill a batch without separating the rows of a pair; return the number of rows."""
         start = self._next
         stop = min(start + len(batch.time) - 1, len(self._order))
         if stop < len(self._order) and self._is_second(self._order[stop]):
@@ -121,6 +128,6 @@ class PendingRows:
         return stop - start
 
     def _is_second(self, row: int) -> bool:
-        """Whether a row is the second of a pair, that of the larger id."""
+        """Whether a row is the second row of a pair, which belongs to the larger id."""
         disc, partner, kind = (int(column[row]) for column in (self._rows.disc, self._rows.partner, self._rows.kind))
         return kind == Kind.DISC and partner < disc

@@ -24,15 +24,15 @@ from idealgas.system import cores
 
 
 class Tuning(NamedTuple):
-    """Parameters of the threads that change their speed and nothing else.
+    """Parameters of the threads that only change their speed.
 
     Attributes:
         min_rows: smallest number of rows of a slab.
         min_discs: smallest number of discs of a slab.
         min_events: smallest number of events of a slice that several threads share.
-        max_events: events of a slice that are enough, however many discs there are: as many as take some seconds.
-        buffer: rows of events that a slab has memory for.
-        lead: rows that the fastest disc may cross in the time by which interior events are ahead of others.
+        max_events: number of events that suffice for a slice, however many discs there are; they take some seconds.
+        buffer: number of rows for which a slab has memory.
+        lead: number of rows that the fastest disc may cross in the time by which interior events may be ahead.
         autotune: whether one thread continues alone while that is faster, as on a busy machine.
     """
 
@@ -49,10 +49,17 @@ DEFAULT_TUNING = Tuning()
 
 
 def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tuning = DEFAULT_TUNING) -> Threads:
-    """Number of threads that share n discs in a number of rows of cells.
+    """Choose the number of threads that share n discs.
 
-    threads: as requested; None for as many as are worthwhile. far: why discs may collide with what is not near them;
-    empty if they do not.
+    Args:
+        threads: requested number; None for as many as are worthwhile.
+        rows: number of rows of cells.
+        n: number of discs.
+        far: reason why discs may collide with distant partners; empty if they cannot.
+        tuning: parameters of the threads.
+
+    Returns:
+        The number of threads, with the reason.
     """
     if INTERPRETED:
         return Threads(1, "nothing is compiled")
@@ -78,9 +85,9 @@ def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tun
 
 
 def slab_edges(discs_in_row: np.ndarray, slabs: int) -> list[int]:
-    """First rows of the slabs, and the row after the last: equal shares of the discs, at least MIN_ROWS rows each.
+    """First row of each slab, and the row after the last slab: equal shares of the discs, at least MIN_ROWS rows each.
 
-    discs_in_row: (R,) by row of cells, ring included.
+    discs_in_row: (R,) number of discs in each row of cells, including the ring.
     """
     last = len(discs_in_row) - 1
     share = np.cumsum(discs_in_row) / max(discs_in_row.sum(), 1)
@@ -93,7 +100,10 @@ def slab_edges(discs_in_row: np.ndarray, slabs: int) -> list[int]:
 
 
 def make_subdomains(edges: list[int], ring: bool, lead: float) -> list[Subdomain]:
-    """The slabs between the edges; ring: whether the last one and the first are neighbours. lead: time."""
+    """Return the slabs between the edges.
+
+    ring: whether the last slab and the first are neighbours. lead: how far interior events may be ahead, time.
+    """
     slabs = len(edges) - 1
     words = aligned(lines(slabs) * LINE, np.dtype("i8"))
     subdomains = []

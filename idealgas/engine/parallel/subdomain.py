@@ -1,11 +1,12 @@
 """Subdomains of several threads: their clocks and locks, and the migration of discs between them.
 
 The box is decomposed into slabs of rows of cells. A thread owns the discs whose cells lie in its slab, and schedules
-their events. Events in the interior of a slab proceed at once. A *halo event*, with a disc in one of the HALO rows at
-an interface of two slabs, waits until the clock of the neighbour, the time of its next event, is later. It then takes
-the lock of the interface, under which it may change the neighbour's disc in the first row beyond, or let a disc
-migrate. No thread touches the scheduler of another one: it sends the disc as a message, and the owner schedules the
-disc, which may set the owner's clock back. `synchronization` decides when an event may happen.
+their events. Events in the interior of a slab happen at once. A *halo event* is an event with a disc in one of the HALO
+rows at an interface of two slabs. It waits until the clock of the neighbour, which is the time of the neighbour's next
+event, is later. It then takes the lock of the interface; while it holds the lock, it may change the neighbour's disc in
+the first row beyond, or let a disc migrate. A thread never changes the scheduler of another thread: it sends the disc
+as a message, and the new owner schedules the disc, which may set that thread's clock back. `synchronization` decides
+when an event may happen.
 """
 
 from typing import NamedTuple
@@ -29,17 +30,17 @@ LOW, HIGH, FOREIGN = 1, 2, 4
 """Location of a halo event: at the lower interface, at the upper one, or with a partner owned by another thread."""
 
 DONE, ABORTED = -1, -2
-"""In place of the index of a disc: no events are left up to the limit, or the slice is aborted."""
+"""Instead of the index of a disc: no events are left up to the limit, or the slice is aborted."""
 
 VIOLATION, TIE, FULL, CLOCK, FAILED = range(1, 6)
-"""Why a slice is aborted: causality violated, simultaneous events at an interface, limits too narrow, a clock that
-stands still or runs backwards, an error."""
+"""Reasons why a slice is aborted: causality is violated, events at an interface are simultaneous, a limit is reached, a
+clock stands still or runs backwards, or an error occurred."""
 
-MAX_SIMULTANEOUS = 10_000  # consecutive events of a slab at one instant; one thread has to find out whether they end
+MAX_SIMULTANEOUS = 10_000  # consecutive events of a slab at one instant, after which one thread repeats the slice
 
-FLAG, ACTIVE = 0, LINE  # words: why the slice is aborted, or 0; number of threads with events left
-FIRST_LINE = 2  # lines before those of the slabs, each with a clock and the time and disc of its halo event
-BEFORE_ALL = -1.0  # a time before all others
+FLAG, ACTIVE = 0, LINE  # words: reason why the slice is aborted, or 0; number of threads with events left
+FIRST_LINE = 2  # lines before those of the slabs; a slab's line has its clock and the time and disc of its halo event
+BEFORE_ALL = -1.0  # a time before all events
 
 U = np.uintp
 
@@ -47,10 +48,10 @@ PRIVATE = np.dtype(
     [
         ("clock", "f8"), ("horizon", "f8"),  # published time; time up to which the neighbours' clocks need no check
         ("interior", "f8"), ("halo", "f8"),  # latest interior event; latest halo event
-        ("message_interior", "f8"), ("message_halo", "f8"),  # the same when the last message was received
+        ("message_interior", "f8"), ("message_halo", "f8"),  # `interior` and `halo` when the last message was received
         ("low", "f8"), ("high", "f8"),  # latest event at each interface since the last message
         ("last", "f8"),  # last event since the last message
-        ("row_time", "f8"), ("unchecked", "i8"),  # latest event with rows; how many more to check after a message
+        ("row_time", "f8"), ("unchecked", "i8"),  # latest event with rows; number still to be checked after a message
         ("simultaneous", "i8"),  # consecutive events at the time of the last one
         ("locked", "i8"), ("idle", "i8"),  # interfaces that are locked; whether no event is left up to the limit
         ("migrations", "i8"), ("clock_resets", "i8"), ("crossed_messages", "i8"),  # statistics
@@ -60,22 +61,22 @@ PRIVATE = np.dtype(
 
 
 class Subdomain(NamedTuple):
-    """One slab as its thread sees it, and the memory that all threads share.
+    """A slab as its thread sees it, and the memory that all threads share.
 
     Attributes:
         rank: number of the slab.
         slabs: number of slabs.
         low: first row of the slab.
-        high: row after its last.
-        interior: first row outside the halos, and the row after the last such.
+        high: row after the last row of the slab.
+        interior: first row outside the halos, and the row after the last row outside them.
         below: number of the lower interface; -1 at a side of the box.
         above: number of the upper interface; -1 at a side of the box.
         rank_below: number of the slab below.
         rank_above: number of the slab above.
-        lead: how far interior events may be ahead of the neighbours' clocks, time; it makes violations rare.
+        lead: how far interior events may be ahead of the neighbours' clocks, time; this limit makes violations rare.
         private: (1,) PRIVATE, used by this thread only.
         words: i8, shared by all threads: FLAG, ACTIVE, then the lines of slabs, of interfaces and of messages.
-        times: f8, the same memory.
+        times: f8, the same memory as `words`.
     """
 
     rank: int
@@ -94,19 +95,19 @@ class Subdomain(NamedTuple):
 
 
 def lines(slabs: int) -> int:
-    """Number of cache lines that the threads share."""
+    """Number of cache lines that the threads share; slabs: number of slabs."""
     return FIRST_LINE + 4 * slabs
 
 
 @inline
 def clock_word(rank):
-    """Index of a slab's clock; the next two words are the time of its halo event and the event's disc."""
+    """Index of the word with a slab's clock; the next two words are the time and the disc of its halo event."""
     return (FIRST_LINE + rank) * LINE
 
 
 @inline
 def lock_word(sub, interface):
-    """Index of an interface's lock; the next word is the time of the latest event there."""
+    """Index of the word with an interface's lock; the next word is the time of the latest event there."""
     return (FIRST_LINE + sub.slabs + interface) * LINE
 
 
@@ -135,13 +136,13 @@ def publish_clock(sub, time):
 
 @inline
 def has_message(sub):
-    """Whether a neighbour waits until this thread has received a disc."""
-    found = False
+    """Whether a neighbour is waiting for this thread to receive a disc."""
+    is_waiting = False
     if sub.below >= 0:
-        found |= load(sub.words, message_word(sub, sub.below, 1)) >= 0
+        is_waiting |= load(sub.words, message_word(sub, sub.below, 1)) >= 0
     if sub.above >= 0:
-        found |= load(sub.words, message_word(sub, sub.above, 0)) >= 0
-    return found
+        is_waiting |= load(sub.words, message_word(sub, sub.above, 0)) >= 0
+    return is_waiting
 
 
 @noinline
@@ -160,7 +161,7 @@ def receive(ids, state, until, sub):
         private.message_interior = private.interior
         private.message_halo = private.halo
         private.low = private.high = private.last = BEFORE_ALL
-        private.unchecked = 2  # the message may come within an event whose rows are yet to be checked
+        private.unchecked = 2  # the message may arrive during an event whose rows have not been checked yet
         if private.idle and time <= until:
             private.idle = 0
             add(sub.words, ACTIVE, np.int64(1))
@@ -172,7 +173,7 @@ def receive(ids, state, until, sub):
 
 @noinline
 def migrate(ids, state, i, sub):
-    """Send disc i to the neighbour beyond the locked interface, and wait until that has received it."""
+    """Send disc i to the neighbour beyond the locked interface, and wait until the neighbour has received it."""
     private = sub.private[0]
     remove(state.tree, state.prediction, ids, i)
     private.migrations += 1
@@ -191,7 +192,7 @@ def migrate(ids, state, i, sub):
 
 @inline
 def unlock(sub):
-    """Release the interfaces that the last halo event has locked."""
+    """Release the interfaces that the last halo event locked."""
     private = sub.private[0]
     if private.locked != 0:
         if private.locked & LOW:
@@ -203,7 +204,7 @@ def unlock(sub):
 
 @inline
 def try_lock(sub, where):
-    """Lock the interfaces of a halo event; False, with none locked, if another thread holds one."""
+    """Lock the interfaces of a halo event and return True; lock none and return False if another thread holds one."""
     if where & LOW and exchange(sub.words, lock_word(sub, sub.below), np.int64(1)) != 0:
         return False
     sub.private[0].locked = where & LOW

@@ -1,9 +1,9 @@
 """Synchronization of threads: the loop in which a thread waits until the next event of its slab may happen.
 
-Two events commute unless one writes rows that the other reads or writes; those that do not commute must happen in the
-order of their times. A thread whose clock was set back may have advanced too far. Every event that could have happened
-in another order is detected before anything is written: the thread then raises a flag, all threads roll back the slice,
-and one thread repeats it. The rows that an event reads and writes are in engine/README.md.
+Two events commute unless one of them writes rows that the other reads or writes (see `HALO`). Events that do not
+commute must happen in the order of their times, but a thread whose clock was set back may have advanced too far. Every
+event that might be out of order is detected before anything is written: the thread raises a flag, the slice is rolled
+back, and one thread repeats it.
 """
 
 import numpy as np
@@ -48,7 +48,7 @@ def is_owned(state, i, sub):
 
 @inline
 def count_simultaneous(time, now, events_at_this_time, sub):
-    """Time of the latest event, after one at `time`, and number of consecutive events then."""
+    """Time of the latest event, after an event at `time`, and the number of consecutive events at that time."""
     check_rows(time, sub)
     if time < now:  # the clock was set back
         return now, events_at_this_time
@@ -57,9 +57,10 @@ def count_simultaneous(time, now, events_at_this_time, sub):
 
 @inline
 def check_rows(time, sub):
-    """Note an event with rows; abort if it has the time of the previous one and a disc was received in between.
+    """Note an event with rows; abort if it is simultaneous with the previous one and a disc was received in between.
 
-    If this disc takes part in the event, the order of the two events is undefined, and their rows are adjacent.
+    If that disc takes part in the event, the order of the two events is undefined, and the merge cannot detect it
+    because their rows are adjacent.
     """
     private = sub.private[0]
     if private.unchecked > 0:
@@ -71,7 +72,7 @@ def check_rows(time, sub):
 
 @inline
 def finish(sub, reached):
-    """End a thread's work; if it did not reach its limit, abort that of all others."""
+    """End a thread's work; if it did not reach its time limit, abort the slice."""
     unlock(sub)
     if not reached:
         abort(sub, FULL)
@@ -96,7 +97,7 @@ def is_halo_event(ids, state, i, sub):
 
 @inline
 def halo_of(row, sub):
-    """Interfaces whose halo contains a row of the slab: a sum of LOW and HIGH."""
+    """Interfaces whose halos contain a row of the slab: a sum of LOW and HIGH."""
     low = LOW if sub.below >= 0 and row < sub.low + HALO else 0
     return low | (HIGH if sub.above >= 0 and row >= sub.high - HALO else 0)
 
@@ -115,7 +116,7 @@ def location_of(ids, state, i, sub):
 
 @inline
 def depth_of(ids, state, i, where, sub):
-    """Largest distance, in rows, from the interfaces of a halo event to the rows of this slab that it writes."""
+    """Largest distance, in rows, from the interfaces of a halo event to the rows that it writes in this slab."""
     row = np.int64(state.cells.link[U(i)].row)
     first = last = row
     prediction = state.prediction[U(i)]
@@ -134,9 +135,9 @@ def depth_of(ids, state, i, where, sub):
 
 @inline
 def is_misplaced(record, state, i, where, sub):
-    """Whether disc i is to collide with a disc of another thread that is not in the adjacent row across the interface.
+    """Whether disc i will collide with a disc of another thread that is not in the adjacent row across the interface.
 
-    If that disc has had an event since the prediction, disc i does not collide with it.
+    If the partner has had an event since the prediction, disc i does not collide with it.
     """
     prediction = state.prediction[U(i)]
     partner = record[U(prediction.partner)]
@@ -154,11 +155,11 @@ def is_misplaced(record, state, i, where, sub):
 def precedes_neighbour(state, i, time, rank, sub):
     """Whether a halo event of disc i precedes all events of a neighbour: 1 if it does, 0 if not, 2 for a tie.
 
-    Both discs of a pair across an interface predict the same event: the slab with the smaller rank processes it.
+    Both discs of a pair across an interface predict the same event; the slab with the smaller rank processes it.
     """
-    theirs = load(sub.times, clock_word(rank))
-    if theirs != time:
-        return 1 if theirs > time else 0
+    clock = load(sub.times, clock_word(rank))
+    if clock != time:
+        return 1 if clock > time else 0
     if load(sub.times, clock_word(rank) + 1) != time:
         return 0
     j = load(sub.words, clock_word(rank) + 2)
@@ -170,7 +171,7 @@ def precedes_neighbour(state, i, time, rank, sub):
 
 @inline
 def precedes_neighbours(state, i, time, where, sub):
-    """Whether a halo event of disc i precedes all events of the neighbours involved: 0, 1 or 2 as for one neighbour."""
+    """Whether a halo event of disc i precedes all events of the neighbours involved: 0, 1 or 2 as for a neighbour."""
     low = high = 1
     if sub.below >= 0 and where & (LOW | FOREIGN):
         low = precedes_neighbour(state, i, time, sub.rank_below, sub)
@@ -192,7 +193,7 @@ def earliest_clock(sub):
 
 @inline
 def is_in_order(ids, state, i, time, where, sub):
-    """Whether no event that had to wait for disc i's event has happened yet; notes that disc i's happens now."""
+    """Whether no event that had to wait for disc i's event has already happened; notes that this event happens now."""
     private = sub.private[0]
     if not where & (LOW | HIGH):
         if time <= private.message_interior or time <= private.message_halo:
@@ -218,7 +219,7 @@ def is_in_order(ids, state, i, time, where, sub):
 
 @inline
 def clock_advances(time, sub):
-    """Whether this thread's clock advances, or stands still for few enough events; notes the event."""
+    """Whether this thread's clock advances, or stands still for less than MAX_SIMULTANEOUS events; notes the event."""
     private = sub.private[0]
     if time <= private.last:
         private.simultaneous += 1
@@ -230,7 +231,10 @@ def clock_advances(time, sub):
 
 @inline
 def may_happen(record, ids, state, i, time, sub):
-    """Whether disc i's event, the next of this slab, may happen now: 1 with its interfaces locked, 0, or ABORTED."""
+    """Whether disc i's event, the next event of this slab, may happen now.
+
+    Returns 1 if it may, with its interfaces locked, 0 if not, or ABORTED.
+    """
     private = sub.private[0]
     where = 0
     if is_halo_event(ids, state, i, sub):
@@ -265,7 +269,7 @@ def may_happen(record, ids, state, i, time, sub):
 
 @inline
 def wait_for_event(record, ids, state, until, sub):
-    """Index of the disc with this slab's next event once it may happen, or DONE or ABORTED."""
+    """Wait until this slab's next event may happen; return the index of its disc, or DONE or ABORTED."""
     private = sub.private[0]
     unlock(sub)
     rounds = 0
