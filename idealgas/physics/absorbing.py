@@ -1,6 +1,6 @@
-"""Walls that absorb discs: one that touches such a wall leaves the gas.
+"""Walls that absorb discs: a disc that touches such a wall leaves the gas.
 
-From then on it has no position, its coordinates are nan; it is at rest, in no cell and in no event.
+From then on its coordinates are nan and its velocity is 0; it is in no cell and takes part in no event.
 """
 
 import math
@@ -14,14 +14,17 @@ U = np.uintp
 
 @inline
 def has_left(disc, absorbing):
-    """Whether a disc has left the gas. absorbing: (segments,) bool, whether each absorbs discs; None if none does."""
+    """Whether a disc has left the gas.
+
+    absorbing: (segments,) bool, whether each wall segment absorbs discs; None if none does.
+    """
     if absorbing is not None:
         return disc.x != disc.x
     return False
 
 
 def inside(x: np.ndarray, absorbing: np.ndarray | None) -> np.ndarray | slice:
-    """Mask (N,) of the discs in the gas, from their coordinates x (N,), length; all if no wall absorbs discs."""
+    """Mask (N,) of the discs in the gas, from their coordinates x (N,), length; every disc if no wall absorbs discs."""
     return slice(None) if absorbing is None else ~np.isnan(x)
 
 
@@ -33,7 +36,7 @@ def mass_in_gas(disc, absorbing):
 
 @inline
 def leave_gas(disc, own, rotation):
-    """Make a disc's record that of one that has left the gas."""
+    """Mark a disc's record as that of a disc that has left the gas."""
     disc.x = disc.y = math.nan
     disc.vx = disc.vy = 0.0
     if rotation is not None:

@@ -1,7 +1,7 @@
 """Contact of a disc with an arc of a circle: with its outer and inner face, and with its two ends.
 
-An arc is a wall segment, its chord, with a record ARC. x and y are the disc's position relative to the arc's centre,
-length. A circle has no ends.
+An arc consists of a wall segment, its chord, and a record ARC. In all functions x and y are the disc's position
+relative to the centre of the arc, length. A whole circle has no ends.
 """
 
 import math
@@ -22,21 +22,21 @@ ARC = np.dtype(
         ("x", "f8"), ("y", "f8"),  # centre relative to the start of the segment, length
         ("radius", "f8"),  # length; 0 for a straight wall
         ("mx", "f8"), ("my", "f8"),  # unit vector from the centre to the middle of the arc
-        ("cosine", "f8"),  # of the angle from the middle to an end; CIRCLE for a circle
-        ("turn", "f8"),  # 1 for an arc that runs counterclockwise from its start to its end, else -1
+        ("cosine", "f8"),  # cosine of the angle from the middle to an end; CIRCLE for a circle
+        ("turn", "f8"),  # 1 if the arc runs counterclockwise from its start to its end, otherwise -1
     ],
     align=True,
 )  # fmt: skip
 
 GLIDE = 2.0**-26
-"""Shortest chord inside an arc in units of its radius: a shorter one is less deep than the rounding of the radius."""
+"""Shortest chord inside an arc, in units of its radius; the depth of a shorter chord is below the rounding error."""
 
 U = np.uintp
 
 
 @inline
 def faces_arc(x, y, distance, arc):
-    """Whether the nearest point of the arc's circle to (x, y), at a distance from the centre, is on the arc."""
+    """Whether the point of the circle nearest to (x, y) is on the arc; distance: of (x, y) from the centre, length."""
     return x * arc.mx + y * arc.my > distance * arc.cosine
 
 
@@ -44,8 +44,9 @@ def faces_arc(x, y, distance, arc):
 def toggles(x, y, along_x, along_y, arc):
     """Whether a ray from a point to the right crosses a wall an odd number of times; numbers or arrays.
 
-    x, y: position of the point relative to the wall's start, length. along_x, along_y: the wall's end relative to it.
-    arc: NO_ARC for a straight wall. An arc adds what is between it and its chord.
+    x, y: position of the point relative to the wall's start, length. along_x, along_y: position of the wall's end
+    relative to its start, length. arc: NO_ARC for a straight wall. For an arc, the result for its chord is inverted in
+    the area between the chord and the arc.
     """
     crosses = ((y < 0.0) != (along_y > y)) & ((x * along_y < y * along_x) == (along_y > 0.0))
     away_x, away_y = x - arc.x, y - arc.y
@@ -55,11 +56,12 @@ def toggles(x, y, along_x, along_y, arc):
 
 @inline
 def straight_exit_delay(x, y, vx, vy, reach, inside):
-    """Time until a point in straight flight leaves the circle of radius `reach` around the origin; else NEVER.
+    """Time until a point in straight flight leaves the circle of radius `reach` around the origin; NEVER if it rests.
 
     x, y, reach: length. vx, vy: length/time. The delay is 0 for a point on the circle, or beyond it, that moves
-    outwards. inside: whether a point that rounding has put beyond the circle belongs inside; it then returns to its own
-    distance at least. The roots have no cancellation for a point near the circle.
+    outwards. inside: whether a point beyond the circle belongs inside and is there only because of rounding; such a
+    point leaves when it is at least as far out again as it is now. The roots have no cancellation for a point near the
+    circle.
     """
     square = vx * vx + vy * vy
     if square == 0.0:
@@ -69,7 +71,7 @@ def straight_exit_delay(x, y, vx, vy, reach, inside):
     cross = vx * y - vy * x
     discriminant = square * (reach * reach) - cross * cross
     if gap <= 0.0:
-        discriminant = max(discriminant, approach * approach - square * gap)  # the same, which cannot be too small
+        discriminant = max(discriminant, approach * approach - square * gap)  # equal, but rounding keeps this one >= 0
     if approach > 0.0:
         return max(-gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) + approach)
     if discriminant < 0.0:
@@ -81,7 +83,7 @@ def straight_exit_delay(x, y, vx, vy, reach, inside):
 
 @inline
 def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
-    """Time until a disc's centre comes within `reach` of the arc's centre or, if inner, leaves this circle; else NEVER.
+    """Time until a disc's centre comes within `reach` of the arc's centre or, if inner, leaves this circle, or NEVER.
 
     With gravity, only a crossing after the time `after` counts.
     """
@@ -97,7 +99,7 @@ def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
 
 @inline
 def changes_nothing(x, y, disc, own, restitution):
-    """Whether a reflection along (x, y) would change no digit of a disc's velocity."""
+    """Whether a reflection along (x, y) would leave every digit of a disc's velocity unchanged."""
     distance = math.sqrt(x * x + y * y)
     return not reflection_changes(disc, own, x / distance, y / distance, restitution)
 
@@ -106,8 +108,8 @@ def changes_nothing(x, y, disc, own, restitution):
 def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
     """Time until a disc touches the inner or the outer face of an arc; NEVER if it does not.
 
-    It touches a face from the side on which its centre is. A touching disc that flies along the outer face counts as
-    reflected; one that flies along the inner face touches it again.
+    A disc touches a face from the side on which its centre is. A touching disc that moves along the outer face counts
+    as reflected; a touching disc that moves along the inner face touches it again.
     """
     reach = arc.radius - disc.r if inner else arc.radius + disc.r
     if reach <= 0.0:
@@ -134,10 +136,10 @@ def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
 
 @inline
 def leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
-    """Whether a disc that touches an end after `delay` moves away from the arc's nearest point, which is another one.
+    """Whether a disc that touches an end after `delay` moves away from the arc's nearest point, which is not this end.
 
-    end_x, end_y and other_x, other_y: position relative to this and to the other end, length. Only a disc over which a
-    gate has closed comes to an end from within.
+    end_x, end_y and other_x, other_y: position relative to this and to the other end, length. This happens only if a
+    gate has closed on the disc, which then reaches the end from within the wall.
     """
     then_x, then_y = parabola(x, disc.vx, ax, delay), parabola(y, disc.vy, ay, delay)
     vx, vy = velocity_after(disc.vx, ax, delay), velocity_after(disc.vy, ay, delay)
@@ -155,7 +157,7 @@ def leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
 def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity, restitution):
     """Time until a disc touches an end of an arc; NEVER if it does not.
 
-    end_x, end_y: position relative to this end. other_x, other_y: relative to the other end, length.
+    end_x, end_y and other_x, other_y: position relative to this and to the other end, length.
     """
     ax = ay = 0.0
     if gravity is not None:
@@ -176,7 +178,7 @@ def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity,
 
 @noinline
 def arc_contact(disc, own, segment, arc, gravity, restitution, periodic, images):
-    """Local time at which a disc touches an arc, one of its faces or an end; NEVER if it does not."""
+    """Local time at which a disc touches a face or an end of an arc; NEVER if it does not."""
     start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     x, y = start_x - arc.x, start_y - arc.y
     delay = face_delay(x, y, disc, own, arc, True, gravity, restitution)
@@ -193,7 +195,7 @@ def arc_contact(disc, own, segment, arc, gravity, restitution, periodic, images)
 
 @inline
 def arc_frame(disc, segment, arc, periodic, images):
-    """What `wall_frame` returns, for an arc."""
+    """Do the work of `wall_frame` for an arc."""
     start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     x, y = start_x - arc.x, start_y - arc.y
     distance = math.sqrt(x * x + y * y)
@@ -216,13 +218,13 @@ def wall_frame(disc, k, segments, arcs, passage, periodic, images):
     """Directions at the contact of a disc with wall k, a segment or an arc.
 
     Returns the unit normal (nx, ny) towards the disc, whether it touches an end, the unit tangent (tx, ty) of the face
-    that it touches, and 1 if that face is on the left of the wall, seen from its start, else -1.
+    that it touches, and 1 if that face is on the left of the wall, seen from its start, or -1 if it is on the right.
     """
     segment = segments[U(k)]
     if arcs is not None and arcs[U(k)].radius > 0.0:
         return arc_frame(disc, segment, arcs[U(k)], periodic, images)
     nx, ny, at_end = segment_normal(disc, segment, passage, periodic, images)
-    tx, ty = (ny, -nx) if segment.length == 0.0 else (segment.tx, segment.ty)  # a fixed disc has one face
+    tx, ty = (ny, -nx) if segment.length == 0.0 else (segment.tx, segment.ty)  # a fixed disc has a single face
     left = 1.0 if tx * ny - ty * nx >= 0.0 else -1.0
     return nx, ny, at_end, tx, ty, left
 
@@ -231,7 +233,7 @@ def wall_frame(disc, k, segments, arcs, passage, periodic, images):
 def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, periodic, images):
     """Local time at which a disc touches wall k, a segment or an arc; NEVER if it does not.
 
-    passage: from where the wall lets the disc pass, see `permeable`: an arc from both sides or from none.
+    passage: from which side the wall lets the disc pass, see `permeable`; an arc lets it pass from both or from none.
     """
     if passage is not None and passage == OPEN:
         return NEVER
@@ -242,7 +244,7 @@ def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, pe
 
 @inline
 def misses_wall(disc, k, segments, arcs, gravity, periodic, images):
-    """Whether a disc surely does not touch wall k; quicker than `wall_contact`. Always False for an arc."""
+    """Whether a disc certainly does not touch wall k; faster than `wall_contact`. Always False for an arc."""
     if arcs is not None and arcs[U(k)].radius > 0.0:
         return False
     return misses_segment(disc, segments[U(k)], gravity, periodic, images)

@@ -1,4 +1,4 @@
-"""Geometry of arcs: through three points, their nearest points, and the lines that draw them."""
+"""Geometry of arcs: arcs through three points, nearest points, and polygons by which arcs are drawn."""
 
 import math
 from typing import Any, NamedTuple
@@ -8,10 +8,10 @@ import numpy as np
 Point = tuple[float, float]
 
 CIRCLE = -2.0
-"""Cosine of a circle: less than that of any direction."""
+"""Value of `cosine` for a circle, less than the cosine of any angle."""
 
 DRAWN = 64
-"""Number of lines by which a circle is drawn."""
+"""Number of line segments by which a circle is drawn."""
 
 
 class Arc(NamedTuple):
@@ -21,8 +21,8 @@ class Arc(NamedTuple):
         x, y: centre relative to the start, length.
         radius: length.
         mx, my: unit vector from the centre to the middle of the arc.
-        cosine: of the angle from the middle to an end; CIRCLE for a circle.
-        turn: 1 if it runs counterclockwise from its start to its end, else -1.
+        cosine: cosine of the angle from the middle to an end; CIRCLE for a circle.
+        turn: 1 if it runs counterclockwise from its start to its end, otherwise -1.
     """
 
     x: float
@@ -35,23 +35,23 @@ class Arc(NamedTuple):
 
     @property
     def angle(self) -> float:
-        """Angle that it spans, in radians."""
+        """Angle that the arc spans, in radians."""
         return 2 * math.pi if self.cosine == CIRCLE else 2 * math.acos(max(min(self.cosine, 1.0), -1.0))
 
     @property
     def length(self) -> float:
-        """Its length."""
+        """Length of the arc."""
         return self.radius * self.angle
 
 
 NO_ARC = Arc(*(0.0,) * 7)
-"""What stands for the arc of a straight wall among arrays of numbers."""
+"""The arc of a straight wall, for functions that require numbers."""
 
 
 def arc_through(start: Point, via: Point, end: Point) -> Arc | None:
-    """Arc from start through `via` to end; the circle on the diameter from start to `via` if end is start.
+    """Return the arc from start through `via` to end, or None if the three points are on a line.
 
-    None if they are on a line.
+    If end is start, it is the circle whose diameter reaches from start to `via`.
     """
     ax, ay, bx, by = via[0] - start[0], via[1] - start[1], end[0] - start[0], end[1] - start[1]
     if start == end:
@@ -68,7 +68,7 @@ def arc_through(start: Point, via: Point, end: Point) -> Arc | None:
 
 
 def nearest_on_arc(points: np.ndarray, end: np.ndarray, arc: Any) -> np.ndarray:
-    """Points of an arc, its ends included, nearest to points (M, 2); all points and its end relative to its start."""
+    """Points (M, 2) of an arc, ends included, nearest to points (M, 2); all coordinates are relative to its start."""
     centre, middle = np.array((arc.x, arc.y)), np.array((arc.mx, arc.my))
     away = points - centre
     distance = np.hypot(*away.T)[:, None]
@@ -79,7 +79,7 @@ def nearest_on_arc(points: np.ndarray, end: np.ndarray, arc: Any) -> np.ndarray:
 
 
 def nearest_points(points: np.ndarray, start: Any, end: Any, arc: Arc | None) -> np.ndarray:
-    """Points of a wall from start to end nearest to points (M, 2)."""
+    """Points (M, 2) of a wall from start to end nearest to points (M, 2)."""
     along = np.subtract(end, start)
     if arc is not None:
         return np.add(start, nearest_on_arc(points - start, along, arc))
@@ -92,14 +92,14 @@ def bounds(start: Any, end: Any, arc: Any) -> tuple[Point, Point]:
     points = [start, end]
     if arc is not None:
         extremes = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-        there = [(x, y) for x, y in extremes if x * arc.mx + y * arc.my > arc.cosine]
-        points += [(start[0] + arc.x + arc.radius * x, start[1] + arc.y + arc.radius * y) for x, y in there]
+        directions = [(x, y) for x, y in extremes if x * arc.mx + y * arc.my > arc.cosine]
+        points += [(start[0] + arc.x + arc.radius * x, start[1] + arc.y + arc.radius * y) for x, y in directions]
     x, y = zip(*points, strict=True)
     return (min(x), min(y)), (max(x), max(y))
 
 
 def drawn_points(start: Point, end: Point, arc: Arc | None) -> list[Point]:
-    """Points between which lines draw a wall from start to end."""
+    """Corners of the polygonal line by which a wall from start to end is drawn."""
     if arc is None:
         return [start, end]
     steps = max(math.ceil(DRAWN * arc.angle / (2 * math.pi)), 2)

@@ -1,8 +1,8 @@
-"""Number types of several lengths: a law written with operators runs on floats and on pairs with twice the digits.
+"""Number types of different precision: a law written with operators runs on floats and on pairs with twice the digits.
 
-`Pair` is a number type in compiled code too, with the arithmetic of `double_double`. A law for all these types
-writes `number(0.0, x)` where 0.0 would turn a float32 into a float64, and `root(x)` for √x. A column of numbers is an
-array (n,) of floats, or (n, 2) of pairs.
+`Pair` is also a number type in compiled code, with the arithmetic of `double_double`. A law for all these types uses
+`number(0.0, x)` instead of 0.0, which would turn a float32 into a float64, and `root(x)` for √x. A column of numbers is
+an array (n,) of floats, or (n, 2) of pairs.
 """
 
 import math
@@ -20,14 +20,14 @@ class Pair:
 
     Attributes:
         high: float64 nearest to the number.
-        low: the number less `high`, as a float64.
+        low: the number minus `high`, as a float64.
     """
 
     __slots__ = ("high", "low")
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, high: float, low: float) -> None:
-        """Make the number high + low; `high` must be the float64 nearest to it."""
+        """Create the number high + low; `high` must be the float64 nearest to this number."""
         self.high, self.low = high, low
 
     def __add__(self, other: "Pair") -> "Pair":
@@ -71,7 +71,7 @@ PAIR: Any = None
 
 @when_compiling
 def _declare_pair() -> None:
-    """Make `Pair` known to numba: its type, its two floats in memory, and `Pair(high, low)`."""
+    """Register `Pair` with numba: its type, its two floats in memory, and `Pair(high, low)`."""
     global PAIR
     from numba import types
     from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
@@ -99,7 +99,7 @@ def _declare_pair() -> None:
 
 
 def _operate(sign: Any, operation: Any) -> None:
-    """Define an operator for compiled code that makes a pair from two pairs."""
+    """Define an operator for compiled code that combines two pairs to a pair."""
 
     @overload(sign)
     def choose(a, b):
@@ -119,7 +119,7 @@ _operate(operator.truediv, double_double.divide)
 
 
 def _compare(sign: Any, operate: Any) -> None:
-    """Define an operator for compiled code that compares two pairs, or chooses one of them."""
+    """Define an operator for compiled code that compares two pairs, or selects one of them."""
     overload(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
 
 
@@ -206,24 +206,24 @@ def _store(column, i, value):
 
 
 ROUNDING = 1e-12
-"""Relative change of an impulse above which an excess of energy is not due to its rounding."""
+"""Relative change of an impulse above which an excess of energy is not due to rounding of the impulse."""
 
 
 @inline
 def correction(excess, work):
-    """Relative change of an impulse that takes back the energy which its rounding has added.
+    """Relative change of an impulse that removes the energy added by the rounding of the impulse.
 
-    Where |r|² is rounded to one side, as at contacts with |r| = 1, the impulses of all collisions are too large on
-    average; the excess, summed from the changes of the velocities, is rounded without bias.
+    If |r|² is always rounded to the same side, as at contacts with |r| = 1, the impulses of all collisions are too
+    large on average. The excess of energy, summed from the changes of the velocities, is rounded without bias.
 
-    excess: that energy times a constant. work: its derivative by the relative change, > 0.
+    excess: excess of energy times a constant. work: its derivative with respect to the relative change, > 0.
     """
     zero, bound = number(0.0, work), number(ROUNDING, work) * work
     return (zero - excess) / work if (excess < bound) & (zero - bound < excess) else zero
 
 
 def changed(value, change, correction):
-    """Value + change (1 + correction), where the correction is small; a float is rounded once."""
+    """Return value + change (1 + correction) for a small correction; a float is rounded only once."""
     if isinstance(value, Pair):
         return value + (change + change * correction)
     return _changed_float(value, change, correction)

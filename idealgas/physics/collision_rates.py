@@ -1,9 +1,9 @@
 """Collision rates of hard discs from kinetic theory.
 
-Discs with the sum of radii S and the relative speed v sweep the area 2Sv per time, out of the box's area A. A pair at
-random positions thus collides at the rate 2Sχv/A; χ is the contact value of the pair distribution, 1 in a dilute gas.
-These estimates set the lengths of epochs and are not measurements. Monte Carlo trials are made
-at the rate of the fastest possible pair, and accepted in the ratio of the rates: Novak & Bortz, Am. J. Phys. 38, 1402
+Two discs with the sum of radii S and the relative speed v sweep the area 2Sv per time, out of the box's area A. A pair
+at random positions thus collides at the rate 2Sχv/A, where χ is the contact value of the pair distribution, 1 in a
+dilute gas. Such estimates determine the lengths of epochs; they are not measurements. Monte Carlo trials are made at
+the rate of the fastest possible pair, and accepted in the ratio of the rates: Novak & Bortz, Am. J. Phys. 38, 1402
 (1970); Eger & Kress, Am. J. Phys. 50, 120 (1982).
 """
 
@@ -14,7 +14,7 @@ DENSEST = 0.9  # packing fraction above which the contact value is not evaluated
 
 
 def contact_value(packing_fraction):
-    """Contact value χ = (1 - 7φ/16)/(1 - φ)² of hard discs, for a packing fraction φ or an array of them; no unit.
+    """Contact value χ = (1 - 7φ/16)/(1 - φ)² of hard discs; packing_fraction: φ, a number or an array.
 
     Source: Henderson, Mol. Phys. 30, 971 (1975).
     """
@@ -24,7 +24,7 @@ def contact_value(packing_fraction):
 def disc_collisions_per_length(
     number: int, mean_diameter: float, packing_fraction: float, box: tuple[float, float]
 ) -> float:
-    """Collisions of one disc with other discs per length of its path, 1/length; see `collisions_per_length`."""
+    """Number of collisions of a disc with other discs per length of its path, 1/length; see `collisions_per_length`."""
     chi = contact_value(min(packing_fraction, DENSEST))
     return math.sqrt(2.0) * mean_diameter * (number - 1) / (box[0] * box[1]) * chi
 
@@ -37,11 +37,17 @@ def collisions_per_length(
     box: tuple[float, float],
     periodic: Sequence[bool],
 ) -> float:
-    """Collisions of all discs with discs and sides per length of path of each disc, 1/length.
+    """Number of collisions of all discs with discs and sides per length that each disc moves, 1/length.
 
-    number: of discs. mean_diameter, largest_radius: length. packing_fraction: area of the discs over that of the box.
-    box: width and height, length. periodic: whether the box is periodic along x and along y. Opposite sides that leave
-    the largest disc less room than its diameter are left out.
+    Opposite sides that leave the largest disc less room than its diameter are left out.
+
+    Args:
+        number: number of discs.
+        mean_diameter: length.
+        largest_radius: length.
+        packing_fraction: area of the discs divided by the area of the box.
+        box: width and height, length.
+        periodic: whether the box is periodic along x and along y.
     """
     pairs = disc_collisions_per_length(number, mean_diameter, packing_fraction, box)
     room = [length - 2.0 * largest_radius for length in box]
@@ -56,11 +62,15 @@ def collisions_per_length(
 def mean_trial_time(number: int, area: float, packing_fraction: float, largest_reach: float, v_ref: float) -> float:
     """Mean time between trials, A/(N(N - 1) S χ v_ref).
 
-    number: N, discs. area: A, length². packing_fraction: determines χ. largest_reach: S, largest sum of two radii,
-    length. v_ref: upper bound of the relative speed, length/time.
-
     N(N - 1)/2 pairs are tried, each at the rate 2Sχv_ref/A. In equilibrium a disc then collides at the rate (1 - 1/N)
     2Snχ√(πT/m) of kinetic theory.
+
+    Args:
+        number: number N of discs.
+        area: area A of the box, length².
+        packing_fraction: packing fraction, from which χ follows.
+        largest_reach: largest sum S of two radii, length.
+        v_ref: upper bound of the relative speed, length/time.
     """
     pairs = number * (number - 1)
     return area / (pairs * largest_reach * contact_value(packing_fraction) * v_ref)

@@ -1,7 +1,7 @@
 """Collision of two discs: the time of their contact, and their velocities afterwards.
 
-Both laws are symmetric to the last bit under exchange of the discs: each difference only changes its sign. For smooth
-elastic discs they run in any precision, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
+Both laws are symmetric to the last bit under exchange of the discs, because differences only change their sign. For
+smooth elastic discs they run in any precision, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
 """
 
 import math
@@ -17,7 +17,7 @@ from idealgas.physics.shear import enter_common_frame, less_offset, set_velociti
 
 @inline
 def relative_motion(a, b, gravity, periodic, images):
-    """Later local time of two records, and the position and velocity of disc a relative to b at that time.
+    """Later local time of two records, and the position and velocity of disc a relative to disc b at that time.
 
     Returns (time, x, y, vx, vy), in units of time, length and length/time.
     """
@@ -42,13 +42,13 @@ def relative_motion(a, b, gravity, periodic, images):
 
 @inline
 def collision_discriminant(x, y, vx, vy, reach):
-    """Whether a point in straight flight comes within `reach` of the origin, and the coefficients of that time.
+    """Whether a point in straight flight comes within `reach` of the origin, and coefficients of the time until then.
 
     x, y, reach: length. vx, vy: length/time. Returns (meets, approach b = r·v, gap c = r² - S², discriminant D).
 
     D = v²S² - (v × r)² keeps its digits for a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0
-    counts as no contact: such a collision would change nothing, and for discs that slide past each other rounding would
-    give c/|b|, which may be any time. The code has no branches.
+    does not count as a contact: such a collision would change nothing, and for discs that slide past each other the
+    time c/|b| would be arbitrary because of rounding. The code has no branches.
     """
     approach = x * vx + y * vy
     gap = x * x + y * y - reach * reach
@@ -62,8 +62,8 @@ def collision_discriminant(x, y, vx, vy, reach):
 def collision_delay(x, y, vx, vy, reach):
     """Whether a point in straight flight comes within `reach` of the origin, and the time until it does.
 
-    Arguments as of `collision_discriminant`. The delay is 0 for an approaching point that is already within reach. The
-    root c/(√D - b) of the distance equation has no cancellation for small c.
+    The arguments are as in `collision_discriminant`. The delay is 0 for an approaching point that is already within
+    reach. The root c/(√D - b) of the quadratic equation for the time has no cancellation for small c.
     """
     meets, approach, gap, discriminant = collision_discriminant(x, y, vx, vy, reach)
     zero = number(0.0, x)
@@ -72,7 +72,7 @@ def collision_delay(x, y, vx, vy, reach):
 
 @inline
 def will_collide(a, b, gravity, periodic, images):
-    """Whether two discs approach each other and will touch or already do; faster than `collision_time`."""
+    """Whether two discs approach each other and will touch or touch already; faster than `collision_time`."""
     _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     return collision_discriminant(x, y, vx, vy, a.r + b.r)[0]
 
@@ -81,7 +81,7 @@ def will_collide(a, b, gravity, periodic, images):
 def collision_time(a, b, gravity, periodic, images):
     """Local time at which two approaching discs touch; NEVER if they do not.
 
-    For approaching discs that touch or overlap at the later of the two records' times, it is that time.
+    If approaching discs already touch or overlap at the later time of the two records, it is this time.
     """
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     meets, delay = collision_delay(x, y, vx, vy, a.r + b.r)
@@ -92,8 +92,8 @@ def collision_time(a, b, gravity, periodic, images):
 def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
     """Local time of the next collision of discs a and b; NEVER if there is none.
 
-    Touching discs whose collision would change no digit of any velocity count as having collided. The result differs
-    from `collision_time` only if that is the time of a record.
+    Touching discs whose collision would not change a digit of any velocity count as having collided. The result can
+    differ from `collision_time` only if that is the time of a record.
     """
     touched = collision_time(a, b, gravity, periodic, images)
     if (touched == max(a.t, b.t)) and changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
@@ -103,7 +103,7 @@ def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
 
 @noinline
 def changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
-    """Whether a collision at the later time of two records would change no digit of any velocity."""
+    """Whether a collision at the later time of two records would leave every digit of the velocities unchanged."""
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     factor = restitution_factor(restitution, a_id, b_id, time)
     before = a.vx, b.vx
@@ -121,7 +121,7 @@ def velocities_after(a, b, x, y, vx, vy, factor):
     """Velocities (a_vx, a_vy, b_vx, b_vy) of two discs after the normal impulse of a collision, length/time.
 
     x, y: position of a relative to b, length. vx, vy: velocity of a relative to b, length/time. factor: 1 + the
-    coefficient of restitution, no unit.
+    coefficient of restitution.
     """
     f = number(factor, x)
     k = f * (x * vx + y * vy) / ((x * x + y * y) * (a.m + b.m))
@@ -136,9 +136,9 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 @inline
 def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
-    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change.
+    """Collide two discs whose records are at the time of contact; their velocities and spins change.
 
-    Where sides are sheared, their velocities are those of the common frame.
+    If sides are sheared, the velocities must be those in the common frame.
     """
     x, y = a.x - b.x, a.y - b.y
     if periodic is not None:
@@ -154,10 +154,10 @@ def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
 def random_contact(a, b, offset):
     """Place two records at a contact with a given impact parameter: b at the origin, a along the line of centres.
 
-    offset: impact parameter divided by the sum of the radii, -1 to 1; it is the sine of the angle from the relative
-    velocity to the line of centres. The distance between the discs does not enter the collision law and is set to the
-    relative speed: with unit vectors the rounding in `collide` would be biased, and the energy would grow by half a
-    last digit per collision.
+    offset: impact parameter divided by the sum of the radii, -1 to 1, which is the sine of the angle from the relative
+    velocity to the line of centres. The distance between the discs does not enter the collision law. It is set to the
+    relative speed, because with unit vectors the rounding in `collide` would be biased, and the energy would grow by
+    half a unit in the last place per collision.
     """
     vx = a.vx - b.vx
     vy = a.vy - b.vy

@@ -1,7 +1,7 @@
 """Contact of a disc with a side of the box (left 0, right 1, bottom 2, top 3), and its collision with any wall.
 
-Without gravity the contact times run in any precision, see `arithmetic`. In all laws of walls, (nx, ny) is the unit
-normal of the wall towards the disc.
+Without gravity, contact times can be computed in any precision, see `arithmetic`. In all functions for walls, (nx, ny)
+is the unit normal of the wall towards the disc.
 """
 
 from idealgas.jit import inline
@@ -18,7 +18,7 @@ def arrival_delay(position, velocity, target):
     """Time until a coordinate in straight flight reaches a target ahead of it; NEVER if the velocity is 0.
 
     position, target: length. velocity: towards the target, length/time. The delay is 0 for a coordinate that is at the
-    target or, by rounding, beyond it.
+    target or, because of rounding, beyond it.
     """
     zero = number(0.0, velocity)
     delay = max((target - position) / velocity, zero)
@@ -36,7 +36,7 @@ def inward_normal(side):
 def side_contact(disc, side, length, gravity):
     """Local time at which a disc touches a side of the box; NEVER if it does not.
 
-    side: 0 to 3. length: distance between this side and the opposite one.
+    side: 0 to 3. length: distance between this side and the opposite side, length.
     """
     low, high = disc.r, length - disc.r
     position, velocity = (disc.x, disc.vx) if side < 2 else (disc.y, disc.vy)
@@ -59,7 +59,7 @@ def side_contact(disc, side, length, gravity):
 def reflected_velocity(disc, own, nx, ny, restitution):
     """Velocity (vx, vy) of a disc after the normal impulse of a wall at rest, length/time.
 
-    It is correct although (nx, ny) has unit length only up to rounding.
+    The result is correct although (nx, ny) has unit length only up to rounding.
     """
     factor = wall_restitution_factor(restitution, own, disc.t)
     k = factor * (disc.vx * nx + disc.vy * ny) / (nx * nx + ny * ny)
@@ -70,7 +70,7 @@ def reflected_velocity(disc, own, nx, ny, restitution):
 
 @inline
 def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
-    """Change the velocity and spin of a disc that touches a wall at rest, which has the number `wall`."""
+    """Change the velocity and spin of a disc that touches a wall at rest; wall: number of the wall."""
     if thermal is not None and is_thermal(thermal, wall):
         emit(disc, own, nx, ny, wall, thermal, rotation)
         return

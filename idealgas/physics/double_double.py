@@ -1,7 +1,8 @@
 """Numbers of about 32 digits as pairs (high, low) of floats, where `high` is the float nearest to their sum.
 
-Without a fused multiply-add: sums by Knuth, products by Dekker, and the arithmetic of Hida, Li & Bailey, Proc. 15th
-IEEE Symposium on Computer Arithmetic, 155 (2001). Relative errors are a few times 2^-104 = 5e-32.
+Sums are exact by Knuth's algorithm and products by Dekker's, without a fused multiply-add. The arithmetic is that of
+Hida, Li & Bailey, Proc. 15th IEEE Symposium on Computer Arithmetic, 155 (2001); relative errors are a few times
+2^-104 = 5e-32.
 """
 
 import math
@@ -13,7 +14,7 @@ SPLITTER = 134217729.0  # 2^27 + 1
 
 @inline
 def two_sum(a, b):
-    """A + b and what rounding took from it, exactly."""
+    """Rounded sum a + b of two floats, and its rounding error, exactly."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
@@ -21,7 +22,7 @@ def two_sum(a, b):
 
 @inline
 def quick_two_sum(a, b):
-    """Rounded sum of two floats with |a| >= |b|, and its rounding error: fewer operations than `two_sum`."""
+    """Rounded sum of two floats with |a| >= |b|, and its rounding error; takes fewer operations than `two_sum`."""
     total = a + b
     return total, b - (total - a)
 
@@ -36,7 +37,7 @@ def split(a):
 
 @inline
 def two_product(a, b):
-    """A * b and what rounding took from it, exactly."""
+    """Rounded product a * b of two floats, and its rounding error, exactly."""
     product = a * b
     a_high, a_low = split(a)
     b_high, b_low = split(b)
@@ -45,7 +46,7 @@ def two_product(a, b):
 
 @inline
 def add(a, b):
-    """A + b."""
+    """Sum a + b of two pairs."""
     high, low = two_sum(a[0], b[0])
     more, rest = two_sum(a[1], b[1])
     high, low = quick_two_sum(high, low + more)
@@ -54,20 +55,20 @@ def add(a, b):
 
 @inline
 def subtract(a, b):
-    """A - b."""
+    """Difference a - b of two pairs."""
     return add(a, (-b[0], -b[1]))
 
 
 @inline
 def multiply(a, b):
-    """A * b."""
+    """Product a * b of two pairs."""
     high, low = two_product(a[0], b[0])
     return quick_two_sum(high, low + (a[0] * b[1] + a[1] * b[0]))
 
 
 @inline
 def divide(a, b):
-    """A / b, by long division; b is not 0."""
+    """Quotient a / b of two pairs, by long division; b must not be 0."""
     first = a[0] / b[0]
     rest = subtract(a, multiply(b, (first, 0.0)))
     second = rest[0] / b[0]
@@ -79,7 +80,7 @@ def divide(a, b):
 
 @inline
 def root(a):
-    """Square root of a pair a >= 0: one step of Newton's method from the root of its high part; 0 for a < 0.
+    """Square root of a pair a >= 0, by a step of Newton's method from the root of its high part; 0 for a < 0.
 
     Source: Karp & Markstein, ACM TOMS 23, 561 (1997).
     """
@@ -92,5 +93,5 @@ def root(a):
 
 @inline
 def less(a, b):
-    """A < b."""
+    """Whether the pair a is less than the pair b."""
     return (a[0] < b[0]) | ((a[0] == b[0]) & (a[1] < b[1]))

@@ -1,7 +1,7 @@
-"""Logarithm, sine and cosine with the same bits on every machine, where those of C libraries differ in the last one.
+"""Logarithm, sine and cosine with the same bits on every machine; results of C libraries differ in the last bit.
 
-They take only + - * / in double precision, without a fused multiply-add, and their errors are below one unit in the
-last place. Polynomials and sums are those of fdlibm (Sun Microsystems, 1993: e_log.c, k_sin.c, k_cos.c).
+The functions use only + - * / in double precision, without a fused multiply-add, and their errors are below one unit in
+the last place. Polynomials and sums are those of fdlibm (Sun Microsystems, 1993: e_log.c, k_sin.c, k_cos.c).
 """
 
 import numpy as np
@@ -11,14 +11,14 @@ from idealgas.physics.double_double import multiply, quick_two_sum, root, split,
 
 _LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 _TWO_PI_HIGH, _TWO_PI_LOW = 6.283185243606567, 6.357301909411278e-08
-"""2π as the sum of a float of 26 bits and another one."""
+"""2π as the sum of a float of 26 bits and a small remainder."""
 
 _ROOT_HALF = np.int64(0x3FE6A09E00000000)
-"""Bits of the float from which a mantissa counts: nearly √½."""
+"""Bits of the lower end of the interval to which the mantissa is reduced, nearly √½."""
 _EXPONENT = np.int64(52)
 _FRACTION = np.int64((1 << 52) - 1)
 _THIRD_GUESS = np.int64(0x2A9F7893782DA1CE)
-"""Bits of 1 less a third of them: a third of the bits of x and these are a cube root of x within a tenth."""
+"""Two thirds of the bits of 1; added to a third of the bits of x, they are the bits of ∛x to within a tenth."""
 
 
 @inline
@@ -40,7 +40,7 @@ def log(x):
 
 @inline
 def cos_sin_turns(turns):
-    """Cosine and sine of 2π turns, for turns in [0, 1] that are a multiple of 2^-53, as all random numbers are."""
+    """Cosine and sine of 2π turns, for turns in [0, 1] that are a multiple of 2^-53, like all random numbers."""
     quarters = np.int64(4.0 * turns + 0.5)
     rest = turns - 0.25 * np.float64(quarters)  # exact, at most ⅛
     high, low = split(rest)
@@ -48,7 +48,7 @@ def cos_sin_turns(turns):
     z = x * x
     w = z * z
     cos, sin = _cos(x, y, z, w), _sin(x, y, z, w)
-    swap, sign = np.float64(quarters & 1), np.float64(1 - (quarters & 2))  # exact factors, which arrays can have too
+    swap, sign = np.float64(quarters & 1), np.float64(1 - (quarters & 2))  # exact factors, which also work for arrays
     stay = 1.0 - swap
     return sign * (stay * cos - swap * sin), sign * (stay * sin + swap * cos)
 
@@ -74,7 +74,7 @@ def _sin(x, y, z, w):
 
 @inline
 def third_power(x):
-    """X ** (1.0 / 3.0) for a normal float x, or 0 or infinity, which it returns; its exponent is ⅓ less 2^-54/3."""
+    """Return x ** (1.0 / 3.0) for a normal float x >= 0, 0 or infinity; the float 1.0 / 3.0 is ⅓ - 2^-54/3."""
     if not 0.0 < x < np.inf:
         return x
     y = np.int64(np.float64(x).view(np.int64) // np.int64(3) + _THIRD_GUESS).view(np.float64)
@@ -86,5 +86,5 @@ def third_power(x):
 
 @inline
 def quarter_power(x):
-    """X ** 0.25 for a float x >= 0, also infinity."""
+    """Return x ** 0.25 for a float x >= 0 or infinity."""
     return root(root((x, 0.0)))[0] if x < np.inf else x

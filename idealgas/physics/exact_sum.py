@@ -1,7 +1,7 @@
 """Sums that do not depend on the order of their terms: each term is rounded to a whole number of units, 2^k.
 
-Whole numbers below 2^100 are added with 128 bits, which is associative: any order of the terms, any grouping of them
-and any number of runs in which they are added give the same bits.
+Whole numbers below 2^100 are added with 128 bits, which is associative. The bits of a sum therefore do not depend on
+the order or grouping of its terms, or on the number of runs in which they are added.
 """
 
 import math
@@ -20,27 +20,27 @@ SUM = np.dtype(
 )  # fmt: skip
 
 WORD = 63
-"""Bits of the lower one of the two words that are stored, so that both have a sign: high * 2^63 + low."""
+"""Bits of the lower of the two signed words in which a sum is stored, high * 2^63 + low."""
 
 DIGITS = 52
-"""Bits of a term of the typical size: as many as a float has."""
+"""Bits of a term of typical size: as many as a float has."""
 
 FARTHEST = 1000
-"""Largest exponent k of a unit, in size: 2^k and 2^-k are floats."""
+"""Largest absolute value of the exponent k of a unit, so that 2^k and 2^-k are floats."""
 
 U = np.uintp
-BATCH = 64  # terms added together
-SMALL = 2.0**62  # terms that are one word
-FITS = SMALL / BATCH  # terms of which BATCH are one word
-LARGEST = 2.0**100
-FULL = 1 << 61  # of the upper word of a sum, so that it can be stored
+BATCH = 64  # number of terms that are added together
+SMALL = 2.0**62  # size below which a term, in units, fits into one word
+FITS = SMALL / BATCH  # size below which the sum of BATCH terms fits into one word
+LARGEST = 2.0**100  # size from which on a term is refused
+FULL = 1 << 61  # largest upper word of a sum, so that the sum can be stored
 HALF = 2.0**32  # terms are rounded in two parts, each a whole number far below 2^51
-ROUNDER = 1.5 * 2.0**52  # added to a number below 2^51, it rounds it: the bits then are its own plus the whole number
+ROUNDER = 1.5 * 2.0**52  # adding it to a number below 2^51 rounds it: the bits are ROUNDER_BITS plus the whole number
 ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 
 class SumRangeError(Exception):
-    """A term of a sum is not a number or too large, or the sum exceeds its range."""
+    """A term of a sum is nan or too large, or the sum exceeds its range."""
 
 
 @inline
@@ -64,12 +64,12 @@ def add_words(total, high, low):
 
 @noinline
 def add_large(total, units):
-    """Add a number of units of 2^62 or more, which is whole, to a SUM."""
+    """Add a number of units of at least 2^62, which is a whole number, to a SUM."""
     if not abs(units) < LARGEST:
         raise SumRangeError("a term of a sum is too large or not a number")
     if abs(total.high) > FULL:
         raise SumRangeError("a sum is too large")
-    size = abs(units)  # below 0 the difference to a multiple of 2^64 may need more digits than a float has
+    size = abs(units)  # the remainder of a negative number modulo 2^64 may need more digits than a float has
     upper = math.floor(size * 2.0**-64)
     high, low = np.int64(upper), np.uint64(size - upper * 2.0**64)
     if units < 0.0:
@@ -79,9 +79,10 @@ def add_large(total, units):
 
 @noinline
 def add_all(total, terms):
-    """Add all terms (n,) to a SUM, as `add` does one by one, but several at a time; n at most BATCH.
+    """Add all terms (n,) to a SUM with the same result as `add`, but several at a time; n is at most BATCH.
 
-    Few processors convert several floats to integers at once, so adding a constant rounds them and their bits are read.
+    Few processors can convert several floats to integers at once. The floats are therefore rounded by adding a
+    constant, and their bits are read.
     """
     number = np.int64(terms.shape[0])
     upper = number * -ROUNDER_BITS
@@ -104,19 +105,19 @@ def add_all(total, terms):
 
 
 def unit_exponent(typical: float) -> int:
-    """Exponent k of a unit 2^k for terms of a typical size: at most 2^-51 of it."""
+    """Exponent k of the unit 2^k, which is at most 2^-51 of the typical size of a term."""
     return max(-FARTHEST, min(math.frexp(typical)[1] - 1 - DIGITS, FARTHEST)) if 0 < typical < math.inf else 0
 
 
 def make_sums(typical: Sequence[float]) -> np.recarray:
-    """(n,) SUM, all 0. typical: sizes of their terms at the start of a run, in the unit of each sum."""
+    """Return sums (n,) SUM of 0; typical: size of the terms of each sum at the start of a run, in its unit."""
     sums = aligned(len(typical), SUM)
     sums.per_unit = [math.ldexp(1.0, -unit_exponent(size)) for size in typical]
     return sums
 
 
 def values(sums: np.ndarray) -> np.ndarray:
-    """(n,) f8, the sums rounded to floats, in the unit of each sum."""
+    """Return the sums rounded to floats, (n,) f8, in the unit of each sum."""
     return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])
 
 
@@ -128,33 +129,36 @@ def add_term(sums: np.ndarray, term: float) -> None:
 
 
 def clear(sums: np.ndarray) -> None:
-    """Set sums to 0."""
+    """Set all sums to 0."""
     sums["low"], sums["high"] = 0, 0
 
 
 def add_sums(totals: np.ndarray, parts: np.ndarray) -> None:
-    """Add to each sum a part of it, in the same unit."""
+    """Add a part to each sum; each part must have the same unit as its sum."""
     low = totals["low"] + parts["low"]
     totals["high"] += parts["high"] + (low < totals["low"])
     totals["low"] = low
 
 
 def stored(sums: np.ndarray) -> np.ndarray:
-    """(n, 3) i8, the sums as they are stored: (high, low, k) for (high * 2^63 + low) * 2^k, with 0 <= low < 2^63."""
+    """Return the sums in the form in which they are stored, (n, 3) i8.
+
+    A row (high, low, k) is the sum (high * 2^63 + low) * 2^k, with 0 <= low < 2^63.
+    """
     words = [(number >> WORD, number & (1 << WORD) - 1, k) for number, k in _numbers(sums)]
     return np.array(words, np.int64).reshape(-1, 3)
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
-    """Set sums and their units to the result of `stored`; SumRangeError if one exceeds the range of a sum."""
-    for one, (high, low, k) in zip(sums, entry.tolist(), strict=True):
+    """Set sums and their units from the result of `stored`; SumRangeError if a sum exceeds its range."""
+    for total, (high, low, k) in zip(sums, entry.tolist(), strict=True):
         number = (high << WORD) + low
         if abs(number >> 64) > 2 * FULL or abs(k) > FARTHEST:
             raise SumRangeError("a sum is too large, or its unit")
-        one["high"], one["low"], one["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
+        total["high"], total["low"], total["per_unit"] = number >> 64, number & (1 << 64) - 1, math.ldexp(1.0, -k)
 
 
 def _numbers(sums: np.ndarray) -> list[tuple[int, int]]:
-    """Each sum as (number, k): number * 2^k."""
-    fields = np.asarray(sums).tolist()  # at once: a field of a recarray takes microseconds
+    """Return each sum as (number, k), which stands for number * 2^k."""
+    fields = np.asarray(sums).tolist()  # all at once, because reading a field of a recarray takes microseconds
     return [((high << 64) + low, 1 - math.frexp(per_unit)[1]) for low, high, per_unit in fields]

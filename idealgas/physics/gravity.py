@@ -1,4 +1,4 @@
-"""Gravity: the same acceleration everywhere, constant between its steps, so that discs fly along parabolas."""
+"""Gravity: a uniform acceleration, constant between the steps of its schedule, so that discs move on parabolas."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from idealgas.jit import inline
 
 
 class Gravity(NamedTuple):
-    """Acceleration of the discs at present.
+    """Current acceleration of the discs.
 
     Attributes:
         x: component along x, length/time².
@@ -19,7 +19,7 @@ class Gravity(NamedTuple):
 
 @inline
 def acceleration_along(gravity, along_y):
-    """Component of the acceleration along y or along x, length/time²; 0 without gravity."""
+    """Component of the acceleration along y or, if not along_y, along x, length/time²; 0 without gravity."""
     if gravity is not None:
         return gravity.y if along_y else gravity.x
     return 0.0
@@ -27,7 +27,7 @@ def acceleration_along(gravity, along_y):
 
 @inline
 def potential_energy(mass, place, gravity):
-    """Potential energy, mass length²/time², at a place (x, y), length, in space; 0 without gravity."""
+    """Potential energy, mass length²/time², at the unwrapped position place = (x, y), length; 0 without gravity."""
     if gravity is not None:
         return -(mass * (gravity.x * place[0] + gravity.y * place[1]))
     return 0.0

@@ -1,4 +1,4 @@
-"""Free flight: r(t) = r₀ + v t, and with gravity r(t) = r₀ + v t + ½ g t²; and the time of a fall to a plane."""
+"""Free flight, r(t) = r₀ + v t or, with gravity, r₀ + v t + ½ g t², and the time of a fall to a plane."""
 
 import math
 
@@ -7,13 +7,14 @@ import numpy as np
 from idealgas.jit import inline
 
 NEVER = 1e300
-"""Time of an event that does not happen: after all events, but finite, so that sums and comparisons stay ordinary."""
+"""Time of an event that does not happen: later than all events, but finite, so that sums and comparisons are valid."""
 
 MAX_DISPLACEMENT = 6144
-"""Longest path of the fastest disc in an epoch, in diameters of the smallest one, unless 4 events per disc take longer.
+"""Longest path of the fastest disc in an epoch, in diameters of the smallest, unless 4 events per disc take longer.
 
-The clock then adds at most 2⁻⁵⁴ of it per disc to the error of a contact. Few discs in a wide box have longer epochs,
-of some 500 events in all: with as many crossings of the box L, the clock adds about 2⁻⁴⁵ L.
+The rounding of the clock then adds at most 2⁻⁵⁴ of this path per disc to the error of a contact. A few discs in a wide
+box have longer epochs, of about 500 events in all; after as many crossings of a box of length L, the rounding of the
+clock adds about 2⁻⁴⁵ L.
 """
 
 
@@ -21,8 +22,8 @@ of some 500 events in all: with as many crossings of the box L, the clock adds a
 def position_after(position, velocity, acceleration, delay):
     """Coordinate (length) after a delay (time) in free flight, x + v t + ½ a t²; numbers or arrays.
 
-    acceleration: length/time², or None without gravity. The terms are summed from left to right: engine, replay and
-    analyses agree to the last bit.
+    acceleration: length/time², or None without gravity. The terms are always summed from left to right, so that the
+    engine, the replay and the analyses agree to the last bit.
     """
     if acceleration is not None:
         return position + velocity * delay + 0.5 * acceleration * delay * delay
@@ -38,13 +39,17 @@ def velocity_after(velocity, acceleration, delay):
 def path_length(
     vx: np.ndarray, vy: np.ndarray, gravity: np.ndarray | tuple[float, float] | None, delay: np.ndarray
 ) -> np.ndarray:
-    """Length (n,) of the paths of free flights, ∫ |v| dt.
+    """Lengths (n,) of the paths of free flights, ∫ |v| dt.
 
-    vx, vy: (n,), length/time, velocity at the start. gravity: components along x and y, length/time², numbers or
-    arrays (n,); None without gravity. delay: (n,), duration, time.
+    On a parabola, let u be the component of the velocity along gravity, w the component across and s = √(u² + w²). The
+    integral of s du/g is (u s + w² asinh(u/w))/2g; the difference of its values at both ends is transformed so that no
+    digits cancel.
 
-    On a parabola, with u the component of the velocity along gravity, w the one across and s = √(u² + w²), the integral
-    of s du/g is (u s + w² asinh(u/w))/2g. Its values at both ends are subtracted before anything is rounded.
+    Args:
+        vx: (n,) velocity along x at the start, length/time.
+        vy: (n,) velocity along y at the start, length/time.
+        gravity: components along x and y, numbers or arrays (n,), length/time²; None without gravity.
+        delay: (n,) durations, time.
     """
     if gravity is None:
         return np.asarray(np.hypot(vx, vy) * delay)
@@ -82,11 +87,11 @@ def advance(disc, time, gravity):
 
 @inline
 def time_to_plane(height, velocity, acceleration):
-    """Time until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if it never is.
+    """Time until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if that never happens.
 
     height: length. velocity: length/time. acceleration: length/time². The time is 0 for a falling body at or below
-    zero. A rising body that rounding put below zero counts when it falls back through zero or, if it never rises that
-    far, when it begins to fall: so it cannot sink.
+    zero. A rising body that is below zero because of rounding arrives when it falls back through zero or, if it never
+    rises so far, when it begins to fall; thus it cannot sink.
     """
     discriminant = velocity * velocity - 2.0 * acceleration * height
     root = math.sqrt(max(discriminant, 0.0))
@@ -101,9 +106,9 @@ def time_to_plane(height, velocity, acceleration):
 
 @inline
 def time_after(now, delay):
-    """Time (now plus a delay), later than now for any delay above zero, even one that rounding would take away.
+    """Time now + delay, which is later than now for any positive delay, even one that is lost by rounding.
 
-    Otherwise a body that turns back on the border of a cell would cross it back and forth indefinitely.
+    Otherwise a body that turns back at the border of a cell would cross it back and forth forever.
     """
     time = now + delay
     return np.nextafter(now, np.inf) if (time == now) & (delay > 0.0) else time
@@ -111,8 +116,8 @@ def time_after(now, delay):
 
 @inline
 def stays_above(height, velocity, acceleration, delay):
-    """Whether height + velocity t + ½ acceleration t² is above zero from 0 up to a delay (time).
+    """Whether height + velocity t + ½ acceleration t² is certainly above zero from time 0 up to a delay (time).
 
-    It checks both ends only, so it is also False for a body accelerated upwards, which may be below in between.
+    Only both ends are checked. For a body accelerated upwards, which may be below zero in between, the result is False.
     """
     return (height > 0.0) & (acceleration <= 0.0) & (position_after(height, velocity, acceleration, delay) > 0.0)

@@ -1,9 +1,9 @@
 """Periodic sides of the box: wrapped positions, images and minimum-image distances.
 
-A disc that crosses a periodic side keeps its record. This counts its boundary crossings along x and y since its time,
-crossings to the left and downwards as -1, and the position is wrapped when the record is next moved. In all laws,
-`images` are the numbers of box lengths (x, y) between two records, or between a record and a wall; they matter only
-where sides are periodic.
+A disc that crosses a periodic side keeps its record. The record counts the disc's boundary crossings along x and y
+since the time of the record, where crossings to the left and downwards count as -1; the position is wrapped when the
+record is next moved. In all functions, `images` are the numbers of box lengths (x, y) between two records, or between a
+record and a wall; they matter only if sides are periodic.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ NO_IMAGES = (0, 0)
 
 
 class Periodic(NamedTuple):
-    """Periodic sides of the box, and each disc's image.
+    """Periodic sides of the box, and the image of each disc.
 
     Attributes:
         x: whether the left and the right side are periodic.
@@ -26,8 +26,8 @@ class Periodic(NamedTuple):
         Lx: width of the box, length.
         Ly: height of the box, length.
         image: (N, 2) i4 by id, box lengths to add to a record's position to unwrap it.
-        shear: motion of the images along y, for kernels; None without sheared sides. The crossing of a sheared side
-            is an event, so that y is false.
+        shear: motion of the images along y, for kernels; None without sheared sides. Because the crossing of a sheared
+            side is an event, y is false if there is shear.
     """
 
     x: bool
@@ -39,19 +39,19 @@ class Periodic(NamedTuple):
 
 
 def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
-    """Whether the sides are periodic along x and along y, as two truth values."""
+    """Whether the sides are periodic along x, and whether along y."""
     return (periodic.x, periodic.y) if periodic else (False, False)
 
 
 def copy_of(periodic: Periodic | None) -> Periodic | None:
-    """Independent copy of periodic sides, whose images may change without changing the original; None without any."""
+    """Copy of periodic sides whose images may change without changing the original; None without periodic sides."""
     if periodic is None:
         return None
     return periodic._replace(image=periodic.image.copy())
 
 
 def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
-    """Positions (N, 2) in the box as they are in space, length."""
+    """Unwrapped positions (N, 2) of discs at wrapped positions (N, 2), length."""
     return position if periodic is None else position + periodic.image * (periodic.Lx, periodic.Ly)
 
 
@@ -59,7 +59,7 @@ def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
 def images_between(periodic, a, b, image):
     """Numbers of box lengths (x, y) between the records of discs a and b; zeros without periodic sides.
 
-    image: numbers of box lengths (x, y) between the discs now, both seen inside the box.
+    image: numbers of box lengths (x, y) between the discs now, if both are taken inside the box.
     """
     if periodic is not None:
         return (
@@ -73,7 +73,7 @@ def images_between(periodic, a, b, image):
 def images_to_wall(periodic, disc, image):
     """Numbers of box lengths (x, y) between a disc's record and an image of a wall; zeros without periodic sides.
 
-    image: numbers of box lengths (x, y) between the wall and its image, seen from the disc inside the box.
+    image: numbers of box lengths (x, y) between the wall and its image, if the disc is taken inside the box.
     """
     if periodic is not None:
         return np.int64(disc.crossed_x) + image[0], np.int64(disc.crossed_y) + image[1]
@@ -82,7 +82,7 @@ def images_to_wall(periodic, disc, image):
 
 @inline
 def shift_by_images(x, y, periodic, images):
-    """A relative position (x, y), length, less the given numbers of box lengths."""
+    """Subtract numbers of box lengths from a relative position (x, y), length."""
     if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y
@@ -90,7 +90,7 @@ def shift_by_images(x, y, periodic, images):
 
 @inline
 def is_periodic(periodic, along_y):
-    """Whether the sides are periodic along y or along x."""
+    """Whether the sides are periodic along y or, if not along_y, along x."""
     if periodic is not None:
         return periodic.y if along_y else periodic.x
     return False
@@ -98,7 +98,7 @@ def is_periodic(periodic, along_y):
 
 @inline
 def nearest_image(distance, length, is_periodic):
-    """Difference of coordinates (length) to the nearest image, unchanged without periodic sides; numbers or arrays."""
+    """Difference of coordinates (length) to the nearest image; unchanged if not periodic; numbers or arrays."""
     return distance - length * np.rint(distance / length) if is_periodic else distance
 
 
@@ -126,7 +126,7 @@ def separation(a, b, periodic):
 
 @inline
 def wrapped(position, length):
-    """A coordinate (length) wrapped into the box, and the number of box lengths subtracted; numbers or arrays."""
+    """Coordinate (length) wrapped into the box, and the number of box lengths subtracted; numbers or arrays."""
     boxes = np.floor(position / length)
     return position - boxes * length, boxes
 
@@ -135,7 +135,7 @@ def wrapped(position, length):
 def wrap(disc, own, periodic):
     """Wrap a record's position into the box, and update its image and boundary crossings."""
     if periodic is not None:
-        if periodic.x and not 0.0 < disc.x < periodic.Lx:  # rare, and it takes a division
+        if periodic.x and not 0.0 < disc.x < periodic.Lx:  # this is rare, and wrapping takes a division
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
             periodic.image[U(own), 0] += np.int32(boxes)
             disc.crossed_x -= np.int16(boxes)
@@ -147,7 +147,7 @@ def wrap(disc, own, periodic):
 
 @inline
 def enter_opposite_side(disc, own, rows, periodic):
-    """Wrap a record that has crossed a sheared side along x; rows: box lengths upwards, 1 or -1."""
+    """Wrap the record of a disc that has crossed a sheared side; rows: box lengths upwards, 1 or -1."""
     if periodic is not None:
         wrap(disc, own, periodic)
         disc.crossed_x = 0
@@ -156,7 +156,7 @@ def enter_opposite_side(disc, own, rows, periodic):
 
 @inline
 def place_in_space(disc, own, periodic):
-    """Position (x, y), length, of a wrapped record in space; see `unwrapped`."""
+    """Unwrapped position (x, y), length, of a wrapped record."""
     if periodic is not None:
         return (
             disc.x + periodic.image[U(own), 0] * periodic.Lx,

@@ -1,8 +1,8 @@
 """A piston: a wall across the box that moves along one axis, at a given velocity or with a mass.
 
-An outer piston stands in place of a side and may be pressed from outside; an inner one has gas on both sides. Between
-hits it moves as X(t) = X₀ + V t + ½ A t²; A comes from the external pressure and gravity, and is 0 at a given velocity.
-At the sides of the box across its axis it is reflected.
+An outer piston replaces a side of the box and may be pressed from outside; an inner piston has gas on both sides.
+Between hits a piston moves as X(t) = X₀ + V t + ½ A t². The acceleration A comes from the external pressure and
+gravity; it is 0 for a given velocity. At the sides of the box across its axis the piston is reflected.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ from idealgas.physics.restitution import wall_restitution_factor
 
 PISTON = np.dtype(
     [
-        ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis: length, time
+        ("x", "f8"), ("v", "f8"), ("a", "f8"),  # position, velocity, acceleration along the axis, length and time
         ("t", "f8"),  # local time of the record
         ("m", "f8"),  # mass; 0 for a piston with a given velocity, which hits do not change
-        ("length", "f8"),  # of the box along the axis
+        ("length", "f8"),  # length of the box along the axis
         ("outward", "f8"),  # direction from the gas to an outer piston along its axis, +1 or -1; 0 for an inner piston
-        ("wall", "i4"), ("axis", "i4"),  # number of the wall that it is; 0 if it moves along x, 1 along y
+        ("wall", "i4"), ("axis", "i4"),  # number of the piston among the walls; 0 if it moves along x, 1 along y
         ("count", "u4"),  # number of events that changed the velocity
     ],
     align=True,
@@ -28,9 +28,10 @@ PISTON = np.dtype(
 
 @inline
 def outward(piston, distance):
-    """Direction along the axis from a disc to the piston, +1 or -1; distance: of their coordinates, piston's - disc's.
+    """Direction along the axis from a disc to the piston, +1 or -1.
 
-    For an outer piston it is given; a disc beyond it, by rounding, is to go back. No disc passes an inner piston.
+    distance: coordinate of the piston minus coordinate of the disc. For an outer piston the direction is fixed, so a
+    disc that is beyond it because of rounding goes back. Discs never pass an inner piston.
     """
     if piston.outward != 0.0:
         return piston.outward
@@ -39,13 +40,13 @@ def outward(piston, distance):
 
 @inline
 def piston_motion(piston, time):
-    """Position (length) and velocity (length/time) of the piston at a later local time, if it meets nothing before."""
+    """Position (length) and velocity (length/time) of the piston at a later local time, if nothing hits it until then."""
     delay = time - piston.t
     return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
 
 
 def end_epoch(pistons: np.ndarray, length: float) -> None:
-    """Move all pistons to the end of an epoch of some length (time), from where their local time counts."""
+    """Move all pistons to the end of an epoch, from which their local times count; length: of the epoch, time."""
     for piston in pistons:
         advance_piston(piston, length)
         piston.t = 0.0
@@ -53,9 +54,10 @@ def end_epoch(pistons: np.ndarray, length: float) -> None:
 
 @inline
 def height_over_piston(disc, piston, gravity):
-    """Later local time of a disc's and the piston's records, and the motion of the disc from the piston at that time.
+    """Later local time of the records of a disc and the piston, and the disc's relative motion at that time.
 
-    Returns (time, height, velocity, acceleration) along the axis, the height being that of the disc's edge.
+    Returns (time, height, velocity, acceleration) away from the piston along the axis; the height is that of the disc's
+    edge.
     """
     along_y = piston.axis == 1
     time = max(disc.t, piston.t)
@@ -81,9 +83,9 @@ def piston_contact(disc, piston, gravity):
 
 @inline
 def misses_piston_until(disc, piston, gravity, limit):
-    """Whether a disc surely does not touch the piston up to a local time; quicker than `piston_contact`.
+    """Whether a disc certainly does not touch the piston up to a local time; faster than `piston_contact`.
 
-    It is asked for a time a little after the limit, so that rounding does not matter.
+    The test extends slightly beyond this limit, so that rounding does not matter.
     """
     time, height, velocity, acceleration = height_over_piston(disc, piston, gravity)
     return stays_above(height, velocity, acceleration, limit * (1.0 + 1e-9) - time)
@@ -101,8 +103,8 @@ def stop_contact(piston):
 def advance_piston(piston, time):
     """Move the piston's record to a later local time.
 
-    The displacement is summed before it is added, unlike in `piston_motion`: the logged events depend on its last
-    digit.
+    Unlike in `piston_motion`, the displacement is computed before it is added. This order must not change, because the
+    last digits of logged events depend on it.
     """
     delay = time - piston.t
     piston.x += position_after(0.0, piston.v, piston.a, delay)
@@ -113,8 +115,8 @@ def advance_piston(piston, time):
 def piston_energy(mass, position, velocity, acceleration):
     """Kinetic and potential energy of a piston with a mass, m (V²/2 - A X), mass length²/time²; constant between hits.
 
-    position: length. velocity: length/time. acceleration: between hits, from the external pressure and gravity,
-    length/time². Numbers or arrays.
+    position: length. velocity: length/time. acceleration: acceleration between hits, due to the external pressure and
+    gravity, length/time². Numbers or arrays.
     """
     return mass * (0.5 * velocity**2 - acceleration * position)
 
@@ -140,12 +142,10 @@ def collide_with_piston(disc, own, piston, restitution):
 
 @inline
 def energy_at_piston(disc, energy, piston):
-    """Energy that an elastic hit would not change, mass length²/time².
+    """Energy that an elastic hit of the piston would not change, mass length²/time².
 
-    That of a disc with a kinetic energy, and of the motion of a piston with a mass; without one it is the disc's
-    kinetic energy as the piston sees it, of the motion along the axis.
-
-    energy: of the disc, mass length²/time².
+    For a piston with a mass it is the sum of the kinetic energies of disc and piston; without a mass, it is the disc's
+    kinetic energy of the motion along the axis in the frame of the piston. energy: kinetic energy of the disc.
     """
     if piston.m > 0.0:
         return energy + 0.5 * piston.m * piston.v * piston.v
@@ -155,7 +155,7 @@ def energy_at_piston(disc, energy, piston):
 
 @inline
 def is_piston_side(side, piston):
-    """Whether a piston stands in place of this side of the box."""
+    """Whether a piston replaces this side of the box."""
     if piston is not None:
         for k in range(len(piston)):
             if side == piston[k].wall:
@@ -165,7 +165,7 @@ def is_piston_side(side, piston):
 
 @inline
 def normal_of_piston(disc, piston):
-    """Unit normal (x, y) of the piston towards a disc, whose record is at the piston's time."""
+    """Unit normal (x, y) of the piston towards a disc; both records must be at the same time."""
     position = disc.y if piston.axis == 1 else disc.x
     sign = outward(piston, piston.x - position)
     return (0.0, -sign) if piston.axis == 1 else (-sign, 0.0)

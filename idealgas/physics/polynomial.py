@@ -1,4 +1,4 @@
-"""First time at which a body on a parabola comes within a distance of a point: a quartic falls through zero."""
+"""First time at which a body on a parabola comes within a distance of a point, where a quartic falls through zero."""
 
 import math
 
@@ -6,24 +6,24 @@ from idealgas.jit import inline, noinline
 from idealgas.physics.elementary import quarter_power, third_power
 from idealgas.physics.motion import NEVER
 
-BISECTIONS = 200  # enough to halve any interval of floats down to neighbouring ones
+BISECTIONS = 200  # enough to halve any interval down to neighbouring floats
 
 
 @inline
 def cubic(b, c, d, e, t):
-    """B t³ + c t² + d t + e."""
+    """Value of b t³ + c t² + d t + e."""
     return ((b * t + c) * t + d) * t + e
 
 
 @inline
 def parabola(x, v, a, t):
-    """Value of x + v t + ½ a t²; as x + (v + ½ a t) t it keeps more digits near a return to x than term by term."""
+    """Value of x + v t + ½ a t²; the form x + (v + ½ a t) t keeps more digits near a return to x."""
     return x + (v + 0.5 * a * t) * t
 
 
 @inline
 def bisect(b, c, d, e, low, high):
-    """Point of [low, high] where a cubic changes sign, to the last bit; its signs at both ends must differ."""
+    """Point in [low, high] where a cubic changes sign, to the last bit; its signs at the ends must differ."""
     rising = cubic(b, c, d, e, low) < cubic(b, c, d, e, high)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -38,7 +38,7 @@ def bisect(b, c, d, e, low, high):
 
 @inline
 def quadratic_roots(a, b, c):
-    """Real roots of a t² + b t + c in increasing order, without cancellation; NEVER in place of a missing root."""
+    """Real roots of a t² + b t + c in increasing order, without cancellation; NEVER stands for a missing root."""
     if a == 0.0:
         return (-c / b, NEVER) if b != 0.0 else (NEVER, NEVER)
     discriminant = b * b - 4.0 * a * c
@@ -53,9 +53,9 @@ def quadratic_roots(a, b, c):
 
 @inline
 def cubic_extrema(b, c, d, e, last):
-    """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in order: three, padded with `last`."""
+    """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in order; padded with `last` to three."""
     left, right = quadratic_roots(3.0 * b, 2.0 * c, d)
-    found = 0
+    count = 0
     first = second = third = last
     low = 0.0
     for k in range(3):
@@ -69,22 +69,22 @@ def cubic_extrema(b, c, d, e, last):
             at_high = cubic(b, c, d, e, high)
             if (at_low < 0.0) != (at_high < 0.0):
                 zero = bisect(b, c, d, e, low, high)
-                if found == 0:
+                if count == 0:
                     first = zero
-                elif found == 1:
+                elif count == 1:
                     second = zero
                 else:
                     third = zero
-                found += 1
+                count += 1
             low = high
     return first, second, third
 
 
 @inline
 def gap(x, y, vx, vy, gx, gy, r, t):
-    """Square of the distance from the origin at time t on a parabola, less r²; length².
+    """Squared distance from the origin at time t on a parabola, minus r²; length².
 
-    It is computed from the position at t, so that no digit is lost where r is small.
+    It is computed from the position at t, so that digits are not lost if r is small.
     """
     x_then = parabola(x, vx, gx, t)
     y_then = parabola(y, vy, gy, t)
@@ -103,9 +103,9 @@ def first_contact_root(x, y, vx, vy, gx, gy, r, after):
 
 @inline
 def first_exit_root(x, y, vx, vy, gx, gy, r, after):
-    """Smallest t ≥ 0 at which a body on a parabola is at least r from the origin and moves away; NEVER without any.
+    """Smallest t ≥ 0 at which a body on a parabola is at least r from the origin and moves away; NEVER if it never is.
 
-    Arguments as of `first_contact_root`.
+    The arguments are as in `first_contact_root`.
     """
     return first_descent(x, y, vx, vy, gx, gy, r, after, -1.0)
 
@@ -115,8 +115,9 @@ def first_descent(x, y, vx, vy, gx, gy, r, after, sign):
     """Smallest t ≥ 0 at which the gap times `sign` (1 or -1) falls and is zero or less.
 
     The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
-    interval that ends at or below zero contains the root. A gap that is zero or less at 0 and falls there gives 0. If
-    it rises there, the next descent counts: to zero or, if the gap stays below zero until then, to its value at 0.
+    interval that ends at or below zero contains the root. If the gap is zero or less at t = 0 and falls there, the
+    result is 0. If it rises there, the result is the next descent: to zero or, if the gap stays below zero until then,
+    to its value at 0.
     """
     a = 0.25 * (gx * gx + gy * gy)
     b = gx * vx + gy * vy

@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.jit import inline
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-"""Constant of SplitMix64 by which the counter is multiplied."""
+"""Constant of SplitMix64 with which the counter is multiplied."""
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
@@ -31,10 +31,10 @@ def unit_interval(bits):
 
 @inline
 def disc_uniform(seed, own, number, draw):
-    """Random number in (0, 1], a pure function of four numbers.
+    """Random number in (0, 1], a pure function of the four arguments.
 
-    seed: u8. own: id of a disc. number: u8, of what happens to that disc, from 0. draw: which of the eight random
-    numbers that this may have, 0 to 7; walls that emit discs have 0 to 2, a heat bath has 3 to 7.
+    seed: u8. own: id of a disc. number: u8, number of the random event of this disc, from 0. draw: number of the random
+    number among the eight of the event; walls that emit discs use 0 to 2, and a heat bath uses 3 to 7.
     """
     key = mix(seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
     count = number * np.uint64(8) + np.uint64(draw)

@@ -1,7 +1,7 @@
-"""Inelastic collisions, and the rule that prevents inelastic collapse: infinitely many of them in a finite time.
+"""Inelastic collisions, and the rule that prevents inelastic collapse, infinitely many collisions in a finite time.
 
-A collision is elastic if one of its discs had a collision, with a disc or a wall, less than the contact duration before
-(the TC model of Luding & McNamara, Granular Matter 1, 113 (1998)).
+A collision is elastic if one of its discs collided with a disc or a wall less than the contact duration before (the TC
+model of Luding & McNamara, Granular Matter 1, 113 (1998)).
 """
 
 from typing import NamedTuple
@@ -15,9 +15,9 @@ class Restitution(NamedTuple):
     """Coefficients of inelastic collisions, and the time of each disc's last collision.
 
     Attributes:
-        normal: coefficient of normal restitution of two discs, no unit.
-        wall: coefficient of normal restitution of a disc and a wall, no unit.
-        contact_duration: time after a collision in which a disc collides elastically, time.
+        normal: coefficient of normal restitution of two discs.
+        wall: coefficient of normal restitution of a disc and a wall.
+        contact_duration: duration after a collision during which a disc collides elastically, time.
         last: (N,) f8 by id, local time of each disc's last collision.
     """
 
@@ -28,13 +28,13 @@ class Restitution(NamedTuple):
 
 
 def end_epoch(restitution: Restitution, length: float) -> None:
-    """Make the local times of the last collisions count from the end of an epoch of some length (time)."""
+    """Let the local times of the last collisions count from the end of the epoch; length: of the epoch, time."""
     restitution.last[:] -= length
 
 
 @inline
 def restitution_factor(restitution, a_id, b_id, time):
-    """1 + the coefficient of restitution of two discs that collide at a local time; 2 if the collision is elastic."""
+    """Return 1 + the coefficient of restitution of two discs that collide at a local time; 2 for an elastic collision."""
     if restitution is not None:
         last = max(restitution.last[np.uintp(a_id)], restitution.last[np.uintp(b_id)])
         return 2.0 if time - last < restitution.contact_duration else 1.0 + restitution.normal
@@ -43,7 +43,7 @@ def restitution_factor(restitution, a_id, b_id, time):
 
 @inline
 def wall_restitution_factor(restitution, own, time):
-    """1 + the coefficient of restitution of a disc that hits a wall at a local time; 2 if the collision is elastic."""
+    """Return 1 + the coefficient of restitution of a disc that hits a wall at a local time; 2 for an elastic hit."""
     if restitution is not None:
         recent = time - restitution.last[np.uintp(own)] < restitution.contact_duration
         return 2.0 if recent else 1.0 + restitution.wall
@@ -52,6 +52,6 @@ def wall_restitution_factor(restitution, own, time):
 
 @inline
 def record_collision(restitution, own, time):
-    """Store the local time of a disc's last collision, where collisions are inelastic."""
+    """Store the local time of a disc's last collision, if collisions are inelastic."""
     if restitution is not None:
         restitution.last[np.uintp(own)] = time

@@ -1,7 +1,7 @@
-"""Rough discs: the tangential impulse that couples motion and spin, with a constant coefficient of roughness.
+"""Rough discs: the tangential impulse that couples translation and spin, with a constant coefficient of roughness.
 
 Chapman & Cowling, The Mathematical Theory of Non-Uniform Gases, 11.2; Brilliantov & Pöschel, Kinetic Theory of Granular
-Gases, 2.2. Discs of roughness 1 conserve energy, discs of roughness -1 are smooth.
+Gases, 2.2. Discs with roughness 1 conserve energy; discs with roughness -1 are smooth.
 """
 
 import math
@@ -30,9 +30,9 @@ class Rotation(NamedTuple):
 
 
 def moment_of_inertia(inertia, mass, radius):
-    """Moment of inertia I = κ m R² of a disc, mass length²; numbers or arrays of one shape.
+    """Moment of inertia I = κ m R² of a disc, mass length²; numbers or arrays of the same shape.
 
-    inertia: κ, no unit, ½ for a uniform disc. mass: m. radius: R, length.
+    inertia: coefficient κ, ½ for a uniform disc. mass: m. radius: R, length.
     """
     return inertia * mass * radius**2
 
@@ -62,7 +62,7 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
 
 @inline
 def _rounding(disc, u, tx, ty, impulse, factor, rotation):
-    """Excess of a disc's energy by rounding, and its derivative, as `correction` takes them."""
+    """Excess of a disc's energy due to rounding, and its derivative, in the form required by `correction`."""
     dx, dy = impulse / disc.m * tx, impulse / disc.m * ty
     spin = disc.r / rotation.inertia[u] * impulse
     motion = (factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy
@@ -82,7 +82,7 @@ def _apply(disc, u, tx, ty, impulse, correction, rotation):
 def tangential_impulse_at_wall(disc, own, nx, ny, rotation):
     """Apply the tangential impulse of a wall at rest to the velocity and spin of a disc that touches it."""
     u = np.uintp(own)
-    tx = ny  # the wall is the second disc: n from the disc to the wall is -(nx, ny)
+    tx = ny  # the wall takes the place of the second disc, so n from the disc to the wall is -(nx, ny)
     ty = -nx
     slip = disc.vx * tx + disc.vy * ty + disc.r * rotation.omega[u]
     mobility = (nx * nx + ny * ny) / disc.m + disc.r * disc.r / rotation.inertia[u]

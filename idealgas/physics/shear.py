@@ -1,8 +1,9 @@
 """Sheared sides of the box: Lees & Edwards, J. Phys. C 5, 1921 (1972).
 
-The image of the gas k boxes up moves along x with k u, where u is the shear rate times the height of the box, and at a
-time t is k u t ahead. Images fly straight, so contact times through the sheared sides are those of two discs in flight.
-A disc whose centre leaves through the top enters at the bottom, u t further to the left and slower by u.
+The image of the gas k boxes up moves along x with the velocity k u, where u is the shear rate times the height of the
+box; at the time t it is k u t ahead. Images move uniformly, so contact times through the sheared sides are the same as
+for two discs in free flight. A disc whose centre leaves through the top enters at the bottom, u t further to the left
+and slower by u.
 """
 
 import math
@@ -24,8 +25,8 @@ class Shear(NamedTuple):
         speed: velocity of the image above, u, length/time.
         Lx: width of the box, length.
         Ly: height of the box, length.
-        offset: (2,) f8, how far the image above is ahead at the start and at the end of the epoch, less whole widths of
-            the box at its start, length.
+        offset: (2,) f8, distance by which the image above is ahead at the start and at the end of the epoch, length;
+            whole widths of the box at the start are subtracted.
     """
 
     rate: float
@@ -36,39 +37,39 @@ class Shear(NamedTuple):
 
 
 def make_shear(rate: float, size: tuple[float, float]) -> Shear:
-    """Shear in a box of some width and height, at time 0."""
+    """Shear at time 0 in a box of the given width and height, length; rate: 1/time."""
     return Shear(rate, rate * size[1], *size, np.zeros(2))
 
 
 def begin_epoch(shear: Shear, time: float, length: float) -> None:
-    """Let local times count from a time of the run, for an epoch of some length (time); the offset is exact."""
+    """Let local times count from a time of the run; length: of the epoch, time. The offset is exact."""
     ahead = float(Fraction(shear.speed) * Fraction(time) % Fraction(shear.Lx))
     shear.offset[:] = ahead, ahead + shear.speed * length
 
 
 def at(shear: Shear | None, time: float) -> Shear | None:
-    """The shear with local times from a time of the run, at rest there; None for None."""
+    """Return the shear for an epoch of length 0 at a time of the run; None without shear."""
     if shear is None:
         return None
-    other = shear._replace(offset=np.zeros(2))
-    begin_epoch(other, time, 0.0)
-    return other
+    frozen = shear._replace(offset=np.zeros(2))
+    begin_epoch(frozen, time, 0.0)
+    return frozen
 
 
 def longest_epoch(shear: Shear | None) -> float:
-    """Longest time of an epoch, a power of two, in which the image above moves by at most one width of the box."""
+    """Longest epoch, time: a power of two, in which the image above moves by at most one width of the box."""
     return math.inf if shear is None else 2.0 ** math.floor(math.log2(shear.Lx / shear.speed))
 
 
 @inline
 def offset_at(shear, time):
-    """How far the image above is ahead at a local time, length."""
+    """Distance by which the image above is ahead at a local time, length."""
     return shear.offset[0] + shear.speed * time
 
 
 @inline
 def less_offset(x, vx, time, shear, images):
-    """Relative position and velocity along x at a local time, less those of images so many box lengths (x, y) away."""
+    """Relative position and velocity along x at a local time, minus those of the image (x, y), in box lengths."""
     if shear is not None:
         return x - offset_at(shear, time) * images[1], vx - shear.speed * images[1]
     return x, vx
@@ -76,7 +77,7 @@ def less_offset(x, vx, time, shear, images):
 
 @inline
 def less_offset_of_nearest(x, y, time, shear):
-    """Relative position (x, y), length, at a local time, less that of the nearest image along y."""
+    """Relative position (x, y), length, at a local time, minus the displacement of the nearest image along y."""
     if shear is not None:
         rows = np.rint(y / shear.Ly)
         return x - offset_at(shear, time) * rows, y - shear.Ly * rows
@@ -85,7 +86,7 @@ def less_offset_of_nearest(x, y, time, shear):
 
 @inline
 def enter_common_frame(a, b, shear, images):
-    """Give the records of two discs the velocities seen half-way between the box of a and that of b's image."""
+    """Transform the velocities of two discs to the frame half-way between the box of a and the box of b's image."""
     if shear is not None:
         half = 0.5 * shear.speed * images[1]
         a.vx -= half
@@ -103,7 +104,7 @@ def leave_common_frame(a, b, shear, images):
 
 @inline
 def set_velocities_along_x(a, b, shear, velocities):
-    """Set the velocities along x of two records where sides are sheared."""
+    """Set the velocities along x of two records, if sides are sheared."""
     if shear is not None:
         a.vx, b.vx = velocities
 
@@ -119,9 +120,9 @@ def crossing_time(disc, side, length):
 
 @inline
 def cross(disc, side, shear):
-    """Move a record at the time of its crossing to the opposite side; return the number of box lengths upwards.
+    """Move a disc's record, at the time of its crossing, to the opposite side; return the box lengths upwards, 1 or -1.
 
-    Its position along x may be outside the box.
+    Afterwards its position along x may be outside the box.
     """
     rows = 1 if side == 3 else -1
     disc.x -= offset_at(shear, disc.t) * rows
@@ -132,12 +133,12 @@ def cross(disc, side, shear):
 
 @inline
 def flow_at(y, rate, height):
-    """Mean velocity along x at a height y in a box of some height, length/time; numbers or arrays."""
+    """Mean velocity along x at a height y in a box of the given height, length/time; numbers or arrays."""
     return rate * (y - 0.5 * height)
 
 
 @inline
 def add_flow(disc, shear):
-    """Add the mean velocity at its position to a disc's velocity, where sides are sheared."""
+    """Add the mean velocity at a disc's position to its velocity, if sides are sheared."""
     if shear is not None:
         disc.vx += flow_at(disc.y, shear.rate, shear.Ly)

@@ -1,4 +1,4 @@
-"""Time reversal: the state from which a gas runs back along its way, if its motion is reversible."""
+"""Time reversal: the state from which a gas retraces its path, if its motion is reversible."""
 
 from typing import TypeVar
 
@@ -8,5 +8,5 @@ Velocity = TypeVar("Velocity", float, np.ndarray)
 
 
 def reversed_velocity(velocity: Velocity) -> Velocity:
-    """Velocity, or angular velocity, of the reversed motion; 0 stays without a sign."""
+    """Velocity, or angular velocity, of the reversed motion; 0 does not become -0."""
     return 0.0 - velocity

@@ -1,15 +1,15 @@
 """Stress tensor, heat flux and wall impulses of a gas, accumulated as exact sums.
 
-Pressure tensor times area and time: P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The integral is the kinetic part. The
-sum over collisions of two discs is the collisional part: Δp is the impulse on one disc, r its position relative to the
-other. Every term is unchanged to the last bit if the two discs are exchanged. Both parts are energies times time.
+The pressure tensor times area and time is P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The integral is the kinetic part.
+The sum over collisions of two discs is the collisional part, where Δp is the impulse on one disc and r its position
+relative to the other. No bit of a term changes if the two discs are exchanged. Both parts are energies times time.
 
-The heat flux is accumulated in the same way: ∫ Σ (m v²/2) v_a dt + Σ ΔE r_a, where ΔE is the energy gained by one disc
-and velocities are relative to the centre of mass; energies times length. It is recorded only if velocities change in
-collisions of smooth elastic discs alone.
+The heat flux is accumulated in the same way as ∫ Σ (m v²/2) v_a dt + Σ ΔE r_a, an energy times length, where ΔE is the
+energy gained by one disc and velocities are relative to the centre of mass. It is recorded only if velocities change
+exclusively in collisions of smooth elastic discs.
 
-A face is one side of a wall: faces 0 to 3 are the sides of the box, followed by the two faces of each wall segment,
-first the face to the left when looking from its start to its end.
+A face is one side of a wall. Faces 0 to 3 are the sides of the box, followed by the two faces of each wall segment,
+first the face on the left when looking from its start to its end.
 """
 
 from typing import Any, NamedTuple
@@ -23,20 +23,20 @@ from idealgas.physics.periodic import shift_by_images
 
 U = np.uintp
 KINETIC, COLLISIONAL = slice(0, 3), slice(3, None)
-"""Components of the tensor: xx, xy, yy of the kinetic part; xx, xy, yy and, for rough discs, yx of the collisional."""
+"""Components of the tensor: kinetic xx, xy, yy, and collisional xx, xy, yy and, for rough discs, yx."""
 
 TERMS = np.dtype([("column", "f8", (BATCH,))])
-"""Terms of one sum, one per collision."""
+"""Terms of a sum, one per collision."""
 
 PARTS = 7
-"""Largest number of sums of the tensor, that of rough discs."""
+"""Largest number of sums of the tensor, for rough discs."""
 
 HEAT = 4
 """Number of sums of the heat flux."""
 
 
 class Buffer(NamedTuple):
-    """Terms of collisions that `flush` adds together, which is faster than one by one.
+    """Terms of collisions; `flush` adds them together, which is faster than adding them one by one.
 
     Attributes:
         number: (1,) i8, number of buffered collisions.
@@ -53,15 +53,15 @@ class StressAccumulator(NamedTuple):
     Attributes:
         tensor: (6,) SUM, kinetic xx, xy, yy, then collisional xx, xy, yy, energy times time; for rough discs (7,), with
             the collisional yx, which equals xy for smooth discs.
-        buffer: terms that are not in these sums yet.
+        buffer: terms that are not yet in these sums.
         walls: (1,) SUM, -Σ r·Δp over all wall hits, with r from the centre of the box and Δp the impulse on the disc,
             energy times time.
         normal_impulse: (F,) SUM, impulse on each face along its normal, into the wall, mass length/time.
-        tangential_impulse: (F,) SUM, impulse on each face along its tangent, mass length/time; the tangent points
-            towards larger coordinates for a side, from start to end for a segment.
+        tangential_impulse: (F,) SUM, impulse on each face along its tangent, mass length/time. The tangent of a side
+            points towards larger coordinates, and the tangent of a segment from its start to its end.
         hits: (F,) i8, number of hits of each face.
-        pairs: (S, S) i8, numbers of collisions of species i and j, in the upper triangle; None for one species.
-        species: (N,) u2, species of each disc by id; None for one species.
+        pairs: (S, S) i8, numbers of collisions of species i and j, in the upper triangle; None for a single species.
+        species: (N,) u2, species of each disc by id; None for a single species.
         x: x coordinate of the centre of the box, length.
         y: y coordinate of the centre of the box, length.
         heat: (4,) SUM, kinetic heat flux along x and y, then collisional along x and y, energy times length; None if
@@ -86,7 +86,7 @@ class StressAccumulator(NamedTuple):
 
 
 def empty_buffer() -> Buffer:
-    """Buffer without terms."""
+    """Return a buffer without terms."""
     return Buffer(np.zeros(1, np.int64), aligned(PARTS + HEAT, TERMS))
 
 
@@ -97,7 +97,7 @@ def kinetic_flow(mass, vx, vy, delay, gravity):
     vx, vy: velocity at the start, length/time. delay: duration of the flight, time.
     """
     carried = mass * delay
-    if gravity is not None:  # v_a v_b in the middle of the flight, plus the variance of the velocity
+    if gravity is not None:  # v_a v_b at the middle of the flight, plus the variance of the velocity
         vx += 0.5 * gravity.x * delay
         vy += 0.5 * gravity.y * delay
         third = carried * delay * delay / 12.0
@@ -118,7 +118,10 @@ def kinetic_heat_flow(mass, vx, vy, delay):
 
 @inline
 def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
-    """Energy (mass length²/time²) gained by a disc whose velocity changed, in a frame moving at (frame_x, frame_y)."""
+    """Energy gained by a disc whose velocity changed, in a frame with the velocity (frame_x, frame_y).
+
+    Velocities are in length/time, the energy in mass length²/time².
+    """
     along_x = (vx_after - vx) * (vx_after + vx - 2.0 * frame_x)
     along_y = (vy_after - vy) * (vy_after + vy - 2.0 * frame_y)
     return 0.5 * mass * (along_x + along_y)
@@ -126,7 +129,7 @@ def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
 
 @inline
 def record_flight(flow, disc, time, gravity):
-    """Add the flight of a disc, from its record to a local time, if stress is recorded."""
+    """Record the flight of a disc from its record's time to a local time, if stress is recorded."""
     if flow is not None:
         xx, xy, yy = kinetic_flow(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
         add(flow.tensor[U(0)], xx)
@@ -136,7 +139,7 @@ def record_flight(flow, disc, time, gravity):
 
 @inline
 def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
-    """Record the collision of two discs at their contact, if stress is recorded.
+    """Record the collision of two discs, whose records are at the time of contact, if stress is recorded.
 
     flights: durations of the flights (a, b) up to the contact, time, and velocities (a_vx, a_vy, b_vx, b_vy) at their
     start, length/time. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
@@ -166,7 +169,7 @@ def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, i
 
 @inline
 def buffer_heat(heat, terms, k, a, b, flights, x, y, vx, vy):
-    """Buffer the terms of a collision in the heat flux as number k, if it is recorded.
+    """Buffer the terms of a collision for the heat flux in row k of the buffer, if the heat flux is recorded.
 
     x, y: position of a relative to b, length. vx, vy: centre-of-mass velocity, length/time.
     """
@@ -194,7 +197,7 @@ def flush(flow):
 
 @inline
 def add_terms(sums, terms, first, parts, number):
-    """Add `number` terms to each of the first `parts` sums, from the columns `first` onwards; sums: None for none."""
+    """Add `number` terms to each of the first `parts` sums, from column `first` of the terms on; sums may be None."""
     if sums is not None:
         for k in range(parts):
             add_all(sums[U(k)], terms[U(first + k)].column[:number])
@@ -202,7 +205,7 @@ def add_terms(sums, terms, first, parts, number):
 
 @inline
 def count_pair(pairs, species, a_id, b_id):
-    """Count a collision by the species of its discs, if there are several."""
+    """Count a collision by the species of its discs, if there are several species."""
     if species is not None:
         i = species[U(a_id)]
         j = species[U(b_id)]
@@ -211,9 +214,9 @@ def count_pair(pairs, species, a_id, b_id):
 
 @inline
 def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
-    """Add a hit of a face, if stress is recorded; the disc's record is at the contact, inside the box.
+    """Record a hit of a face, if stress is recorded; the disc's record must be at the contact, inside the box.
 
-    nx, ny: unit normal of the face towards the disc. tx, ty: its unit tangent. px, py: impulse on the disc,
+    nx, ny: unit normal of the face towards the disc. tx, ty: unit tangent of the face. px, py: impulse on the disc,
     mass length/time.
     """
     if flow is not None:
@@ -226,7 +229,7 @@ def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
 
 @njit
 def complete_flights(record, time, gravity, flow, absorbing):
-    """Add the buffered collisions, then the flights of all discs from their records to a local time."""
+    """Add the buffered collisions, and then the flights of all discs from their records' times to a local time."""
     flush(flow)
     terms = flow.buffer.terms
     for first in range(0, record.shape[0], BATCH):
@@ -244,9 +247,9 @@ def complete_flights(record, time, gravity, flow, absorbing):
 
 @inline
 def complete_heat(heat, terms, record, first, number, time, vx, vy):
-    """Add the kinetic heat flux of a number of discs from their records to a local time, if it is recorded.
+    """Add the kinetic heat flux of `number` discs from the times of their records to a local time, if it is recorded.
 
-    No wall is inside the box where it is, so no disc has left.
+    It is not recorded for a box with walls inside, so no disc can have left the gas.
     """
     if heat is not None:
         for k in range(number):
@@ -258,7 +261,7 @@ def complete_heat(heat, terms, record, first, number, time, vx, vy):
 
 
 def sums_of(flow: StressAccumulator) -> list[np.ndarray]:
-    """All arrays of SUM."""
+    """Return all arrays of SUM."""
     return [
         flow.tensor,
         flow.walls,
@@ -269,12 +272,12 @@ def sums_of(flow: StressAccumulator) -> list[np.ndarray]:
 
 
 def counts_of(flow: StressAccumulator) -> list[np.ndarray]:
-    """All arrays of collision counts."""
+    """Return all arrays of collision counts."""
     return [flow.hits] if flow.pairs is None else [flow.hits, flow.pairs]
 
 
 def copy_of(flow: StressAccumulator | None) -> StressAccumulator | None:
-    """Independent copy of the sums and the buffer; None for None."""
+    """Return an independent copy of the sums and the buffer; None for None."""
     if flow is None:
         return None
     copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}

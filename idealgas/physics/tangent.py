@@ -1,8 +1,8 @@
 """Tangent map of a gas: how small deviations of positions and velocities grow in flights and collisions.
 
-Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996); walls under gravity in addition. Deviations are K columns of an
-array (N, 4, K) with δx, δy (length), δvx, δvy (length/time) of each disc; deviations of the time of a collision are of
-first order.
+The method is that of Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. Deviations
+are K columns of an array (N, 4, K) with δx, δy (length), δvx, δvy (length/time) of each disc. The shift of the time of
+a collision is taken into account to first order.
 """
 
 import math
@@ -12,7 +12,7 @@ from idealgas.jit import inline
 
 @inline
 def fly(deviations, i, delay):
-    """Move the deviations of disc i through a flight that takes some time, with or without gravity."""
+    """Propagate the deviations of disc i through a free flight of duration `delay` (time), with or without gravity."""
     for k in range(deviations.shape[2]):
         deviations[i, 0, k] += deviations[i, 2, k] * delay
         deviations[i, 1, k] += deviations[i, 3, k] * delay
@@ -20,10 +20,10 @@ def fly(deviations, i, delay):
 
 @inline
 def collide_smooth(deviations, i, j, masses, x, y, vx, vy):
-    """Apply the elastic collision of two smooth discs.
+    """Apply the elastic collision of two smooth discs to the deviations.
 
-    masses: (N,). x, y: position of disc i relative to disc j at contact, length. vx, vy: its velocity relative to disc
-    j before the collision, length/time.
+    masses: (N,). x, y: position of disc i relative to disc j at contact, length. vx, vy: velocity of disc i relative to
+    disc j before the collision, length/time.
     """
     distance = math.sqrt(x * x + y * y)
     nx, ny = x / distance, y / distance
@@ -50,9 +50,10 @@ def collide_smooth(deviations, i, j, masses, x, y, vx, vy):
 
 @inline
 def reflect(deviations, i, axis, velocity, gravity):
-    """Apply the elastic reflection of disc i at a side of the box.
+    """Apply the elastic reflection of disc i at a side of the box to the deviations.
 
-    axis: of its normal. velocity: along it before the reflection, length/time. gravity: along it, length/time².
+    axis: axis of the normal, 0 or 1. velocity: velocity along this axis before the reflection, length/time. gravity:
+    acceleration along this axis, length/time².
     """
     for k in range(deviations.shape[2]):
         delay = -deviations[i, axis, k] / velocity

@@ -1,8 +1,8 @@
-"""Thermal walls: a disc leaves with the velocity of a gas at the wall's temperature that streams through its surface.
+"""Thermal walls: a disc leaves a wall with the velocity distribution of a gas that effuses at the wall's temperature.
 
 The normal velocity v has the density (m v/T) exp(-m v²/2T); tangential velocity and spin are Gaussian. The random
 numbers are a pure function of the seed, the disc's id and the number of its emissions (SplitMix64: Steele, Lea & Flood,
-OOPSLA 2014), so neither the order of discs in memory nor a resumed run changes them.
+OOPSLA 2014), so they depend neither on the order of discs in memory nor on whether a run was resumed.
 """
 
 import math
@@ -21,7 +21,7 @@ class Thermal(NamedTuple):
     Attributes:
         temperature: (walls,) f8, mass length²/time² (k_B = 1), negative for a wall that reflects.
         seed: seed of the scene.
-        emissions: (N,) u8 by id, how often a wall has emitted each disc.
+        emissions: (N,) u8 by id, number of times that walls have emitted each disc.
     """
 
     temperature: np.ndarray
@@ -39,7 +39,7 @@ def is_thermal(thermal, wall):
 
 @inline
 def uniform(thermal, own, draw):
-    """Random number in (0, 1] for a disc's present emission; draw: index of the number within the emission."""
+    """Random number in (0, 1] for a disc's current emission; draw: index of the number within the emission."""
     return disc_uniform(thermal.seed, own, thermal.emissions[np.uintp(own)], draw)
 
 

@@ -1,9 +1,9 @@
-"""Andersen's thermostat: at random times a disc gets a velocity of a gas at the temperature of a heat bath.
+"""Andersen's thermostat: at random times a disc receives a velocity from a gas at the temperature of a heat bath.
 
-The collisions of a disc with the bath are an independent Poisson process, so the gas becomes canonical at any rate:
+The collisions of each disc with the bath are an independent Poisson process, so the gas becomes canonical at any rate:
 Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed, the disc's id and the
-number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so neither the order of events nor a resumed run
-changes them.
+number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend neither on the order of events
+nor on whether a run was resumed.
 """
 
 import math
@@ -20,8 +20,8 @@ class Thermostat(NamedTuple):
     """Parameters of the heat bath, and each disc's next collision with the bath.
 
     Attributes:
-        temperature: of the bath, mass length²/time² (k_B = 1).
-        rate: collisions of one disc with the bath per time, 1/time.
+        temperature: temperature of the bath, mass length²/time² (k_B = 1).
+        rate: rate of the collisions of a disc with the bath, 1/time.
         seed: seed of the scene.
         time: (N,) f8 by id, local time of each disc's next collision with the bath.
         number: (N,) u8 by id, number of each disc's next collision with the bath, from 0.
@@ -36,28 +36,31 @@ class Thermostat(NamedTuple):
 
 @inline
 def uniform(thermostat, own, draw):
-    """Random number in (0, 1] for a disc's next collision; draw: 3 for its time, 4 and 5 for the velocity, 6 and 7."""
+    """Random number in (0, 1] for a disc's next collision with the bath.
+
+    draw: 3 for its time, 4 and 5 for the velocity, 6 and 7 for the spin.
+    """
     return disc_uniform(thermostat.seed, own, thermostat.number[np.uintp(own)], draw)
 
 
 @inline
 def interval(thermostat, own):
-    """Time between two collisions of a disc with the bath: exponential, with a mean of one over the rate."""
+    """Time between two collisions of a disc with the bath, exponentially distributed with the mean 1/rate."""
     return -log(uniform(thermostat, own, 3)) / thermostat.rate
 
 
 @njit
 def draw_first_collisions(thermostat):
-    """Draw the time of every disc's first collision, after the local time 0."""
-    for own in range(thermostat.time.shape[0]):
-        thermostat.time[own] = interval(thermostat, own)
+    """Draw the local time of every disc's first collision with the bath, counted from 0."""
+    for disc_id in range(thermostat.time.shape[0]):
+        thermostat.time[disc_id] = interval(thermostat, disc_id)
 
 
 @inline
 def andersen_collision(disc, own, thermostat, rotation):
-    """Give a disc, whose record is at its time, a random velocity and spin, and draw its next collision.
+    """Give a disc a random velocity and spin, and draw its next collision; its record must be at the time of collision.
 
-    Each component is Gaussian with variance T/m, the spin with T/I.
+    Each component of the velocity is Gaussian with the variance T/m, and the spin with T/I.
     """
     if thermostat is not None:
         u = np.uintp(own)
@@ -74,5 +77,5 @@ def andersen_collision(disc, own, thermostat, rotation):
 
 
 def end_epoch(thermostat: Thermostat, length: float) -> None:
-    """Make the local times of the next collisions count from the end of an epoch of some length (time)."""
+    """Let the local times of the next collisions count from the end of the epoch; length: of the epoch, time."""
     thermostat.time[:] -= length

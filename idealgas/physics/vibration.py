@@ -1,7 +1,8 @@
 """A vibrating side of the box: it moves on parabolas between the side and twice the amplitude inside the box.
 
-Its acceleration has one size and changes sign at the mean height, so that contact times are those of a fall. The motion
-is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, 1.03 A and 0.04 A. At time 0 it rests at the side.
+The acceleration has a constant magnitude and changes sign at the mean height, so that contact times are those of a
+fall. The motion is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, that is 1.03 A, 0.04 A, … At time
+0 it is at rest at the side.
 """
 
 import math
@@ -16,15 +17,15 @@ from idealgas.physics.motion import NEVER, position_after, stays_above, time_to_
 VIBRATION = np.dtype(
     [
         ("amplitude", "f8"),  # length; 0 for a side at rest
-        ("acceleration", "f8"),  # its size, length/time²
+        ("acceleration", "f8"),  # magnitude of the acceleration, length/time²
         ("half", "f8"),  # half a period, time
-        ("start", "f8"),  # local time, at most 0, at which the side was at its lowest
+        ("start", "f8"),  # local time, at most 0, at which the side was at its lowest point
     ],
     align=True,
 )  # fmt: skip
 
 MOST_PARABOLAS = 64
-"""Parabolas of a side, within whose reach a disc stays, after which it only grazes the side at its highest."""
+"""Number of parabolas after which a disc that is still within reach of the side only grazes its highest point."""
 
 U = np.uintp
 
@@ -38,13 +39,13 @@ def begin_epoch(vibration: np.recarray, time: float, _: float) -> None:
 
 @inline
 def parabola_at(side, time):
-    """Number of the parabola on which a side is at a local time: even ones are about its lowest place."""
+    """Number of the parabola on which a side is at a local time; even parabolas are around its lowest point."""
     return np.floor((time - side.start) / side.half + 0.5)
 
 
 @inline
 def height_on(side, parabola, time):
-    """Height (length) of a side on a parabola at a local time, its velocity (length/time) and acceleration."""
+    """Height (length), velocity (length/time) and acceleration (length/time²) of a side on a parabola at a time."""
     since = time - side.start - parabola * side.half
     if parabola % 2.0 == 0.0:
         return 0.5 * side.acceleration * since * since, side.acceleration * since, side.acceleration
@@ -54,7 +55,7 @@ def height_on(side, parabola, time):
 
 @inline
 def edge_motion(disc, number, length, gravity):
-    """Height (length) of a disc's edge over a side at its lowest, its velocity into the box and its acceleration."""
+    """Height of a disc's edge above a side's lowest point, and the disc's velocity and acceleration into the box."""
     pull = acceleration_along(gravity, number >= 2)
     position, velocity = (disc.x, disc.vx) if number < 2 else (disc.y, disc.vy)
     if number & 1:
@@ -64,9 +65,9 @@ def edge_motion(disc, number, length, gravity):
 
 @inline
 def misses_side_until(disc, side, number, length, gravity, limit):
-    """Whether a disc surely does not touch a vibrating side up to a local time; quicker than `vibrating_contact`.
+    """Whether a disc certainly does not touch a vibrating side up to a local time; faster than `vibrating_contact`.
 
-    It is asked for a time a little after the limit, so that rounding does not matter.
+    The test extends slightly beyond this limit, so that rounding does not matter.
     """
     height, velocity, pull = edge_motion(disc, number, length, gravity)
     return stays_above(height - 2.0 * side.amplitude, velocity, pull, limit * (1.0 + 1e-9) - disc.t)
@@ -76,7 +77,7 @@ def misses_side_until(disc, side, number, length, gravity, limit):
 def vibrating_contact(disc, side, number, length, gravity):
     """Local time at which a disc touches a vibrating side; NEVER if it does not.
 
-    number: of the side, 0 to 3. length: distance of the opposite side.
+    number: number of the side, 0 to 3. length: distance to the opposite side, length.
     """
     height, velocity, pull = edge_motion(disc, number, length, gravity)
     time = disc.t
@@ -106,9 +107,9 @@ def vibrating_contact(disc, side, number, length, gravity):
 def side_velocity(vibration, side, time):
     """Velocity of a side into the box at a local time, length/time; 0 for a side at rest."""
     if vibration is not None:
-        own = vibration[U(side)]
-        if own.amplitude > 0.0:
-            return height_on(own, parabola_at(own, time), time)[1]
+        motion = vibration[U(side)]
+        if motion.amplitude > 0.0:
+            return height_on(motion, parabola_at(motion, time), time)[1]
     return 0.0
 
 
@@ -124,7 +125,7 @@ def is_vibrating(vibration, side):
 def contact_with_side(disc, side, length, gravity, vibration):
     """Local time at which a disc touches a side of the box, at rest or vibrating; NEVER if it does not."""
     if vibration is not None:
-        own = vibration[U(side)]
-        if own.amplitude > 0.0:
-            return vibrating_contact(disc, own, side, length, gravity)
+        motion = vibration[U(side)]
+        if motion.amplitude > 0.0:
+            return vibrating_contact(disc, motion, side, length, gravity)
     return side_contact(disc, side, length, gravity)

@@ -1,9 +1,9 @@
 """Contact of a disc with a straight wall segment: with its body or with one of its two end points.
 
-A fixed disc is a segment of no length whose end points have a radius.
+A fixed disc is a segment of length 0 whose end points have a radius.
 
-In coordinates of the segment, d and s are the disc's normal and tangential position (length) from the start point, vn
-and vt its velocity (length/time), an and at its acceleration (length/time²).
+In coordinates of the segment, d and s are the disc's normal and tangential position (length) relative to the start
+point, vn and vt its velocity (length/time), an and at its acceleration (length/time²).
 """
 
 import math
@@ -28,8 +28,8 @@ SEGMENT = np.dtype(
     [
         ("x", "f8"), ("y", "f8"),  # start point, length
         ("tx", "f8"), ("ty", "f8"),  # unit tangent
-        ("length", "f8"),  # distance of the two end points
-        ("radius", "f8"),  # of the end points: that of a fixed disc, else 0
+        ("length", "f8"),  # distance between the two end points, length
+        ("radius", "f8"),  # radius of the end points, length: the radius of a fixed disc, otherwise 0
         ("active", "?"),  # whether it is present in this epoch
     ],
     align=True,
@@ -59,8 +59,8 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
     """Time until a disc of radius r on a parabola touches a segment's body; NEVER if it does not.
 
-    It is the earliest approach to one of the two faces with the foot point inside. A disc over which a gate has closed,
-    and which cannot rise out of it, bounces at the depth that it has.
+    It is the earliest approach to one of the two faces with the foot point inside. A disc on which a gate has closed,
+    and which cannot rise out of it, bounces at its current depth.
     """
     best = NEVER
     for face in range(2):
@@ -77,7 +77,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
                 delay = (speed + root) / -pull
             else:
                 delay = NEVER
-        elif sign * d > 0.0:  # the disc touches this face, or overlaps it by rounding
+        elif sign * d > 0.0:  # the disc touches this face, or overlaps it because of rounding
             if speed < 0.0:
                 delay = 0.0 if foot_inside(s, length) else NEVER
             elif pull < 0.0:
@@ -93,7 +93,7 @@ def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
 
 @inline
 def straight_end_delay(x, y, disc, reach):
-    """Time until a disc in straight flight, at (x, y) from an end of a segment, is within reach of it; else NEVER."""
+    """Time until a disc in straight flight, at (x, y) from an end of a segment, is within reach of it, or NEVER."""
     meets, delay = collision_delay(x, y, disc.vx, disc.vy, reach)
     return delay if meets else NEVER
 
@@ -102,8 +102,8 @@ def straight_end_delay(x, y, disc, reach):
 def moves_off(delay, far, d, s, vn, vt, an, at, length):
     """Whether a disc that touches an end after `delay` moves away from the segment's nearest point.
 
-    The nearest point may be on the body or at the other end. far: whether the end is that at arc length `length`. Only
-    a disc over which a gate has closed comes to an end from within.
+    The nearest point may be on the body or at the other end. far: whether the end is the one at arc length `length`.
+    This happens only if a gate has closed on the disc, which then reaches the end from within the wall.
     """
     foot = parabola(s, vt, at, delay)
     height = parabola(d, vn, an, delay)
@@ -118,9 +118,9 @@ def moves_off(delay, far, d, s, vn, vt, an, at, length):
 
 @inline
 def point_delay(x, y, disc, reach, gravity, after):
-    """Time until a disc, at (x, y) from a point, is within reach (length) of it; NEVER if it never is.
+    """Time until a disc, at (x, y) from a point, is within reach (length) of the point; NEVER if it never is.
 
-    after: on a parabola, the contact is the first one after this time.
+    after: on a parabola, only a contact after this time counts.
     """
     if gravity is not None:
         return first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
@@ -131,7 +131,7 @@ def point_delay(x, y, disc, reach, gravity, after):
 def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
     """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
 
-    far: whether the end is that at arc length `length`. reach: distance at which they touch, length.
+    far: whether the end is the one at arc length `length`. reach: distance at which they touch, length.
     """
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
@@ -165,17 +165,17 @@ def segment_normal(disc, segment, passage, periodic, images):
 
 @inline
 def reflection_changes(disc, own, nx, ny, restitution):
-    """Whether a reflection would change a digit of a disc's velocity; if not, it counts as done."""
+    """Whether a reflection would change a digit of a disc's velocity; if not, the disc counts as reflected."""
     vx, vy = reflected_velocity(disc, own, nx, ny, restitution)
     return (vx != disc.vx) | (vy != disc.vy)
 
 
 @inline
 def misses_segment(disc, segment, gravity, periodic, images):
-    """Whether a disc surely does not touch a segment, as it does not come into the circle around it.
+    """Whether a disc certainly does not touch a segment, because it does not enter the circle around the segment.
 
-    Quicker than `segment_contact`, whose arguments it has; the circle is a little wider, so that rounding does not
-    matter. False with gravity, where the path is no line.
+    This is faster than `segment_contact`, which has the same arguments. The circle is slightly enlarged, so that
+    rounding does not matter. With gravity the path is not a straight line, and the result is always False.
     """
     if gravity is not None:
         return False
@@ -190,7 +190,7 @@ def misses_segment(disc, segment, gravity, periodic, images):
 
 @inline
 def solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity):
-    """Time until a disc touches a solid segment, its body or an end; NEVER if it does not."""
+    """Time until a disc touches the body or an end of a solid segment; NEVER if it does not."""
     length = segment.length
     if gravity is not None:
         delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
@@ -205,7 +205,7 @@ def solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity):
 
 @inline
 def one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
-    """Time until a disc touches the closed face or an end of a segment that lets it pass from one side; else NEVER."""
+    """Time until a disc touches the closed face or an end of a segment that lets it pass from one side, or NEVER."""
     side, length = closed_side(passage), segment.length
     delay = closed_face_delay(side * d, side * vn, side * an, disc.r)
     if delay < NEVER and not foot_inside(parabola(s, vt, at, delay), length):
@@ -226,12 +226,12 @@ def segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
 
 @inline
 def segment_contact(disc, own, segment, passage, gravity, restitution, periodic, images):
-    """Local time at which a disc touches a segment, its body or an end; NEVER if it does not.
+    """Local time at which a disc touches the body or an end of a segment; NEVER if it does not.
 
-    passage: from where the segment lets the disc pass, see `permeable`; None where no wall lets any disc pass.
+    passage: from which side the segment lets the disc pass, see `permeable`; None if no wall is permeable.
 
     A touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity
-    presses it to the wall.
+    presses it against the wall.
     """
     tx = segment.tx
     ty = segment.ty
