@@ -1,8 +1,8 @@
 """The effects that a scene may add to smooth elastic discs in a reflecting box.
 
-An effect NAME is two files: its law in `idealgas/physics/NAME.py`, and everything else in `NAME.py` here. The one list
-of them is `NAMES`: tables of a scene, checks, arguments of the engines, energy account, benchmark and tests follow from
-it.
+An effect consists of two files: its law in `idealgas/physics/NAME.py`, and everything else in `NAME.py` in this folder.
+`NAMES` is the only list of the effects; the tables of a scene, the checks, the arguments of the engines, the energy
+account, the benchmark and the tests follow from it.
 """
 
 from importlib import import_module
@@ -26,10 +26,10 @@ NAMES = (
     "thermostat",
     "steering",
 )
-"""The files of the effects."""
+"""Names of the files of the effects."""
 
 EFFECTS: tuple[EffectSpec[Any], ...] = tuple(import_module(f"{__name__}.{name}").EFFECT for name in NAMES)
-"""All effects; no code of those that a scene does not have is compiled."""
+"""All effects. Code for effects that a scene does not have is not compiled."""
 
 EFFECT_NAMES = tuple(effect.name for effect in EFFECTS)
 """Names of the effects in output and messages."""

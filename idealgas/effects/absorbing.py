@@ -18,7 +18,7 @@ def _make(tables: Tables, _: Start) -> np.ndarray:
 
 
 def _hole(side: float) -> str:
-    """Table `[[wall]]` of a hole that is removed at t = 5, in a box of side `side` (length)."""
+    """Table `[[wall]]` of a hole that is removed at t = 5, in a square box; side: of the box, length."""
     return f"[[wall]]\nfrom = [{side / 2}, 9.5]\nto = [{side / 2 + 20}, 9.5]\nabsorbing = true\nopens_at = 5\n"
 
 

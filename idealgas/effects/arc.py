@@ -9,7 +9,7 @@ from idealgas.physics import arc as law
 from idealgas.physics.arc_geometry import Arc
 
 FLATTEST = 100.0
-"""Largest radius of an arc in units of the box's longer side: contacts lose as many digits."""
+"""Largest radius of an arc in units of the box's longer side; the digits of contacts decrease in this ratio."""
 
 
 def _properties(tables: Tables) -> Properties | None:
@@ -21,7 +21,7 @@ def _make(tables: Tables, _: Start) -> np.recarray:
 
 
 def make_arcs(found: list[Arc | None]) -> np.recarray:
-    """(W,) ARC of all walls inside the box, None for those that are no arcs."""
+    """Return (W,) ARC for all walls inside the box; found: the arc of each wall, None for a straight wall."""
     arcs = aligned(len(found), law.ARC)
     for k, arc in enumerate(found):
         if arc is not None:
@@ -30,7 +30,7 @@ def make_arcs(found: list[Arc | None]) -> np.recarray:
 
 
 def _circle(side: float) -> str:
-    """Table `[[wall]]` of a circle in a box of this side, length."""
+    """Table `[[wall]]` of a circle in a square box; side: of the box, length."""
     low, high, middle = 0.1 * side, 0.9 * side, 0.5 * side
     return f"[[wall]]\nfrom = [{low}, {middle}]\nto = [{low}, {middle}]\nvia = [{high}, {middle}]\n"
 

@@ -1,7 +1,7 @@
-"""The effects of a scene as one argument of the engines: a field per effect, None if the scene does not have it.
+"""The effects of a scene as a single argument of the engines: a field per effect, None if the scene does not have it.
 
-A field is only ever passed on as an argument: numba removes `if gravity is not None` from a function whose argument is
-None, so that no machine code is made for an absent effect.
+In compiled code a field is always passed to a function before it is compared with None, because numba removes
+`if gravity is not None` only from a function whose argument is None. Absent effects therefore produce no machine code.
 """
 
 import math
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         """Parameters and state of all effects; mypy cannot see the fields, which follow from the list of effects."""
 
         def __new__(cls, **fields: Any) -> "Effects":
-            """Bundle of these fields; None for all others."""
+            """Create a bundle with these fields; all other fields are None."""
             ...
 
         def __getattr__(self, name: str) -> Any: ...
@@ -43,25 +43,27 @@ if TYPE_CHECKING:
 
 else:
     Effects = namedtuple("Effects", FIELDS, defaults=[None] * len(FIELDS), module=__name__)
-    Effects.__doc__ = """Parameters and state of all effects of a scene; None for those that it does not have.
+    Effects.__doc__ = """Parameters and state of all effects of a scene; None for effects that it does not have.
 
     In addition to the fields of `EFFECTS`:
 
     Attributes:
         wall_energy: (walls,) SUM, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
-        dissipated: (1 + walls,) SUM, energy lost in collisions of two discs, then in hits of each wall that is not
-            thermal, mass length²/time²; None if nothing is lost. What a wall at rest gave is less by this.
-        bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without one.
-        step_energy: (1,) SUM, energy given where a potential or velocities change, mass length²/time²; None if none do.
-        flow: momentum that the gas carries and passes on; None if it is not recorded.
-        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without any.
+        dissipated: (1 + walls,) SUM, energy dissipated in collisions of two discs, then in hits of each wall that is
+            not thermal, mass length²/time²; None if nothing is dissipated. For a wall at rest, `wall_energy` is minus
+            this energy.
+        bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without a heat bath.
+        step_energy: (1,) SUM, energy given when a potential or velocities are changed, mass length²/time²; None if
+            they are not.
+        flow: accumulated momentum flow of the gas; None if it is not recorded.
+        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without changes.
     """
 
 
 def for_kernels(effects: Effects) -> Effects:
-    """The effects without the fields that no kernel needs, and without a gravity that pulls nothing at present.
+    """Return the effects without the fields that kernels do not need, and without gravity while it is zero.
 
-    The periodic sides get the shear, which moves their images.
+    The periodic sides receive the shear, which moves their images.
     """
     gravity = effects.gravity if effects.gravity is not None and any(effects.gravity) else None
     periodic = effects.periodic if effects.shear is None else effects.periodic._replace(shear=effects.shear)
@@ -69,31 +71,31 @@ def for_kernels(effects: Effects) -> Effects:
 
 
 def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:
-    """The effects that a bundle has, with their states."""
+    """Yield the effects that a bundle has, with their states."""
     for effect in EFFECTS:
         if (state := getattr(effects, effect.field)) is not None:
             yield effect, state
 
 
 def begin_epoch(effects: Effects, time: float, length: float) -> None:
-    """Prepare all effects for an epoch of some length (time) that begins at a time of the run."""
+    """Prepare all effects for an epoch that begins at a time of the run; length: of the epoch, time."""
     for effect, state in present(effects):
         effect.begin_epoch(state, time, length)
 
 
 def end_epoch(effects: Effects, length: float) -> None:
-    """Finish an epoch of some length (time): local times of all effects count from its end."""
+    """Finish an epoch: let the local times of all effects count from its end; length: of the epoch, time."""
     for effect, state in present(effects):
         effect.end_epoch(state, length)
 
 
 def next_change(effects: Effects, time: float) -> float:
-    """Earliest time, after the given one, at which a value changes; infinite if none does."""
+    """Earliest time after the given time at which a value changes; infinite if none does."""
     return next((later for later, *_ in effects.schedule or () if later > time), math.inf)
 
 
 def changed(effects: Effects, after: float, until: float) -> Effects:
-    """The effects with all changes after a time and until another; step_energy is not added to."""
+    """Return the effects with all changes in `after` < time <= `until`; `step_energy` is not updated."""
     for time, effect, item, value in effects.schedule or ():
         if after < time <= until:
             field = EFFECTS[effect].field
@@ -106,14 +108,14 @@ def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[st
     if effects.gravity is not None:
         position = unwrapped(gas.position, effects.periodic)
         if effects.absorbing is not None:
-            position = np.nan_to_num(position)  # nan of discs that have left
+            position = np.nan_to_num(position)  # the positions of discs that have left are nan
         gas = replace(gas, position=position)
     parts = ((effect.energy, state) for effect, state in present(effects))
     return {part.part: part.of(state, gas, local_time) for part, state in parts if part is not None}
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:
-    """Energy of the discs at time 0 that may become kinetic energy, mass length²/time²."""
+    """Energy of the discs at time 0 that collisions may turn into kinetic energy, mass length²/time²."""
     parts = ((effect.energy, state) for effect, state in present(effects))
     return sum(part.of(state, gas, 0.0) for part, state in parts if part is not None and part.inner)
 
@@ -124,7 +126,7 @@ def counted(effects: Effects) -> tuple[Column, ...]:
 
 
 def disc_state(effects: Effects) -> Arrays:
-    """Arrays per disc that checkpoints store for the effects; times count from the checkpoint."""
+    """Arrays with an entry per disc that checkpoints store for the effects; times count from the checkpoint."""
     return {column: values for effect, state in present(effects) for column, values in effect.disc_state(state).items()}
 
 
@@ -134,7 +136,7 @@ def disc_constants(effects: Effects) -> Arrays:
 
 
 def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
-    """Values of the effects as a whole for checkpoints and samples; local_time: from the start of the epoch."""
+    """Values of the effects that do not belong to a disc, for checkpoints and samples; local_time: time."""
     return {
         column: value
         for effect, state in present(effects)
@@ -143,19 +145,19 @@ def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
 
 
 def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray]) -> None:
-    """Set the effects to the state of a checkpoint, given by its columns."""
-    for column, own in disc_state(effects).items():
-        own[:] = arrays[column.name]
+    """Set the effects to the state of a checkpoint; arrays: its columns by name."""
+    for column, values in disc_state(effects).items():
+        values[:] = arrays[column.name]
     for effect, state in present(effects):
         effect.restore(state, arrays)
 
 
 def with_own_sums(effects: Effects) -> Effects:
-    """The same effects with their own sums, set to 0, so that the sums of several threads can be added."""
-    sums = {name: None if (found := getattr(effects, name)) is None else found.copy() for name in ENERGIES}
-    own = effects._replace(flow=stress.copy_of(effects.flow), **sums)
-    clear_sums(own)
-    return own
+    """Return the same effects with separate sums, set to 0, so that the sums of several threads can be added."""
+    sums = {name: None if (total := getattr(effects, name)) is None else total.copy() for name in ENERGIES}
+    separate = effects._replace(flow=stress.copy_of(effects.flow), **sums)
+    clear_sums(separate)
+    return separate
 
 
 def clear_sums(effects: Effects) -> None:
@@ -177,11 +179,11 @@ def add_sums_of(effects: Effects, part: Effects) -> None:
 
 
 def _sums(effects: Effects) -> list[np.ndarray]:
-    """All arrays of SUM."""
-    found = [] if effects.flow is None else stress.sums_of(effects.flow)
-    return [*found, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
+    """Return all arrays of SUM."""
+    arrays = [] if effects.flow is None else stress.sums_of(effects.flow)
+    return [*arrays, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
 
 
 def _counts(effects: Effects) -> list[np.ndarray]:
-    """All arrays of numbers of collisions."""
+    """Return all arrays of numbers of collisions."""
     return [] if effects.flow is None else stress.counts_of(effects.flow)

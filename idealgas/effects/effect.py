@@ -1,4 +1,4 @@
-"""What an effect is: its table in a scene, its state in a run, and what the log keeps of it."""
+"""Specification of an effect: its table in a scene, its state in a run, and its columns in the log."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -18,13 +18,14 @@ State = TypeVar("State")
 
 
 class Tables(NamedTuple):
-    """The part of a scene that an effect sees.
+    """The part of a scene that an effect uses.
 
     Attributes:
-        own: its table, None if absent; for an effect with an array of tables a tuple, with None for invalid ones.
+        own: table of the effect, None if absent; for an effect with an array of tables, a tuple with None for invalid
+            tables.
         size: width and height of the box, length.
-        sides: what the left, right, bottom and top side are; empty while the table of the box is invalid.
-        walls: wall segments, None for invalid ones, then fixed discs.
+        sides: kinds of the left, right, bottom and top side; empty while the table of the box is invalid.
+        walls: wall segments, with None for invalid tables, followed by fixed discs.
     """
 
     own: Any
@@ -34,15 +35,15 @@ class Tables(NamedTuple):
 
 
 class Start(NamedTuple):
-    """The discs at time 0, for an effect that makes its state.
+    """The discs at time 0, from which an effect makes its state.
 
     Attributes:
         gas: the discs.
         seed: seed of the scene.
-        acceleration: of the discs at time 0, summed over the effects, length/time².
-        angular_velocity: (N,) as the scene gives it, 1/time; 0 where it does not.
-        spin_temperature: (N,) energy; 0 where spins are not drawn at random.
-        later_accelerations: from later times on.
+        acceleration: acceleration of the discs at time 0, summed over the effects, length/time².
+        angular_velocity: (N,) angular velocities given in the scene, 1/time; 0 if not given.
+        spin_temperature: (N,) temperature of the spins, energy; 0 for discs whose spins are not drawn at random.
+        later_accelerations: accelerations from later times on, length/time².
     """
 
     gas: Gas
@@ -58,9 +59,10 @@ class EnergyPart(NamedTuple, Generic[State]):
 
     Attributes:
         part: a field of `idealgas.run.energy.Energy`.
-        of: the energy, from the effect's state, the gas (under gravity with unwrapped positions) and the local time.
-        observed: its column in the samples; None if they have none.
-        inner: whether it belongs to the discs and collisions may turn it into kinetic energy.
+        of: function that returns the energy, mass length²/time², from the state of the effect, the gas (under gravity
+            with unwrapped positions) and the local time.
+        observed: column of this energy in the samples; None if the samples do not contain it.
+        inner: whether the energy belongs to the discs and collisions may turn it into kinetic energy.
     """
 
     part: str
@@ -73,12 +75,12 @@ SAMPLE_DISCS = 1000
 
 
 class Sample(NamedTuple):
-    """What an effect adds to the scene of the benchmark: SAMPLE_DISCS discs at temperature 1 in a square box.
+    """Addition of an effect to the scene of the benchmark, SAMPLE_DISCS discs at temperature 1 in a square box.
 
     Attributes:
-        name: added to the name of the effect, if it has several samples.
-        box: keys of `[box]`, from the length of the box's sides.
-        tables: further tables, from the same length.
+        name: suffix to the name of the effect, if it has several samples.
+        box: function that returns the keys of `[box]` from the length of the box's sides.
+        tables: function that returns further tables from this length.
     """
 
     name: str = ""
@@ -88,38 +90,40 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class EffectSpec(Generic[State]):
-    """One effect, with functions of its state, which `make` returns and the engine then changes.
+    """An effect: its names and tables, and functions of its state, which `make` returns and the engine then changes.
 
     Attributes:
-        name: in output and messages.
-        field: of the bundle of all effects (`idealgas.effects.bundle`).
-        properties: how its tables, or sides of the box, change the gas; None if they change nothing.
-        make: the state at time 0; called if the scene has the effect.
-        make_always: whether `make` is called for every scene; it then may return None.
-        key: of its table in a scene; empty if it is only a kind of side, or a key of other tables.
+        name: name in output and messages.
+        field: field of the bundle of all effects (`idealgas.effects.bundle`).
+        properties: returns the properties of a gas with its tables, or sides of the box; None if they change nothing.
+        make: returns the state at time 0; called if the scene has the effect.
+        make_always: whether `make` is called for every scene; it may then return None.
+        key: key of its table in a scene; empty if the effect is only a kind of side, or a key of other tables.
         table: its table, a Pydantic model.
         many: whether the scene has an array of such tables.
-        description: of the table, for the JSON Schema.
-        side: a kind of side of the box: a word, or a table with one key.
-        side_text: how such a side is written.
-        check: issues of its table that need the box or the walls; called if the scene has the effect and a valid box.
-        disc_state: the arrays of the state, one entry per disc, that a checkpoint stores; those that are columns of
-            events are in event rows and snapshots too.
-        constants: values per disc that the log stores once, at the start.
-        values: values of the effect as a whole that checkpoints and samples store, at a local time.
-        restore: set the state to the values of a checkpoint, by name, except for those per disc.
-        energy: the part of the energy that it adds.
-        gives_energy: whether walls give energy to discs, or take some.
-        own_walls: numbers of walls whose energy is part of the energy account, so that they give none from outside.
-        counted: total number of its own events.
-        begin_epoch: prepare the state for an epoch that begins at a time, counted from the start of the run, and has a
-            length (time).
-        reverse: turn the velocities of the state around, at the start of an epoch.
-        end_epoch: count local times from the end of an epoch of some length (time).
-        schedule: changes in time of values of the state, after time 0.
-        change: the state with another value of an item.
-        samples: scenes of the benchmark.
-        sample_together: its part in the scene of all effects together; the first of the samples if None.
+        description: description of the table for the JSON Schema.
+        side: kind of side of the box: a word, or a table with a single key.
+        side_text: form in which such a side is written.
+        check: yields those issues of its table that depend on the box or the walls; called if the scene has the effect
+            and a valid box.
+        disc_state: returns the arrays of the state, with an entry per disc, that a checkpoint stores; arrays that are
+            columns of events are also in event rows and snapshots.
+        constants: returns the values per disc that the log stores once, at the start.
+        values: returns the values that do not belong to a disc, at a local time, for checkpoints and samples.
+        restore: sets the state to these values of a checkpoint, by name; arrays with an entry per disc are restored
+            without it.
+        energy: part of the energy that the effect adds.
+        gives_energy: whether walls give energy to discs, or take it.
+        own_walls: numbers of walls whose energy is part of the energy account, so that they add none from outside.
+        counted: column with the total number of the effect's events.
+        begin_epoch: prepares the state for an epoch, from the time at its start, counted from the start of the run, and
+            its length (time).
+        reverse: reverses the velocities in the state, at the start of an epoch.
+        end_epoch: lets local times count from the end of the epoch, from its length (time).
+        schedule: yields the changes in time of values of the state, after time 0.
+        change: returns the state with a new value of an item.
+        samples: additions to the scene of the benchmark.
+        sample_together: addition to the scene with all effects; the first of the samples if None.
     """
 
     name: str
@@ -151,7 +155,7 @@ class EffectSpec(Generic[State]):
     change: Callable[[State, int, float], State] = lambda state, item, value: state
 
     def find(self, tables: Tables) -> ActiveEffect | None:
-        """The keys that turn the effect on and what it changes; None if the scene does not have it."""
+        """Return the keys that turn the effect on and its properties; None if the scene does not have the effect."""
         keys: tuple[Key, ...]
         if self.many:
             tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.own) if table is not None)

@@ -1,4 +1,4 @@
-"""Gravity: the same acceleration of all discs, which may change in steps."""
+"""Gravity: a uniform acceleration of all discs, which may change in steps."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ from idealgas.toml.issues import Issue, Key
 
 
 class Gravity(SteppedTable):
-    """`[gravity]`: the same acceleration everywhere."""
+    """`[gravity]`: a uniform acceleration of all discs."""
 
     in_steps = ("acceleration",)
 
@@ -23,7 +23,7 @@ class Gravity(SteppedTable):
 
     @property
     def steps(self) -> tuple[tuple[float, tuple[float, float]], ...]:
-        """Times from which accelerations hold, and these."""
+        """Pairs of a time and the acceleration that holds from this time on."""
         return steps_of(self.acceleration)
 
 
@@ -43,7 +43,7 @@ def _properties(tables: Tables) -> Properties:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Gravity without acceleration."""
+    """Yield an issue if the acceleration is always zero."""
     key: Key = ("gravity", "acceleration")
     steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
     if not any(map(any, steps)):
@@ -51,12 +51,12 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 
 def _make(_: Tables, start: Start) -> law.Gravity | None:
-    """The acceleration of all effects: discs follow their sum."""
+    """Return the acceleration summed over all effects, which is what moves the discs."""
     return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
 
 
 def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
-    """Changes of the acceleration along x, item 0, and along y, item 1."""
+    """Yield the changes of the acceleration along x (item 0) and along y (item 1)."""
     for time, acceleration in steps_of(tables.own.acceleration)[1:]:
         yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))
 
@@ -66,7 +66,7 @@ def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
 
 
 def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
-    """Potential energy; what it loses along periodic sides is the work of gravity on the gas that flows."""
+    """Potential energy; its decrease along periodic sides is the work of gravity on the flowing gas."""
     return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 
 

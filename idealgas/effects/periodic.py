@@ -1,4 +1,4 @@
-"""Periodic sides: a disc that leaves through one side enters through the opposite one."""
+"""Periodic sides: a disc that leaves through one side enters through the opposite side."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from idealgas.physics import periodic as law
 from idealgas.toml.issues import Issue, Key
 
 PERIODIC = "periodic"
-"""Word for a periodic side of the box."""
+"""Word for a periodic side of the box in a scene."""
 
 
 def _properties(tables: Tables) -> Properties | None:
@@ -22,14 +22,16 @@ def _properties(tables: Tables) -> Properties | None:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Periodic sides opposite one that is not."""
+    """Yield an issue for each periodic side whose opposite side is not periodic."""
     for axis in range(2):
         names = [SIDES[side] for side in sides_across(axis)]
         periodic = [tables.sides[side] == PERIODIC for side in sides_across(axis)]
         if any(periodic) and not all(periodic):
-            this, other = names if periodic[0] else names[::-1]
-            keys: tuple[Key, ...] = (("box", this), ("box", other))
-            yield Issue(keys, "periodic on one side only", f"{other} not periodic", f"{this} and {other} periodic")
+            side_name, opposite = names if periodic[0] else names[::-1]
+            keys: tuple[Key, ...] = (("box", side_name), ("box", opposite))
+            yield Issue(
+                keys, "periodic on one side only", f"{opposite} not periodic", f"{side_name} and {opposite} periodic"
+            )
 
 
 def _make(tables: Tables, start: Start) -> law.Periodic:

@@ -18,33 +18,33 @@ def _properties(tables: Tables) -> Properties | None:
 
 
 def _to_left(wall: Any) -> float:
-    """Distance by which the side from which a wall lets discs pass is to the left, seen from its start to its end."""
+    """Positive if the side from which a wall lets discs pass is on its left, seen from start to end; else negative."""
     outward = OUTWARD[SIDES.index(wall.permeable_from)]
     return (wall.end[0] - wall.start[0]) * outward[1] - (wall.end[1] - wall.start[1]) * outward[0]
 
 
 def _passage(wall: Any) -> int:
-    """How a wall lets those discs pass that it does."""
+    """Sides from which a wall is open for the discs to which it is permeable."""
     if wall.permeable_from is None:
         return law.OPEN
     return law.FROM_LEFT if _to_left(wall) > 0 else law.FROM_RIGHT
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Walls that have no such side, and gates that let discs pass from one side."""
+    """Yield issues of walls without the side `permeable_from`, and of gates that let discs pass from one side."""
     for i, wall in enumerate(tables.walls):
         if wall is None or wall.permeable_from is None:
             continue
-        own, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
+        key, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
         if wall.via is not None:
             yield Issue(
-                (own, ("wall", i, "via")), "an arc that discs pass from one side", got, "a straight wall, or both sides"
+                (key, ("wall", i, "via")), "an arc that discs pass from one side", got, "a straight wall, or both sides"
             )
         elif wall.start != wall.end and _to_left(wall) == 0:
             sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
-            yield Issue((own,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
+            yield Issue((key,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
         if wall.absences:
-            keys = (own, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
+            keys = (key, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
             allowed = "a wall that is always there; beside a gate at its place, if need be"
             yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
 
@@ -60,7 +60,7 @@ def _make(tables: Tables, start: Start) -> law.Permeable:
 
 
 def _door(x: float, height: float) -> str:
-    """Table of a wall from the bottom up to a height, which all discs pass from the left."""
+    """Table of a wall from the bottom up to a height (length), which all discs pass from the left."""
     return f'[[wall]]\nfrom = [{x}, 0]\nto = [{x}, {height}]\npermeable_from = "left"\n'
 
 

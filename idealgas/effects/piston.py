@@ -28,14 +28,14 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Number, Positive, Rectangle, Word
 
 NAME = "piston"
-"""Name of an inner piston among the walls, unless it has another."""
+"""Name of an inner piston among the walls, unless the scene gives it another."""
 
 
 class Piston(SteppedTable):
     """`[[piston]]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
 
-    It moves at a given velocity, or it has a mass, and gravity along its axis. One that replaces a side is pressed on
-    the gas by the external pressure. At a side of the box it is reflected.
+    It moves at a given velocity, or it has a mass and is accelerated by gravity along its axis. A piston that replaces
+    a side is pressed against the gas by the external pressure. At a side of the box it is reflected.
     """
 
     in_steps = ("velocity", "pressure")
@@ -44,21 +44,21 @@ class Piston(SteppedTable):
         default=None, description="the side that it replaces; right if absent and not inner"
     )
     inner: Literal["x", "y"] | None = Field(
-        default=None, description="axis along which it moves inside the box, between two gases; instead of side"
+        default=None, description="axis along which it moves inside the box, between two gases; replaces side"
     )
     position: Number | None = Field(
         default=None,
-        description="coordinate at the start, length; if absent that of its side, of an inner one the middle",
+        description="coordinate at the start, length; if absent, at its side or, if inner, in the middle",
     )
     velocity: NumberInSteps | None = Field(
         default=None,
-        description="length/time along the axis, or steps [[0, v], [t, v], …]; with a mass that at the start",
+        description="length/time along the axis, or steps [[0, v], [t, v], …]; with a mass, velocity at the start",
     )
-    mass: Positive | None = Field(default=None, description="mass > 0; unless it is inner, together with pressure")
+    mass: Positive | None = Field(default=None, description="mass > 0; requires pressure unless it is inner")
     pressure: NotNegativeInSteps | None = Field(
         default=None, description="external pressure, force per length of the piston, or steps [[0, P], [t, P], …]"
     )
-    name: Word | None = Field(default=None, description='unique word for the log, of an inner one; "piston" if absent')
+    name: Word | None = Field(default=None, description='unique word for the log, if inner; "piston" if absent')
 
     @property
     def axis(self) -> int:
@@ -67,25 +67,25 @@ class Piston(SteppedTable):
 
     @property
     def wall(self) -> str:
-        """Name of the wall that it is: the side that it replaces, or its own name."""
+        """Name of the piston among the walls: the side that it replaces, or the name of an inner piston."""
         return (self.side or "right") if self.inner is None else self.name or NAME
 
     @property
     def outward(self) -> float:
-        """+1 if it is above the gas on its axis, -1 if below; 0 if it is inner."""
+        """Direction from the gas to the piston along its axis: +1 or -1; 0 if it is inner."""
         return sum(OUTWARD[SIDES.index(self.wall)]) if self.inner is None else 0.0
 
     def outward_from(self, position: Any, size: tuple[float, float]) -> np.ndarray:
-        """Direction (N,) from each disc to it, +1 or -1; position: (N, 2), of the discs at the start, length."""
+        """Direction (N,) from each disc to the piston, +1 or -1; position: (N, 2) of the discs at the start, length."""
         above = np.asarray(position)[:, self.axis] > self.start(size)
         return np.where(above, -1.0, 1.0) if self.inner else np.full(len(above), self.outward)
 
     def stop(self, size: tuple[float, float]) -> float:
-        """Coordinate of the side of the box that it replaces."""
+        """Coordinate of the side of the box that it replaces, length."""
         return size[self.axis] if self.outward > 0 else 0.0
 
     def start(self, size: tuple[float, float]) -> float:
-        """Coordinate at time 0."""
+        """Coordinate of the piston at time 0, length."""
         if self.position is not None:
             return self.position
         return size[self.axis] / 2 if self.inner else self.stop(size)
@@ -97,11 +97,11 @@ class Piston(SteppedTable):
 
     @property
     def velocity_steps(self) -> tuple[tuple[float, float], ...]:
-        """Times from which it has its given velocities, and these, length/time."""
+        """Pairs of a time and the given velocity (length/time) that holds from this time on."""
         return steps_of(self.velocity)
 
     def room(self, size: tuple[float, float]) -> Rectangle:
-        """What the gas has at the start: the box, up to a piston that is in it and not inner."""
+        """Rectangle that the gas may fill at the start: the box, up to a piston in it that is not inner."""
         low, high = [0.0, 0.0], list(size)
         if self.inner is None and 0 <= (start := self.start(size)) <= size[self.axis]:
             (high if self.outward > 0 else low)[self.axis] = start
@@ -116,7 +116,7 @@ class Piston(SteppedTable):
         return f"piston of mass {self.mass:g}{pressed}"
 
     def acceleration(self, size: tuple[float, float], gravity: tuple[float, float], time: Any = 0.0) -> Any:
-        """Along the axis, between hits, length/time², at a time or an array of times.
+        """Acceleration along the axis between hits, length/time², at a time or an array of times.
 
         gravity: constant acceleration of all discs, length/time².
         """
@@ -133,7 +133,7 @@ class Piston(SteppedTable):
 
 @dataclass(frozen=True)
 class InnerPiston(LastingWall):
-    """An inner piston among the walls inside the box, where it is at the start. Its left is the lower side."""
+    """An inner piston among the walls inside the box, at its position at the start; its left is the lower side."""
 
     start: Point
     end: Point
@@ -144,14 +144,14 @@ class InnerPiston(LastingWall):
 
 
 def inner_pistons(tables: Sequence[Piston | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
-    """The inner ones of the pistons of a box of a size; None for invalid ones."""
-    found = []
+    """Return the inner pistons among the tables, which are None if invalid; size: of the box, length."""
+    pistons = []
     for k, table in enumerate(tables):
         if table is not None and table.inner is not None:
             place = table.start(size)
             ends = ((place, 0.0), (place, size[1])) if table.axis == 0 else ((size[0], place), (0.0, place))
-            found.append(InnerPiston(*ends, table.action, table.wall, ("piston", k, "position")))
-    return tuple(found)
+            pistons.append(InnerPiston(*ends, table.action, table.wall, ("piston", k, "position")))
+    return tuple(pistons)
 
 
 def _properties(tables: Tables) -> Properties:
@@ -171,7 +171,7 @@ def _properties(tables: Tables) -> Properties:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Names of pistons that are taken, or without use."""
+    """Yield issues of names of pistons that are taken or have no effect."""
     walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
     taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
     for k, piston in enumerate(tables.own):
@@ -200,7 +200,7 @@ def _make(tables: Tables, start: Start) -> np.ndarray:
 
 
 def _schedule(tables: Tables, start: Start) -> Iterator[Change]:
-    """Changes of piston k: of its acceleration, item 2 k, and of its given velocity, item 2 k + 1."""
+    """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
     for k, table in enumerate(tables.own):
         for time, _ in steps_of(table.pressure)[1:]:
             yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))
@@ -214,7 +214,7 @@ def _change(pistons: np.ndarray, item: int, value: float) -> np.ndarray:
 
 
 def _columns(number: int) -> tuple[Column, Column]:
-    """Columns of the positions and velocities of pistons."""
+    """Columns of the positions and velocities of a number of pistons."""
     places = Column("piston_position", "f8", (number,), "length")
     return places, Column("piston_velocity", "f8", (number,), "length/time")
 
@@ -239,7 +239,7 @@ def _own_walls(pistons: np.ndarray) -> tuple[int, ...]:
 
 
 def _reverse(pistons: np.ndarray) -> None:
-    """Turn pistons with a mass around; a given velocity stays."""
+    """Reverse the velocities of pistons with a mass; a given velocity remains."""
     for record in pistons:
         if record.m > 0:
             record.v = reversed_velocity(record.v)

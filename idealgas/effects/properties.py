@@ -1,4 +1,4 @@
-"""What effects do to a gas, as properties: analyses and checks ask a scene for properties, not for effects."""
+"""Properties that effects give to a gas; analyses and checks depend on the properties of a scene, not on effects."""
 
 import operator
 from collections.abc import Callable
@@ -16,17 +16,17 @@ def _sums(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _first_not_none(a: Any, b: Any) -> Any:
-    """The first of the two, or the second if that is None."""
+    """Return a, or b if a is None."""
     return b if a is None else a
 
 
 def _merge(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
-    """The entries of the first, where that has None or False those of the second."""
+    """Return the entries of a, with entries of b instead of None or False."""
     return tuple(y if x is None else x or y for x, y in zip_longest(a, b))
 
 
 def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
-    """A property of the plain box, and what it is with two effects."""
+    """Field with a property of the plain box; both: function that combines the property for two effects."""
     return field(default=value, metadata={"both": both})
 
 
@@ -34,28 +34,37 @@ def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
 class Properties:
     """Properties of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
 
-    True by default; true for a scene if true for each of its effects:
+    Attributes that are True by default, and true for a scene if true for each of its effects:
+        uniform: in equilibrium the gas is the same everywhere in the box.
+        straight_flight: discs move on straight lines between events.
+        elastic: the motion along the line of centres, or normal to a wall, does not lose energy.
+        fixed_walls: all walls remain at their positions.
+        allows_monte_carlo: the effect has a meaning for discs without positions.
+        allows_time_steps: the time-driven method can simulate the effect.
+        is_scalable: the box may grow or shrink around the gas, because nothing in it has a fixed position.
 
-    uniform: in equilibrium the gas is the same everywhere in the box. straight_flight: discs fly along straight
-    lines between events. elastic: no energy is lost in the motion along the line of centres, or normal to a wall.
-    fixed_walls: all walls stay where they are. allows_monte_carlo: it has a meaning for discs without positions.
-    allows_time_steps: the time-driven method can simulate it. is_scalable: the box may grow or shrink around the gas,
-    as nothing in it has a fixed position.
+    Attributes that are False by default, and true for a scene if true for any of its effects:
+        driven: a wall that moves at a given velocity does work on the gas.
+        dissipative: energy is lost when discs collide with discs or walls.
+        has_rough_walls: walls exert tangential forces.
+        drives_discs: discs at rest are set in motion.
+        varies: a temperature, pressure, velocity or acceleration changes in time.
+        vibrates: a side vibrates.
+        one_way: discs pass a wall in one direction only.
+        escapes: discs leave the gas.
 
-    False by default; true for a scene if true for any of its effects:
-
-    driven: energy is put in by a wall that moves at a given velocity. dissipative: energy is lost when discs collide
-    with discs or walls. has_rough_walls: walls take momentum along themselves. drives_discs: discs at rest are set in
-    motion. varies: a temperature, pressure, velocity or acceleration changes in time. vibrates: a side does. one_way:
-    discs pass a wall in one direction only. escapes: discs leave the gas.
-
-    inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin. periodic: which axes
-    are. acceleration: of all discs between events at the start, length/time². later_accelerations: the same from later
-    times on. emits: temperature of each thermal wall at the start, by number; None for those that reflect. bath:
-    temperature at the start of a heat bath that gives discs new velocities wherever they are; None without one.
-    later_temperatures: of walls and heat bath. thermostat_rate: per disc, 1/time. last_wall_removed_at: time from which
-    on no wall is inside the box; infinite if one always is. changes: times at which a value changes in a step, or a
-    gate opens or closes. shear: rate at which sides shear the gas, 1/time.
+    Attributes:
+        inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin.
+        periodic: whether the sides along x and along y are periodic.
+        acceleration: acceleration of all discs between events at the start, length/time².
+        later_accelerations: accelerations from later times on, length/time².
+        emits: temperature of each thermal wall at the start, by number; None for walls that reflect.
+        bath: temperature at the start of a heat bath that gives discs new velocities anywhere; None without a bath.
+        thermostat_rate: rate of the collisions of a disc with the heat bath, 1/time.
+        shear: rate at which sides shear the gas, 1/time.
+        later_temperatures: later temperatures of walls and heat bath.
+        last_wall_removed_at: time from which on there is no wall inside the box; infinite if there always is one.
+        changes: times at which a value changes in a step, or a gate opens or closes.
     """
 
     uniform: bool = _plain(True, operator.and_)
@@ -87,7 +96,7 @@ class Properties:
 
     @property
     def lossless(self) -> bool:
-        """Whether no energy is lost at all when discs collide with discs or walls."""
+        """Whether collisions of discs with discs or walls do not lose energy at all."""
         return not self.dissipative
 
     @property
@@ -98,17 +107,17 @@ class Properties:
     @property
     def temperatures(self) -> frozenset[float]:
         """Temperatures of the thermal walls and the heat bath, at any time."""
-        found = (*self.emits, self.bath, *self.later_temperatures)
-        return frozenset(temperature for temperature in found if temperature is not None)
+        values = (*self.emits, self.bath, *self.later_temperatures)
+        return frozenset(temperature for temperature in values if temperature is not None)
 
     @property
     def isolated(self) -> bool:
-        """Whether no heat comes through the walls or from a heat bath."""
+        """Whether there is no heat flow through the walls or from a heat bath."""
         return not self.temperatures
 
     @property
     def conserves_energy(self) -> bool:
-        """Whether nothing but heat, from walls or a heat bath, changes the energy of motion and spin."""
+        """Whether only heat, from walls or a heat bath, changes the energy of translation and spin."""
         return self.lossless and self.straight_flight and self.fixed_walls and not self.escapes
 
     @property
@@ -118,41 +127,41 @@ class Properties:
 
     @property
     def empty(self) -> bool:
-        """Whether there never is a wall inside the box."""
+        """Whether there is never a wall inside the box."""
         return self.last_wall_removed_at == 0
 
     @property
     def strongest_pull(self) -> tuple[float, float]:
-        """Acceleration of all discs along x and y, each when it is strongest, length/time²."""
+        """Strongest acceleration of all discs along x, and along y, at any time, length/time²."""
         x, y = (max(each, key=abs) for each in zip(self.acceleration, *self.later_accelerations, strict=True))
         return x, y
 
     @property
     def falls(self) -> tuple[bool, bool]:
-        """Along which axes gravity acts between periodic sides, where nothing ends the fall."""
+        """Whether gravity acts along x, and along y, between periodic sides, where nothing ends the fall."""
         x, y = (on and g != 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
         return x, y
 
     @property
     def frictionless(self) -> bool:
-        """Whether nothing takes momentum along periodic sides: smooth walls take none along themselves."""
+        """Whether no friction acts along periodic sides; smooth walls exert no tangential force."""
         return self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
 
     @property
     def conserves_momentum(self) -> tuple[bool, bool]:
-        """Along which axes nothing changes the momentum of the discs."""
+        """Whether the total momentum of the discs is conserved along x, and along y."""
         x, y = (self.frictionless and on and not fall for on, fall in zip(self.periodic, self.falls, strict=True))
         return x and not self.shear, y
 
     def __and__(self, other: "Properties") -> "Properties":
-        """Properties of a gas with the effects of both."""
+        """Return the properties of a gas with the effects of both."""
         pairs = ((entry, getattr(self, entry.name), getattr(other, entry.name)) for entry in fields(self))
-        return Properties(**{entry.name: entry.metadata["both"](mine, others) for entry, mine, others in pairs})
+        return Properties(**{entry.name: entry.metadata["both"](first, second) for entry, first, second in pairs})
 
 
 @dataclass(frozen=True)
 class ActiveEffect:
-    """An effect that a scene has: its name, the keys that turn it on, and what it changes."""
+    """An effect that a scene has: its name, the keys that turn it on, and its properties."""
 
     name: str
     keys: tuple[Key, ...]
@@ -160,10 +169,10 @@ class ActiveEffect:
 
 
 def combine(effects: tuple[ActiveEffect, ...]) -> Properties:
-    """Properties of a scene with these effects."""
+    """Return the properties of a scene with these effects."""
     return reduce(Properties.__and__, (effect.properties for effect in effects), Properties())
 
 
 def lacking(effects: tuple[ActiveEffect, ...], *names: str) -> tuple[str, ...]:
-    """Which of the effects lack one of these properties, by their names."""
+    """Names of the effects that lack at least one of these properties."""
     return tuple(e.name for e in effects if not all(getattr(e.properties, name) for name in names))

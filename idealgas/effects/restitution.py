@@ -12,25 +12,27 @@ from idealgas.physics import restitution as law
 from idealgas.toml.table import Positive, Real, Table
 
 LAST_COLLISION = Column("last_collision", "f8", (), "time")
-"""Counted from the checkpoint."""
+"""Time of a disc's last collision, counted from the checkpoint."""
 
 
 class Restitution(Table):
-    """`[restitution]`: discs part more slowly than they met.
+    """`[restitution]`: discs separate more slowly than they approached.
 
-    A disc that collided less than the contact duration ago collides elastically: this keeps a gas from infinitely many
+    A disc that collided less than the contact duration ago collides elastically; this prevents infinitely many
     collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).
     """
 
-    normal: Real = Field(default=1.0, ge=0, le=1, description="of two discs, 0 to 1")
-    wall: Real = Field(default=1.0, ge=0, le=1, description="of a disc with a wall or piston, 0 to 1")
+    normal: Real = Field(default=1.0, ge=0, le=1, description="coefficient of restitution of two discs, 0 to 1")
+    wall: Real = Field(
+        default=1.0, ge=0, le=1, description="coefficient of restitution of a disc with a wall or piston, 0 to 1"
+    )
     contact_duration: Positive | None = Field(
-        default=None, description="time > 0; if absent 0.05 of the mean free time, or without a force far less"
+        default=None, description="time > 0; if absent, 0.05 of the mean free time, or far less without a force"
     )
 
     @property
     def elastic(self) -> bool:
-        """Whether nothing is lost."""
+        """Whether collisions do not lose energy."""
         return self.normal == 1 and self.wall == 1
 
 

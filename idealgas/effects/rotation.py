@@ -1,4 +1,4 @@
-"""Rough discs that spin."""
+"""Rotation of rough discs."""
 
 import numpy as np
 from pydantic import Field
@@ -15,16 +15,19 @@ INERTIA = Column("inertia", "f8", (), "mass length^2")
 
 
 class Rotation(Table):
-    """`[rotation]`: discs have a spin, and a tangential coefficient couples it to their motion.
+    """`[rotation]`: discs have a spin, which a tangential coefficient of restitution couples to their motion.
 
-    The coefficient runs from -1 (smooth) to 1 (perfectly rough); energy is conserved at these two. A piston is smooth.
+    The coefficient ranges from -1 (smooth) to 1 (perfectly rough); at these two values energy is conserved. A piston is
+    smooth.
     """
 
     inertia: Real = Field(
         default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
     )
-    roughness: Real = Field(default=1.0, ge=-1, le=1, description="of discs, -1 to 1")
-    wall_roughness: Real = Field(default=-1.0, ge=-1, le=1, description="of a disc with a wall, -1 to 1")
+    roughness: Real = Field(default=1.0, ge=-1, le=1, description="tangential coefficient of two discs, -1 to 1")
+    wall_roughness: Real = Field(
+        default=-1.0, ge=-1, le=1, description="tangential coefficient of a disc with a wall, -1 to 1"
+    )
 
 
 def loses(rotation: Rotation | None) -> bool:

@@ -1,6 +1,7 @@
 """Values that change in time: a number or vector, or steps [[t, value], …] that begin at time 0.
 
-All changes of a scene are one list, the schedule. An epoch ends at each of them, so they are exact for every method.
+All changes of a scene form a single list, the schedule. An epoch ends at each change, so that changes are exact for
+every method.
 """
 
 from bisect import bisect_right
@@ -15,16 +16,16 @@ from pydantic_core import PydanticCustomError
 from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector
 
 REFLECTING = "reflecting"
-"""Step of a thermal wall that reflects for a time."""
+"""Value of a step in which a thermal wall reflects."""
 
 
 class Change(NamedTuple):
-    """A value that an effect has from a time on.
+    """A new value of an effect from a time on.
 
     Attributes:
-        time: from the start of the run, time.
+        time: time since the start of the run.
         item: number of the value in the state of the effect.
-        value: the value.
+        value: the new value.
     """
 
     time: float
@@ -33,7 +34,7 @@ class Change(NamedTuple):
 
 
 def _in_order(steps: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Refuse steps that do not begin at time 0, or whose times do not increase."""
+    """Return the steps; raise an error if they do not begin at time 0, or their times do not increase."""
     times = [time for time, _ in steps]
     if not times or times[0] != 0:
         raise PydanticCustomError("steps_from_0", "")
@@ -51,7 +52,11 @@ def _is_list_of_lists(value: Any) -> str:
 
 
 def _in_steps(number: Any, value: Any = None, kind: Callable[[Any], str] = _is_list) -> Any:
-    """Type of a value that may change in time. value: type of that of a step, if it is another. kind: finds steps."""
+    """Type of a value that may change in time.
+
+    number: type of a constant value. value: type of a value in a step; that of a constant value if None. kind: function
+    that distinguishes steps from a constant value.
+    """
     value = value or number
     step: Any = Annotated[tuple[NotNegative, value], Field(strict=False)]
     kinds: Any = Annotated[tuple[step, ...], Field(strict=False), AfterValidator(_in_order), Tag("(steps)")]
@@ -69,21 +74,21 @@ Times = Annotated[
     | Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=1), Tag("(times)")],
     Discriminator(lambda value: "(times)" if isinstance(value, (list, tuple)) else "(number)"),
 ]
-"""One time > 0, or a list of times."""
+"""A time > 0, or a list of times."""
 
 
 def as_times(times: Any) -> tuple[float, ...]:
-    """Times as a tuple, from the value of a key; empty for None."""
+    """Convert the value of a key to a tuple of times; empty for None."""
     return () if times is None else tuple(times) if isinstance(times, (list, tuple)) else (times,)
 
 
 def times_key(times: Sequence[float]) -> Any:
-    """Value of a key, from times; None without any."""
+    """Convert times to the value of a key; None if there are none."""
     return tuple(times) if len(times) > 1 else next(iter(times), None)
 
 
 def without_past(times: Any, time: float) -> Any:
-    """The value of a key of times in a scene whose clock starts at a later time; None if all are past."""
+    """Return the value of a key of times for a scene whose clock starts at a later time; None if all are past."""
     return times_key([t - time for t in as_times(times) if t > time])
 
 
@@ -100,12 +105,12 @@ else:
 
 
 def steps_of(value: Any) -> tuple[tuple[float, Any], ...]:
-    """Times from which values hold, and the values; a number or a vector holds from time 0 on."""
+    """Pairs of a time and the value that holds from this time on; a number or a vector holds from time 0 on."""
     return value if _is_list_of_lists(value) == "(steps)" else ((0.0, value),)
 
 
 def value_at(value: Any, time: Any) -> Any:
-    """Value at a time; array of the values at an array of times."""
+    """Value at a time, or array of the values at an array of times."""
     times, values = zip(*steps_of(value), strict=True)
     if np.ndim(time):
         return np.array(values)[np.searchsorted(times, time, "right") - 1]
@@ -113,12 +118,12 @@ def value_at(value: Any, time: Any) -> Any:
 
 
 def changes_of(value: Any, item: int) -> Iterator[Change]:
-    """Changes after time 0 of a value that may be in steps; item: its number in the state of its effect."""
+    """Return the changes, after time 0, of a value that may be in steps; item: its number in the effect's state."""
     return (Change(time, item, value) for time, value in steps_of(value)[1:])
 
 
 def description(value: Any) -> str:
-    """Values and times of steps in words."""
+    """Describe values and times of steps in words."""
     texts = [x if isinstance(x, str) else f"{x:g}" for _, x in steps_of(value)]
     later = (f"{text} from t = {time:g}" for text, (time, _) in zip(texts[1:], steps_of(value)[1:], strict=True))
     return ", ".join((texts[0], *later))
@@ -128,10 +133,10 @@ class SteppedTable(Table):
     """A table with values that may be in steps."""
 
     in_steps: ClassVar[tuple[str, ...]]
-    """Keys of these values."""
+    """Keys of the values that may be in steps."""
 
     def after(self, time: float) -> Self:
-        """The table in a scene whose clock starts at a later time."""
+        """Return the table for a scene whose clock starts at a later time."""
         return self.model_copy(update={key: _after(getattr(self, key), time) for key in self.in_steps})
 
 

@@ -1,4 +1,4 @@
-"""Sheared sides: bottom and top are periodic, and the images above and below move along x."""
+"""Sheared sides: bottom and top are periodic, and the images above and below the box move along x."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ from idealgas.toml.table import Positive, Table
 class ShearedSide(Table):
     """`{ shear = rate }`: bottom or top of a box in uniform shear flow along x, between periodic left and right sides.
 
-    The image above moves with rate * height of the box (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
+    The image above moves with the velocity rate * height of the box (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
     """
 
     shear: Positive = Field(description="shear rate > 0, 1/time: mean velocity along x per length along y")
@@ -44,7 +44,7 @@ def _properties(tables: Tables) -> Properties | None:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Sides that are not bottom and top with one rate, between periodic ones."""
+    """Yield issues unless bottom and top have the same shear rate and the other sides are periodic."""
     left, right, bottom, top = tables.sides
     across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
     if left != PERIODIC or right != PERIODIC:

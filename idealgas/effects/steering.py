@@ -1,4 +1,4 @@
-"""Velocities that change from outside: reversed at given times, or set by a program."""
+"""Velocities that are changed from outside: reversed at given times, or set by a program."""
 
 from collections.abc import Iterator
 
@@ -15,9 +15,9 @@ STEERED = Column("steered", "i8")
 
 
 class Steering(Table):
-    """`[steering]`: velocities change from outside, at given times or by a Python program (`idealgas.open_run`).
+    """`[steering]`: velocities are changed from outside, at given times or by a Python program (`idealgas.open_run`).
 
-    Where all velocities and spins are reversed, an elastic gas runs back.
+    When all velocities and spins are reversed, an elastic gas retraces its path.
     """
 
     reversed_at: Times | None = Field(
@@ -25,7 +25,7 @@ class Steering(Table):
     )
 
     def after(self, time: float) -> "Steering":
-        """The table in a scene whose clock starts at a later time."""
+        """Return the table for a scene whose clock starts at a later time."""
         return self.model_copy(update={"reversed_at": without_past(self.reversed_at, time)})
 
 
@@ -36,7 +36,7 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 
 def _make(tables: Tables, start: Start) -> tuple[float, ...] | None:
-    """Times of the reversals; discs are steered by changes of gravity, too."""
+    """Return the times of the reversals; a tuple without times if only changes of gravity steer the discs."""
     if tables.own is None:
         return () if start.later_accelerations else None
     return as_times(tables.own.reversed_at)

@@ -1,4 +1,4 @@
-"""Thermal walls: sides and segments that re-emit the discs that hit them, at a temperature."""
+"""Thermal walls: sides and segments that re-emit the discs that hit them at the temperature of the wall."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -16,12 +16,12 @@ EMISSIONS = Column("emissions", "u8")
 
 
 class ThermalSide(SteppedTable):
-    """`{ thermal = T }`: a side that emits the discs it takes at a temperature."""
+    """`{ thermal = T }`: a side that re-emits the discs that hit it at the temperature T."""
 
     in_steps = ("thermal",)
 
     thermal: WallTemperature = Field(
-        description='temperature > 0, energy, or steps [[0, T], [t, T], …], where "reflecting" is a T too'
+        description='temperature > 0, energy, or steps [[0, T], [t, T], …], where T may also be "reflecting"'
     )
 
     @property
@@ -31,13 +31,13 @@ class ThermalSide(SteppedTable):
 
 
 def _temperatures(tables: Tables) -> tuple[Any, ...]:
-    """Temperature of each wall by its number, sides of the box first; None for those that reflect."""
+    """Temperature of each wall by its number, sides of the box first; None for walls that reflect."""
     of_sides = (side.thermal if isinstance(side, ThermalSide) else None for side in tables.sides)
     return *of_sides, *(None if wall is None else wall.temperature for wall in tables.walls)
 
 
 def _number(temperature: Any) -> float:
-    """Temperature for the law; negative for a wall that reflects."""
+    """Temperature as the law requires it, negative for a wall that reflects."""
     return temperature if isinstance(temperature, float) else -1.0
 
 

@@ -12,16 +12,16 @@ from idealgas.toml.table import Positive
 
 THERMOSTAT_COLLISIONS = Column("thermostat_collisions", "i8")
 NEXT_THERMOSTAT_COLLISION = Column("next_thermostat_collision", "f8", (), "time")
-"""Counted from the checkpoint."""
+"""Time of a disc's next collision with the bath, counted from the checkpoint."""
 THERMOSTAT_COLLISION_NUMBER = Column("thermostat_collision_number", "u8")
-"""Of each disc's next collision with the bath, from 0."""
+"""Number of a disc's next collision with the bath, from 0."""
 
 
 class Thermostat(SteppedTable):
     """`[thermostat]`: a heat bath gives each disc a new velocity at random times, wherever it is.
 
-    The velocity is that of a gas at the bath's temperature, and so is the spin of a disc that has one (Andersen,
-    J. Chem. Phys. 72, 2384 (1980)).
+    The velocity, and the spin of a disc that has one, are drawn from the distribution at the bath's temperature
+    (Andersen, J. Chem. Phys. 72, 2384 (1980)).
     """
 
     in_steps = ("temperature",)
@@ -29,7 +29,7 @@ class Thermostat(SteppedTable):
     temperature: PositiveInSteps = Field(
         description="temperature > 0 of the heat bath, energy, or steps [[0, T], [t, T], …]"
     )
-    rate: Positive = Field(description="thermostat collisions of each disc per time > 0, 1/time")
+    rate: Positive = Field(description="rate of thermostat collisions of each disc > 0, 1/time")
 
 
 def _properties(tables: Tables) -> Properties:

@@ -12,14 +12,14 @@ from idealgas.toml.table import Positive, Table
 
 
 class Vibration(Table):
-    """Motion of a vibrating side, between the side of the box and twice the amplitude inside it."""
+    """Motion of a vibrating side, between the side of the box and twice the amplitude inside the box."""
 
-    amplitude: Positive = Field(description="length > 0: half of the way between its extreme places")
+    amplitude: Positive = Field(description="length > 0: half the distance between the extreme positions")
     frequency: Positive = Field(description="periods per time > 0, 1/time")
 
 
 class VibratingSide(Table):
-    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that moves on parabolas; at rest at time 0."""
+    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that moves on parabolas and is at rest at time 0."""
 
     vibrating: Vibration = Field(description="amplitude and frequency")
 

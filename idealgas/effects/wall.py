@@ -21,21 +21,21 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Vector, Word
 
 SHORTEST = 1e-9
-"""Length of a wall in units of the box's longer side: below, a double cannot tell its ends apart."""
+"""Shortest wall in units of the box's longer side; the ends of a shorter wall cannot be distinguished in doubles."""
 
 
 class Wall(SteppedTable):
-    """`[[wall]]`: a segment or arc whose body and ends are solid, at rest. One that opens or closes is a gate.
+    """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
 
-    It is there until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then. Lists
-    of times open and close it several times; if `opens_at` begins with 0, it is absent at the start. A disc in the way
-    of a closing gate stays on the side of its centre: it may leave, and bounces where it comes nearer. One that cannot
-    rise out against gravity bounces as deep in the gate as it is.
+    A gate is present until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then.
+    Lists of times open and close it repeatedly; if `opens_at` begins with 0, it is absent at the start. If a gate
+    closes on a disc, the disc remains on the side of its centre: it may leave, and it bounces if it moves closer. A
+    disc that gravity keeps from leaving the gate bounces at its current depth.
 
     Discs of the species `permeable_to` pass a wall as if it were absent. With `permeable_from` they pass from that side
-    only: beyond, a disc bounces where it touches the wall, or where its centre is back at it as long as the disc has
-    not come out; the ends are solid. Where another wall would reflect a disc, one that is `absorbing` takes it out of
-    the gas.
+    only: beyond the wall a disc bounces when it touches the wall or, as long as it still overlaps the wall, when its
+    centre comes back to the wall; the ends are solid. A wall that is `absorbing` removes the discs that it would
+    otherwise reflect from the gas.
     """
 
     in_steps = ("temperature",)
@@ -44,13 +44,13 @@ class Wall(SteppedTable):
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
     via: Vector | None = Field(
-        default=None, description="[x, y] of a point of the arc between them; of a circle, opposite to both, length"
+        default=None, description="[x, y] of a point of the arc between them; for a circle, opposite to both, length"
     )
     solid: Literal["inside", "outside"] | None = Field(
-        default=None, description="where no gas is: inside or outside of the closed curve of walls with this key"
+        default=None, description="side without gas: inside or outside of the closed curve of walls with this key"
     )
     temperature: WallTemperature | None = Field(
-        default=None, description="of a thermal wall, as that of a thermal side; reflecting if absent"
+        default=None, description="temperature of a thermal wall, as for a thermal side; reflecting if absent"
     )
     opens_at: Times | None = Field(default=None, description="time > 0, or times, at which it is removed")
     closes_at: Times | None = Field(default=None, description="time > 0, or times, at which it is inserted")
@@ -58,19 +58,19 @@ class Wall(SteppedTable):
         default=None, description="species that pass the wall; all if only `permeable_from` is given"
     )
     permeable_from: Literal[SIDES] | None = Field(  # type: ignore[valid-type]
-        default=None, description="the side of the wall from which they pass; both if absent"
+        default=None, description="side of the wall from which they pass; both if absent"
     )
     absorbing: bool = Field(default=False, description="whether it is a hole: discs that touch it leave the gas")
-    name: Word | None = Field(default=None, description="unique word for the log; if absent its number")
+    name: Word | None = Field(default=None, description="unique word for the log; if absent, its number is used")
 
     @property
     def arc(self) -> Arc | None:
-        """Its arc; None for a straight wall."""
+        """Arc of the wall; None for a straight wall."""
         return self.via and arc_through(self.start, self.via, self.end)
 
     @property
     def absences(self) -> tuple[tuple[float, float], ...]:
-        """Times from and until which it is absent, in order; the last may be infinite."""
+        """Pairs of times from and until which the wall is absent, in order; the last time may be infinite."""
         opens, closes = (as_times(times) for times in (self.opens_at or 0.0, self.closes_at))
         if self.opens_at is None and self.closes_at is None:
             return ()
@@ -92,15 +92,15 @@ class Wall(SteppedTable):
 
     @property
     def is_permeable(self) -> bool:
-        """Whether it lets any disc pass."""
+        """Whether the wall lets any disc pass."""
         return self.permeable_to is not None or self.permeable_from is not None
 
     def lets_pass(self, species: str) -> bool:
-        """Whether it lets discs of a species pass, from one side at least."""
+        """Whether the wall lets discs of a species pass, from at least one side."""
         return self.is_permeable and (self.permeable_to is None or species in self.permeable_to)
 
     def later(self, time: float) -> "Wall | None":
-        """The wall in a scene whose clock starts at a later time; None if it has been removed for good."""
+        """Return the wall for a scene whose clock starts at a later time; None if it has been removed for good."""
         absences = [(max(o - time, 0.0), c - time) for o, c in self.absences if c > time]
         if absences and absences[0] == (0.0, math.inf):
             return None
@@ -109,29 +109,35 @@ class Wall(SteppedTable):
         return self.after(time).model_copy(update=update)
 
     def is_there(self, time: float) -> bool:
-        """Whether it is present at a time."""
+        """Whether the wall is present at a time."""
         return not any(opens <= time < closes for opens, closes in self.absences)
 
 
 class LastingWall:
-    """A wall that no table `[[wall]]` makes: always there, straight, not thermal, and no disc passes it."""
+    """A wall that is not declared in `[[wall]]`: always present, straight, not thermal and not permeable."""
 
     temperature = permeable_from = arc = None
     absences = ()
     is_permeable = absorbing = False
 
     def is_there(self, _: float) -> bool:
-        """Whether it is present at a time."""
+        """Whether the wall is present at a time."""
         return True
 
     def lets_pass(self, _: str) -> bool:
-        """Whether it lets discs of a species pass."""
+        """Whether the wall lets discs of a species pass."""
         return False
 
 
 @dataclass(frozen=True)
 class FixedDisc(LastingWall):
-    """A fixed disc: a wall around a point. number: of its table `[[disc]]`; start: its centre; radius: length."""
+    """A fixed disc: a wall around a point.
+
+    Attributes:
+        number: number of its table `[[disc]]`.
+        start: centre, length.
+        radius: length.
+    """
 
     number: int
     start: tuple[float, float]
@@ -139,12 +145,12 @@ class FixedDisc(LastingWall):
 
     @property
     def end(self) -> tuple[float, float]:
-        """Its centre."""
+        """Centre of the disc."""
         return self.start
 
     @property
     def place(self) -> Key:
-        """Key that makes it fixed."""
+        """Key that makes the disc fixed."""
         return ("disc", self.number, "fixed")
 
     @property
@@ -173,7 +179,7 @@ def _properties(tables: Tables) -> Properties:
 
 
 def _check(tables: Tables) -> Iterator[Issue]:
-    """Walls with faults of their own, and names that are taken."""
+    """Yield issues of single walls, and of names that are taken."""
     first: dict[str, int] = {}
     for i, wall in enumerate(tables.own):
         if wall is None:
@@ -193,7 +199,7 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 
 def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue]:
-    """Faults of one wall in a box of a size, except for its name."""
+    """Yield issues of wall i, except for its name; size: width and height of the box, length."""
     keys: tuple[Key, ...] = (("wall", i, "from"), ("wall", i, "to"))
     ends = f"{list(wall.start)} to {list(wall.end)}"
     length = math.dist(wall.start, wall.end)
@@ -237,7 +243,11 @@ def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue
 def make_segments(
     start: np.ndarray, end: np.ndarray, active: np.ndarray | bool = True, radius: np.ndarray | float = 0.0
 ) -> np.recarray:
-    """(S,) SEGMENT. start, end: (S, 2). active: whether each is present. radius: of fixed discs, of no length."""
+    """Return wall segments (S,) SEGMENT.
+
+    start, end: (S, 2) end points, length. active: whether each segment is present. radius: radius of fixed discs, which
+    are segments of length 0.
+    """
     segments = aligned(len(start), law.SEGMENT)
     segments.x, segments.y = start.T
     segments.length = np.hypot(*(end - start).T)
@@ -266,7 +276,7 @@ def _change(segments: np.recarray, segment: int, active: float) -> np.recarray:
 
 
 def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> str:
-    """Tables `[[wall]]` of a regular polygon of `radius` (length) with its centre at `height` in the box."""
+    """Tables `[[wall]]` of a regular polygon with a radius (length), whose centre is at a height in the box."""
     turn = [2 * math.pi * k / corners for k in range(corners + 1)]
     points = [[side / 2 + radius * math.cos(a), height + radius * math.sin(a)] for a in turn]
     return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))

@@ -1,11 +1,12 @@
-"""Compilation, in one place: `njit` and parts of what it compiles, prefetching, aligned memory.
+"""Compilation: `njit` for entry points and decorators for the functions that they call, prefetching, aligned memory.
 
-numba's own cache looks only at the source file of an entry point and would serve outdated code when a function in
-another file changes. Here machine code is cached with digests of all that it was made of, see `dependencies`.
+numba's cache checks only the source file of an entry point and would return outdated code after a function in another
+file has changed. Here machine code is cached with digests of everything from which it was made, see `dependencies`.
 
-numba is imported when the first entry point is called: commands that compile nothing start without it. Of numba this
-uses, beyond what is documented: the options `_nrt` and `no_cfunc_wrapper`; a dispatcher's `compile` and `_cache`, which
-are replaced, and `overloads`; `CompileResult._reduce`, `_rebuild`, `serialize.dumps`, as in its own cache.
+numba is imported when the first entry point is called, so that commands that compile nothing start quickly. Beyond what
+numba documents, this module uses the options `_nrt` and `no_cfunc_wrapper`; a dispatcher's `compile` and `_cache`,
+which are replaced, and `overloads`; and `CompileResult._reduce`, `_rebuild` and `serialize.dumps`, as numba's cache
+does.
 """
 
 import os
@@ -27,14 +28,15 @@ from idealgas.jit.trial import leave_out
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 if INTERPRETED:
-    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # like compiled code, give no warnings
+    np.seterr(divide="ignore", invalid="ignore", over="ignore")  # compiled code gives no warnings either
 
 CACHE_LINE = 64  # bytes
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
-"""Without numba's runtime, arrays are not reference-counted, and none can be made: the caller keeps them alive.
+"""Options of entry points. Without numba's runtime (`_nrt`) arrays are not reference-counted, and none can be created.
 
-Counting takes an atomic operation wherever LLVM cannot prove it needless, and makes the event loop five times slower.
+The caller must keep arrays alive. Reference counting needs an atomic operation wherever LLVM cannot prove it
+unnecessary, and makes the event loop five times slower.
 """
 _PART: dict[str, Any] = {"no_cpython_wrapper": True, **_OPTIONS}
 _INLINE: dict[str, Any] = {"forceinline": True, **_PART}
@@ -44,26 +46,26 @@ _NEEDLESS = {
     "FindLiterallyCalls", "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "AnnotateTypes",
     "DumpParforDiagnostics", "NopythonRewrites",
 }  # fmt: skip
-"""Passes of numba's compiler over what functions here do not contain. All passes together take most of the time."""
+"""Passes of numba's compiler for language features that this package does not use; passes take most of the time."""
 
 _declared: list[Callable[[], object]] = []
-"""Declarations to numba, made before an entry point is compiled or loaded."""
+"""Declarations to numba, to be made before an entry point is compiled or loaded."""
 _compiling: list[tuple[str, set[str]]] = []
-"""Keys of the functions that are being compiled, callers first, each with the keys of all parts that it reaches."""
+"""Keys of the functions that are being compiled, callers first, each with the keys of all parts that it uses."""
 _lock = threading.RLock()
 _seconds = 0.0
 
 
 def compile_seconds() -> float:
-    """Seconds that this process has spent on compiling entry points or loading their machine code."""
+    """Time in seconds that this process has spent on compiling entry points or loading their machine code."""
     return _seconds
 
 
 class _Function(Part):
-    """A function that is compiled where a compiled one calls it.
+    """A function that is compiled when a compiled function calls it.
 
     Attributes:
-        reached: keys of the parts from which it is made, for each set of types of its arguments.
+        reached: keys of the parts from which its machine code is made, for each set of argument types.
     """
 
     def __init__(self, function: Any, **options: Any) -> None:
@@ -83,13 +85,13 @@ class _Function(Part):
             return compiled
 
     def compile(self, signature: Any) -> Any:
-        """Compile for types of arguments, unless that is done, and record which parts are reached.
+        """Compile for argument types, unless this has been done, and record which parts are used.
 
-        numba calls this for every call of the function that it finds in another one.
+        numba calls this method for every call of the function in the code of another function.
         """
         from numba import types
 
-        kinds = tuple(map(types.unliteral, signature))  # else there would be machine code for each constant
+        kinds = tuple(map(types.unliteral, signature))  # otherwise there would be machine code for each constant
         with _lock:
             if kinds not in self.reached:
                 keys = {self.key}
@@ -104,8 +106,8 @@ class _Function(Part):
             return self._compile(kinds)
 
     def _obtain(self, kinds: tuple) -> None:
-        """Compile, unless nothing is done for these types of arguments."""
-        if not isinstance(self, EntryPoint):  # which is called by Python too
+        """Compile the function, unless it does nothing for these argument types."""
+        if not isinstance(self, EntryPoint):  # Python calls entry points, so that they cannot be left out
             with suppress(Exception):
                 _compiling[-1][1].update(leave_out(self, kinds))
                 return
@@ -117,10 +119,10 @@ class _Function(Part):
 
 
 class EntryPoint(_Function):
-    """A function that is compiled when it is first called: without fastmath and without the GIL, cached on disk."""
+    """A function that is compiled when it is first called: without fastmath, without the GIL, and cached on disk."""
 
     def __init__(self, function: Callable) -> None:
-        """Take the function in Python."""
+        """Make an entry point of a Python function."""
         super().__init__(function, forceinline=False, **_OPTIONS)
         self.is_named(self)
         update_wrapper(self, function)
@@ -140,21 +142,21 @@ class EntryPoint(_Function):
             return compiled
 
     def compile(self, signature: Any) -> Any:
-        """Compile for types of arguments or load the machine code, and measure the time."""
+        """Compile for argument types or load the machine code, and measure the time."""
         global _seconds
         with _lock:
             before, started = _seconds, time.perf_counter()
             try:
                 _declare()
                 return super().compile(signature)
-            except (OSError, RuntimeError, ValueError) as error:  # which callers take for errors of a file they read
+            except (OSError, RuntimeError, ValueError) as error:  # callers would take these for errors of a file
                 raise UserError(f"compilation failed: {' '.join(str(error).split())}") from error
             finally:
-                _seconds = before + time.perf_counter() - started  # with that of entry points called by this one
+                _seconds = before + time.perf_counter() - started  # includes entry points that this one calls
 
 
 class _Stored:
-    """Machine code of an entry point on disk, as the cache of numba's dispatcher."""
+    """Machine code of an entry point on disk, in the form of the cache of numba's dispatcher."""
 
     cache_path = None
 
@@ -162,7 +164,7 @@ class _Stored:
         self._name = name
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return what was compiled for types of arguments, or None if nothing that is up to date can be loaded."""
+        """Return the compiled result for argument types, or None if none that is up to date can be loaded."""
         from numba.core.compiler import CompileResult
 
         target.refresh()
@@ -173,7 +175,7 @@ class _Stored:
             return result
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Store what was compiled for types of arguments, if the disk takes it."""
+        """Store the compiled result for argument types, if the disk can be written."""
         from numba.core.serialize import dumps
 
         if not result.library.has_dynamic_globals:
@@ -183,13 +185,13 @@ class _Stored:
 
 
 def _described(types: Any) -> str:
-    """Describe types of arguments, with the names of the fields of tuples."""
+    """Describe argument types, including the field names of tuples."""
     return " ".join(f"{kind} {getattr(kind, 'fields', '')} {_described(getattr(kind, 'types', ()))}" for kind in types)
 
 
 @cache
 def _pipeline() -> dict[str, Any]:
-    """Option with numba's usual passes, less those over what functions here do not contain."""
+    """Compiler option that selects numba's usual passes except `_NEEDLESS`."""
     from numba.core.compiler import CompilerBase, DefaultPassBuilder
 
     class Short(CompilerBase):
@@ -203,7 +205,7 @@ def _pipeline() -> dict[str, Any]:
 
 
 def _declare() -> None:
-    """Declare to numba what was declared since the last call."""
+    """Make the declarations to numba that were added since the last call."""
     while _declared:
         _declared.pop(0)()
 
@@ -214,28 +216,28 @@ def njit(function: Callable) -> Any:
 
 
 def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:
-    """Decorate a function that declares something to numba, to be called before the first entry point is compiled."""
+    """Decorate a function with declarations to numba; it is called before the first entry point is compiled."""
     Part(declare, declare.__module__, chooses=True)
     _declared.append(declare)
     return declare
 
 
 def inline(function: Callable) -> Any:
-    """Compile a small function that LLVM inserts into the entry points that call it; in Python it stays as it is."""
+    """Compile a small function, which LLVM inlines into the entry points that call it; Python calls it unchanged."""
     _Function(function, **_INLINE)
     return function
 
 
 def noinline(function: Callable) -> Any:
-    """Compile a long or rarely called function as part of its entry points; in Python it stays as it is."""
+    """Compile a long or rarely called function as part of its entry points; Python calls it unchanged."""
     _Function(function, forceinline=False, **_PART)
     return function
 
 
 def overload(function: Callable) -> Callable:
-    """Decorate a function that chooses inlined code by the types of its arguments; `function` is what Python calls.
+    """Decorate a function that chooses inlined code by the types of its arguments; Python calls `function` instead.
 
-    For a function of another package, such as an operator, it is asked only if an argument is of a type of this one.
+    For a function of another package, such as an operator, it is called only if an argument has a type of this package.
     """
     ours = is_ours(function.__module__)
     target = part_of(function) or Part(function) if ours else None
@@ -263,7 +265,7 @@ def overload(function: Callable) -> Callable:
 
 
 class _Intrinsic(Part):
-    """Instructions of LLVM that a function writes, as numba's `intrinsic` takes it."""
+    """A function that writes LLVM instructions, in the form required by numba's `intrinsic`."""
 
     def __init__(self, function: Callable) -> None:
         super().__init__(function, chooses=True)
@@ -277,7 +279,7 @@ class _Intrinsic(Part):
 
 
 def intrinsic(function: Callable) -> Callable:
-    """Decorate the implementation of an intrinsic of numba, which only compiled code can call."""
+    """Decorate the implementation of a numba intrinsic, which only compiled code can call."""
 
     def declared(*arguments: Any) -> Any:
         raise TypeError(f"{function.__name__} is for compiled code only")
@@ -287,18 +289,18 @@ def intrinsic(function: Callable) -> Callable:
 
 
 def prefetch(array: Any, row: Any) -> None:
-    """Prefetch the memory of a row, as it will be read soon; does nothing in Python."""
+    """Prefetch the memory of a row that will be read soon; does nothing in Python."""
 
 
 def prefetch_next_line(array: Any, row: Any) -> None:
-    """Prefetch the memory one cache line after a row, as it will be written soon; does nothing in Python.
+    """Prefetch the memory one cache line after a row, which will be written soon; does nothing in Python.
 
-    Stores take effect in order: while one waits for memory that is not in a cache, all later ones wait too.
+    Stores take effect in order: while a store waits for memory that is not in a cache, all later stores wait too.
     """
 
 
 def _prefetch(distance: int, for_writing: int) -> Callable:
-    """Function of an intrinsic that prefetches what lies at a distance (bytes) from a row of an array."""
+    """Return the implementation of an intrinsic that prefetches memory at a distance (bytes) from a row of an array."""
 
     def fetch(typing: Any, array: Any, row: Any) -> Any:
         from llvmlite import ir
@@ -328,7 +330,7 @@ _Intrinsic(_prefetch(CACHE_LINE, 1)).is_named(prefetch_next_line)
 
 
 def aligned(n: int, dtype: np.dtype) -> Any:
-    """Array of n zeros in cache lines that nothing else is in; a record array if the dtype is structured."""
+    """Array of n zeros that shares no cache line with other data; a record array if the dtype is structured."""
     raw = np.zeros((-(-n * dtype.itemsize // CACHE_LINE) + 1) * CACHE_LINE, np.uint8)
     start = -raw.__array_interface__["data"][0] % CACHE_LINE
     kind: Any = np.recarray if dtype.names else np.ndarray

@@ -1,8 +1,8 @@
-"""What machine code depends on: the code of the functions in it, and the values of the names that they use.
+"""Dependencies of machine code: the code of the functions in it, and the values of the names that they use.
 
-The functions from which machine code is made are parts. While an entry point is compiled, the keys of all parts that it
-reaches are recorded; machine code is up to date as long as the digests of these keys are the same. Comments,
-docstrings and line numbers do not count.
+The functions from which machine code is made are called parts. While an entry point is compiled, the keys of all parts
+that it uses are recorded; the machine code is up to date as long as the digests of these keys are unchanged. Comments,
+docstrings and line numbers do not affect a digest.
 """
 
 import builtins
@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 
 _FIXED = sys.stdlib_module_names | {"numpy", "numba", "llvmlite"}
-"""Packages whose versions are in the name of the cache folder: of what they contain, the name is enough."""
+"""Packages whose versions determine the cache folder; their functions and classes are identified by name."""
 _PLAIN = (type(None), type(...), bool, int, float, complex, str, bytes, np.generic, np.dtype)
-_HAS_DOCSTRING = 0x4000000  # flag of code, from Python 3.13 on
+_HAS_DOCSTRING = 0x4000000  # flag of code objects, from Python 3.13 on
 
 _parts: dict[str, list["Part"]] = {}
 _known: dict[int, tuple[Any, "Part"]] = {}
@@ -31,37 +31,37 @@ class Part:
     """A function that may be compiled, or that chooses at compile time what is compiled.
 
     Attributes:
-        py_func: the function in Python.
+        py_func: the Python function.
         key: its module and name. Parts with the same key, such as closures of one function, change together.
-        name: the key, and a number that tells parts with the same key apart.
-        chooses: whether it runs at compile time. All that it names counts then, as it cannot be seen what it used.
-        options: of the compiler, which are part of the digest.
+        name: the key, with a number that distinguishes parts with the same key.
+        chooses: whether the function runs at compile time. Its result may then depend on every name in its code.
+        options: options of the compiler, which are part of the digest.
     """
 
     def __init__(self, function: Any, key: str = "", chooses: bool = False, **options: Any) -> None:
         self.py_func, self.chooses, self.options = function, chooses, options
         self.key = key or f"{function.__module__}.{function.__qualname__}"
-        others = _parts.setdefault(self.key, [])
-        self.name = f"{self.key}-{len(others)}" if others else self.key
-        others.append(self)
+        parts = _parts.setdefault(self.key, [])
+        self.name = f"{self.key}-{len(parts)}" if parts else self.key
+        parts.append(self)
 
     def is_named(self, value: Any) -> None:
-        """Let a value in the globals or the closure of functions stand for this part."""
+        """Register a value that stands for this part in the globals or closures of functions."""
         _known[id(value)] = value, self
 
     @property
     def compiled(self) -> Any:
-        """What numba gets in place of the function."""
+        """Object that numba receives in place of the function."""
         return self.py_func
 
     @cached_property
     def names(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Values of the global names in the code, and of the closure, when they are first needed."""
+        """Values of the global names in the code, and of the closure, at the time when they are first needed."""
         return names_of(self.py_func)
 
     @property
     def calls(self) -> set[str]:
-        """Keys of the parts that its code loads; attributes of the same name do not count."""
+        """Keys of the parts that the function's code loads, not counting attributes of the same name."""
         loads = ("LOAD_GLOBAL", "LOAD_DEREF")
         names = {each.argval for each in dis.get_instructions(self.py_func.__code__) if each.opname in loads}
         parts = [part_of(value) for values in self.names for name, value in values.items() if name in names]
@@ -75,17 +75,17 @@ class Part:
 
     @property
     def digest(self) -> str:
-        """Digest of the code and of what it names; of other parts only the keys."""
+        """Digest of the code and of the values of its names; other parts enter with their keys only."""
         return self._read[0]
 
     @property
     def mentions(self) -> frozenset[str]:
-        """Keys of the parts that it names, and of the declarations in the modules of the classes that it names."""
+        """Keys of the parts that the code names, and of the declarations in the modules of the classes it names."""
         return self._read[1] | {self.py_func.__module__}
 
 
 def part_of(value: Any) -> Part | None:
-    """Return the part for which a value stands."""
+    """Return the part for which a value stands, or None."""
     return _known[id(value)][1] if id(value) in _known else None
 
 
@@ -96,10 +96,10 @@ def digest(key: str) -> str:
 
 
 def reached(keys: Iterable[str]) -> set[str]:
-    """Return the keys of all parts that are in the machine code or have chosen what is in it.
+    """Return the keys of all parts that are in the machine code or determined at compile time what is in it.
 
     Args:
-        keys: of the parts that were compiled.
+        keys: keys of the parts that were compiled.
     """
     done: set[tuple[str, bool]] = set()
     todo = [(key, False) for key in keys]
@@ -110,20 +110,22 @@ def reached(keys: Iterable[str]) -> set[str]:
         for part in _parts.get(each[0], ()):
             chosen = each[1] or part.chooses
             todo += [
-                (key, chosen) for key in part.mentions if chosen or any(other.chooses for other in _parts.get(key, ()))
+                (key, chosen)
+                for key in part.mentions
+                if chosen or any(mentioned.chooses for mentioned in _parts.get(key, ()))
             ]
     return {key for key, _ in done if key in _parts}
 
 
 def _codes(code: CodeType) -> list[CodeType]:
-    """Return the code of a function and of all functions in it."""
+    """Return the code objects of a function and of all functions inside it."""
     return [code, *(each for value in code.co_consts if isinstance(value, CodeType) for each in _codes(value))]
 
 
 def names_of(function: FunctionType) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the values of the global names in the code of a function, and of its closure.
 
-    Of a module that is not fixed, only the names in it that the code contains are taken.
+    A module that is not fixed is reduced to those of its names that the code contains.
     """
     names = sorted({name for code in _codes(function.__code__) for name in code.co_names})
 
@@ -145,7 +147,7 @@ def is_ours(module: str) -> bool:
 
 
 def is_fixed(value: Any) -> bool:
-    """Whether a value is told by its module and name, as that module is of a fixed version."""
+    """Whether a value is identified by its module and name, because its package has a fixed version."""
     if isinstance(value, ModuleType):
         return value.__name__.partition(".")[0] in _FIXED
     module = getattr(value, "__module__", None) or type(value).__module__
@@ -153,7 +155,7 @@ def is_fixed(value: Any) -> bool:
 
 
 def copied(function: FunctionType) -> FunctionType:
-    """Copy a function; global names and closure of the copy are without values."""
+    """Copy a function; the global names and the closure of the copy have no values yet."""
     names = {"__name__": function.__module__, "__builtins__": builtins}
     closure = tuple(CellType() for _ in function.__code__.co_freevars)
     copy = FunctionType(function.__code__, names, function.__name__, function.__defaults__, closure)
@@ -162,7 +164,7 @@ def copied(function: FunctionType) -> FunctionType:
 
 
 def fill(copy: FunctionType, names: tuple[dict[str, Any], dict[str, Any]]) -> FunctionType:
-    """Give the names of a copied function their values, or in place of parts what numba gets for them."""
+    """Give the names of a copied function their values; parts are replaced by the objects that numba receives."""
     copy.__globals__.update(_replaced(names[0]))
     for cell, value in zip(copy.__closure__ or (), _replaced(names[1]).values(), strict=True):
         cell.cell_contents = value
@@ -190,7 +192,7 @@ class _Reader:
         self._seen: list[Any] = []
 
     def function(self, function: FunctionType, names: tuple[dict[str, Any], dict[str, Any]]) -> str:
-        """Describe a function by its code and the values of all names in it."""
+        """Describe a function by its code and the values of all its names."""
         self._seen.append(function)
         values = [*names, function.__defaults__, function.__kwdefaults__]
         return f"{self._code(function.__code__)} {[self.value(each) for each in values]}"
@@ -207,7 +209,7 @@ class _Reader:
         return f"{code.co_code!r} {code.co_exceptiontable!r} {counts} {names} {constants}"
 
     def value(self, value: Any) -> str:
-        """Describe a value; TypeError for one of which it cannot be seen what machine code takes from it."""
+        """Describe a value; TypeError if it is unclear how machine code depends on the value."""
         if (part := part_of(value)) is not None:
             self.mentions.add(part.key)
             return part.name
@@ -231,7 +233,7 @@ class _Reader:
         return self._numba_type(value)
 
     def _class(self, kind: type) -> str:
-        """Describe a class: numba uses fields of tuples and members of enumerations, functions may be called."""
+        """Describe a class: numba uses the fields of tuples and the members of enumerations, and may call methods."""
         self._seen.append(kind)
         self.mentions.add(kind.__module__)
         text = f"{kind.__module__}.{kind.__qualname__}"

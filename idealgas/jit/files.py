@@ -1,7 +1,7 @@
-"""Machine code on disk: one folder for each version of the compilers and kind of processor, one file for each result.
+"""Machine code on disk: a folder for each version of the compilers and kind of processor, a file for each result.
 
-A file holds the machine code of an entry point for the types of its arguments, and the digests of all that it was made
-of. There may be several with other digests, as of other branches of the sources.
+A file contains the machine code of an entry point for given argument types, and the digests of everything from which it
+was made. There may be several files with different digests, for example from several branches of the sources.
 """
 
 import atexit
@@ -23,17 +23,17 @@ import numpy as np
 from idealgas import system
 
 _FOLDERS, _SIGNATURES, _VERSIONS = 5, 500, 5
-"""Folders, entry points with types of arguments, and versions of their machine code, kept however old they are."""
-_LIFETIME = 24 * 3600  # seconds since its last use after which another one is removed
+"""Numbers of folders, of entry points with argument types, and of versions of each, that are kept however old."""
+_LIFETIME = 24 * 3600  # seconds since the last use after which any other file or folder is removed
 
 
 @cache
 def cache_folder() -> Path:
-    """Return the folder of this process's machine code, made on the first call; a temporary one if no other is usable.
+    """Return the folder for the machine code of this process, which is created on the first call.
 
-    It is in NUMBA_CACHE_DIR if that is set, else in `idealgas` in the user's cache folder, else in a folder of the user
-    among the temporary files. Machine code is loaded without further checks, so a folder that another user owns or can
-    write is not used.
+    It is in NUMBA_CACHE_DIR if this is set, otherwise in `idealgas` in the user's cache folder or, if that is not
+    usable, in a folder of the user among the temporary files; if none of these is usable, it is a temporary folder.
+    Machine code is loaded without further checks, so a folder that another user owns or can write is not used.
     """
     import numba
 
@@ -43,7 +43,7 @@ def cache_folder() -> Path:
         folder = base / f"idealgas-{_compilers()}"
         with suppress(OSError):
             if system.make_private(folder):
-                os.utime(folder)  # used now, so that no other process removes it
+                os.utime(folder)  # marked as used now, so that no other process removes it
                 tempfile.TemporaryFile(dir=folder).close()
                 _remove_old(base.glob("idealgas-*"), _FOLDERS)
                 return folder
@@ -53,7 +53,7 @@ def cache_folder() -> Path:
 
 
 def _compilers() -> str:
-    """Return a digest of all that machine code depends on besides the functions in it."""
+    """Return a digest of everything on which machine code depends apart from the functions in it."""
     import numba
     from llvmlite import binding
 
@@ -62,7 +62,7 @@ def _compilers() -> str:
         digest.update(path.read_bytes())
     versions = sys.version, numba.__version__, binding.llvm_version_info, np.__version__
     processor = [binding.get_process_triple(), binding.get_host_cpu_name()]
-    with suppress(RuntimeError):  # unknown features are not used either
+    with suppress(RuntimeError):  # if the features are unknown, they are not used either
         processor.append(binding.get_host_cpu_features().flatten())
     options = sorted((name, os.environ[name]) for name in os.environ if name[:6] == "NUMBA_" and "CACHE" not in name)
     digest.update(f"{versions} {processor} {options}".encode(errors="surrogatepass"))
@@ -70,13 +70,13 @@ def _compilers() -> str:
 
 
 def _remove_if_own(folder: Path, process: int) -> None:
-    """Remove a process's temporary folder; forked children call this too, and leave the folder."""
+    """Remove the temporary folder of a process; forked children also call this function, and leave the folder alone."""
     if os.getpid() == process:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def _remove_old(paths: Iterable[Path], kept: int) -> None:
-    """Remove all but the paths used last; another process may be doing so as well."""
+    """Remove all paths except those used last; another process may be doing the same."""
     with suppress(OSError):
         used = sorted(((path.stat().st_mtime, path) for path in paths), reverse=True)
         for last, path in used[kept:]:
@@ -95,13 +95,13 @@ def load(name: str, signature: str, digest: Callable[[str], str]) -> tuple[set[s
     Args:
         name: name of an entry point.
         signature: types of its arguments.
-        digest: returns the digest of the functions with a key as they are now.
+        digest: function that returns the current digest of the functions with a key.
 
     Returns:
-        The keys of the functions that it depends on, and the machine code.
+        The keys of the functions on which the machine code depends, and the machine code.
 
     Raises:
-        LookupError: if there is none.
+        LookupError: there is no machine code that is up to date.
     """
     folder = _folder(name, signature)
     for path in folder.iterdir() if folder.is_dir() else ():
@@ -117,7 +117,7 @@ def load(name: str, signature: str, digest: Callable[[str], str]) -> tuple[set[s
 
 
 def save(name: str, signature: str, digests: dict[str, str], code: bytes) -> None:
-    """Save machine code, with the digests of the functions that it depends on by their keys."""
+    """Save machine code, with the digests of the functions on which it depends by key."""
     folder = _folder(name, signature)
     folder.mkdir(0o700, exist_ok=True)
     data = pickle.dumps((signature, digests, code))

@@ -1,8 +1,9 @@
-"""Functions that do nothing where effects are absent: they are found by a trial in Python, and are not compiled.
+"""Functions that do nothing if effects are absent: they are detected by a trial in Python, and are not compiled.
 
-Each compiled function takes some 40 ms, whatever its size, and half of those of a plain gas only return at once, as
-their argument for an effect is None. In a trial all arguments but None are stand-ins with which nothing can be done:
-a function that still ends has only asked which of them are None. What it returns is then written where it is called.
+Compiling a function takes about 40 ms, whatever its size, and half of the functions for a plain gas return at once,
+because their argument for an effect is None. In a trial all arguments except None are stand-ins on which every
+operation fails. A function that nevertheless returns has only checked which arguments are None; its calls are then
+replaced by its result.
 """
 
 from collections.abc import Callable
@@ -13,7 +14,7 @@ from idealgas.jit.dependencies import Part, part_of
 
 
 class _StandIn:
-    """An argument of unknown value: nothing can be set in it, and not even its truth or equality can be asked."""
+    """An argument of unknown value: it has no attributes, and even its truth value and equality raise an error."""
 
     __slots__ = ()
 
@@ -24,17 +25,17 @@ class _StandIn:
 
 
 class _Argument(int):
-    """Number of the argument that is returned."""
+    """Number of the argument that a function returns."""
 
 
 def leave_out(part: Part, kinds: tuple) -> set[str]:
-    """Replace calls of a function by its result, if it does nothing for these types of arguments.
+    """Replace calls of a function by its result, if the function does nothing for these argument types.
 
     Returns:
         The keys of the functions that were run in the trial.
 
     Raises:
-        Exception: of any kind, if the function does something.
+        Exception: the function does something; the exception may be of any type.
     """
     from numba.extending import lower_builtin
 
@@ -49,7 +50,7 @@ def leave_out(part: Part, kinds: tuple) -> set[str]:
 
 
 def _stand_in(kind: Any) -> Any:
-    """Return None, a tuple with names of stand-ins, or a stand-in; TypeError for what may or may not be None."""
+    """Return None, a named tuple of stand-ins, or a stand-in; TypeError for an argument that may or may not be None."""
     from numba import types
 
     if isinstance(kind, types.NoneType):
@@ -62,13 +63,16 @@ def _stand_in(kind: Any) -> Any:
 
 
 def _in_trial(part: Part, keys: set[str]) -> Callable:
-    """Return a function that runs with stand-ins for all but numbers and other functions, and notes its key."""
+    """Return a copy of a function for the trial, and record its key.
+
+    In the copy, all global values except numbers and other parts are stand-ins.
+    """
     if part.chooses:
         raise TypeError
 
     def value(each: Any) -> Any:
-        if (other := part_of(each)) is not None:
-            return lambda *arguments, **named: _in_trial(other, keys)(*arguments, **named)
+        if (callee := part_of(each)) is not None:
+            return lambda *arguments, **named: _in_trial(callee, keys)(*arguments, **named)
         return each if _is_plain(each) else _StandIn()
 
     keys.add(part.key)
@@ -84,7 +88,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _written(result: Any, arguments: list[Any]) -> Any:
-    """Return a result with numbers of arguments in their place; TypeError if there is anything but plain values."""
+    """Return a result with arguments replaced by their numbers; TypeError if it contains other than plain values."""
     for number, argument in enumerate(arguments):
         if result is argument and isinstance(argument, _StandIn):
             return _Argument(number)
@@ -96,7 +100,7 @@ def _written(result: Any, arguments: list[Any]) -> Any:
 
 
 def _type(result: Any, kinds: tuple) -> Any:
-    """Return the type of a result, as numba finds it for a function that returns it."""
+    """Return the type that numba infers for a function with this result."""
     from numba import typeof, types
 
     if isinstance(result, tuple):
@@ -109,7 +113,7 @@ def _type(result: Any, kinds: tuple) -> Any:
 
 
 def _value(context: Any, builder: Any, result: Any, kind: Any, values: Any) -> Any:
-    """Write instructions for a result."""
+    """Write the LLVM instructions for a result."""
     if isinstance(result, tuple):
         items = [_value(context, builder, *each, values) for each in zip(result, kind, strict=True)]
         return context.make_tuple(builder, kind, items)

@@ -40,7 +40,7 @@ def outward(piston, distance):
 
 @inline
 def piston_motion(piston, time):
-    """Position (length) and velocity (length/time) of the piston at a later local time, if nothing hits it until then."""
+    """Position (length) and velocity (length/time) of the piston at a later local time, if nothing hits it before."""
     delay = time - piston.t
     return position_after(piston.x, piston.v, piston.a, delay), velocity_after(piston.v, piston.a, delay)
 

@@ -34,7 +34,7 @@ def end_epoch(restitution: Restitution, length: float) -> None:
 
 @inline
 def restitution_factor(restitution, a_id, b_id, time):
-    """Return 1 + the coefficient of restitution of two discs that collide at a local time; 2 for an elastic collision."""
+    """Return 1 + the coefficient of restitution of two discs that collide at a local time; 2 if they are elastic."""
     if restitution is not None:
         last = max(restitution.last[np.uintp(a_id)], restitution.last[np.uintp(b_id)])
         return 2.0 if time - last < restitution.contact_duration else 1.0 + restitution.normal
