@@ -9,7 +9,12 @@ import numpy as np
 
 from idealgas.analysis.core.analysis import Analysis, Section
 from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import kind_of_state, nonstationary_reason, not_steady
+from idealgas.analysis.core.ensemble import (
+    centre_of_mass_velocity,
+    kind_of_state,
+    nonstationary_reason,
+    not_steady,
+)
 from idealgas.analysis.core.equilibration import (
     Observable,
     Window,
@@ -53,8 +58,8 @@ class ShearFlow(Result):
     temperature: mean of m c²/2, energy. viscosity: -P_xy/rate at this temperature T, mass/time, as that over √T of all
     blocks times √T. pressure: (P_xx + P_yy)/2 at this temperature, energy/length², as that over T times T.
     normal_stress: (P_xx - P_yy) over the pressure. slope: of the mean velocity against y, over the rate. y, velocity:
-    (20,), middles of strips, length, and mean velocity along x in them, length/time. temperatures, viscosities: (B,),
-    of each block that was read.
+    (20,), middles of strips, length, and mean velocity along x in them, relative to the flow in the middle of the box,
+    length/time. temperatures, viscosities: (B,), of each block that was read.
     """
 
     window: Window
@@ -81,26 +86,27 @@ class Carried:
     columns = ("disc", "block", "start", "end", "velocity", "position")
     cut = True
 
-    def __init__(self, rate: float, height: float) -> None:
-        """Take the shear rate and the height of the box."""
-        self._rate, self._height = rate, height
+    def __init__(self, rate: float, height: float, drift: float) -> None:
+        """Take the shear rate, the height of the box, and the velocity of the gas and its flow along y."""
+        self._rate, self._height, self._drift = rate, height, drift
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start with a number of blocks."""
         self._mass, self._sums = gas.mass, np.zeros((5, len(edges) - 1))
 
     def add(self, flights: Flights) -> None:
-        """Add flights: along each, c_x and y are linear in time."""
+        """Add flights, with velocities relative to the gas: along each, c_x and y are linear in time."""
         assert flights.position is not None
         mass, t = self._mass.take(flights.disc), flights.end - flights.start
         y, (vx, vy) = flights.position[:, 1], flights.velocity.T
-        height, c, slope = y - 0.5 * self._height, vx - flow_at(y, self._rate, self._height), -self._rate * vy
+        flow = flow_at(y - self._drift * flights.start, self._rate, self._height)
+        height, rise, c, slope = y - 0.5 * self._height, vy + self._drift, vx - flow, -self._rate * vy
         integrals = (
             _product(c, slope, c, slope, t),
             vy * vy * t,
             _product(c, slope, vy, np.zeros_like(vy), t),
-            _product(height, vy, c, slope, t),
-            _product(height, vy, height, vy, t),
+            _product(height, rise, c, slope, t),
+            _product(height, rise, height, rise, t),
         )
         for sums, values in zip(self._sums, integrals, strict=True):
             add_to(sums, flights.block, mass * values)
@@ -135,7 +141,8 @@ def shear(
             f"{log.path}: shear requires sheared sides, box.bottom and box.top = {{ shear = rate }}"
         )
     edges = block_edges(log, start, end)
-    carried, passed_on = Carried(rate, height), PassedOn(1, np.array([0.0, height]), log.periodic, rate)
+    carried = Carried(rate, height, float(centre_of_mass_velocity(log)[1]))
+    passed_on = PassedOn(1, np.array([0.0, height]), log.periodic, rate)
     stream(log, edges, [carried, passed_on], progress)
     block = edges[1] - edges[0]
     pressure = (carried.stress + passed_on.stress[:, 0]) / (width * height * block)
@@ -205,11 +212,16 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
 
 
 def _profile(log: Log, times: np.ndarray) -> np.ndarray:
-    """Mean velocity along x (20,), length/time, in strips at some times; nan in strips without discs."""
+    """Mean velocity along x (20,), length/time, in strips at times (T,), relative to the flow in the middle of the box.
+
+    It is nan in strips without discs.
+    """
     momentum, mass = np.zeros((2, STRIPS))
+    (common, drift), rate = centre_of_mass_velocity(log), log.scene.properties.shear
     for state in frames(log, times, None):
         strip = np.clip(state.position[:, 1] / log.box[1] * STRIPS, 0, STRIPS - 1).astype(np.intp)
-        momentum += np.bincount(strip, log.discs.mass * state.velocity[:, 0], STRIPS)
+        relative = state.velocity[:, 0] - common + rate * drift * state.time
+        momentum += np.bincount(strip, log.discs.mass * relative, STRIPS)
         mass += np.bincount(strip, log.discs.mass, STRIPS)
     return np.divide(momentum, mass, out=np.full(STRIPS, math.nan), where=mass > 0)
 

@@ -324,6 +324,6 @@ class FlightReader:
         """Return the positions (n, 2) inside the box at times `end`, and the numbers (n, 2) of box lengths crossed."""
         place = position_after(position, velocity, self._gravity(start), (end - start)[:, None])
         boxes = np.zeros_like(place)
-        for axis in np.flatnonzero(self._log.periodic):
+        for axis in np.flatnonzero(self._log.wrapped_axes):
             place[:, axis], boxes[:, axis] = wrapped(place[:, axis], self._log.box[axis])
         return place, boxes

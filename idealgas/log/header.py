@@ -36,6 +36,12 @@ class LogHeader:
         file.checked(lambda: check_images(any(self.periodic), file.names("checkpoints")), "checkpoints/image")
 
     @cached_property
+    def wrapped_axes(self) -> tuple[bool, bool]:
+        """Along which axes a flight may lead through periodic sides; the crossing of a sheared side is an event."""
+        x, y = self.periodic
+        return x, y and not self.scene.properties.shear
+
+    @cached_property
     def runs(self) -> list[tuple[str, str]]:
         """Scene (TOML with all defaults) and command of the run and of each run that resumed it, in order.
 

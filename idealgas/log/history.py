@@ -279,7 +279,7 @@ class LogHistory(LogHeader):
         else:
             start = Checkpoint(self.start_time, 0, 0, self._start_arrays(), {})
         gravity_at = self.gravity_at if self.has_gravity else None
-        return Replay(start, self.columns, self.box, self.periodic, gravity_at, self.escapes)
+        return Replay(start, self.columns, self.box, self.wrapped_axes, gravity_at, self.escapes)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
         """Return the state of the discs at the start, in the form of a checkpoint."""

@@ -127,7 +127,7 @@ class Replay:
         start: Checkpoint,
         columns: Sequence[str],
         box: tuple[float, float],
-        periodic: Sequence[bool],
+        wrapped_axes: Sequence[bool],
         gravity_at: Callable[[np.ndarray], np.ndarray] | None,
         escapes: bool,
     ) -> None:
@@ -138,7 +138,7 @@ class Replay:
         self._state = tuple(name for name in self._record if name in columns)
         self.columns = ("time", "disc", *self._state, *(("kind",) if escapes else ()))
         self._time = np.full(len(start.velocity), start.time)
-        self._box, self._periodic, self._gravity_at = box, periodic, gravity_at
+        self._box, self._wrapped_axes, self._gravity_at = box, wrapped_axes, gravity_at
 
     def follow(self, block: Any) -> None:
         """Update the states with a block of event rows."""
@@ -167,7 +167,7 @@ class Replay:
             coordinate = position_after(position[:, axis], velocity[:, axis], acceleration, delay)
             if acceleration is not None:
                 velocity[:, axis] = velocity_after(velocity[:, axis], acceleration, delay)
-            if self._periodic[axis]:
+            if self._wrapped_axes[axis]:
                 coordinate, boxes = wrapped(coordinate, self._box[axis])
                 if not (np.abs(boxes) < MOST_BOXES).all():
                     raise ValueError(

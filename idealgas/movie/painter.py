@@ -160,7 +160,7 @@ class Painter:
     def paint(self, state: LogState) -> np.ndarray:
         """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
         speed = np.hypot(*(state.velocity - self._flow).T)
-        self._place(state.position, speed, np.flatnonzero(state.inside))
+        self._place(state, speed, np.flatnonzero(state.inside))
         beside = () if self._panel is None else self._panel.update(state, speed)
         energy = np.nansum(self._gas.mass * (state.velocity**2).sum(axis=1)) / 2
         self._title.set_text(f"t = {state.time:<10.4g}  kinetic energy {energy:.6g}")
@@ -254,16 +254,20 @@ class Painter:
             return order_colours(bond_order(position, self._gas.box, tuple(self._periodic)).value)
         return self._shades[np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)]
 
-    def _place(self, position: np.ndarray, speed: np.ndarray, which: np.ndarray) -> None:
+    def _place(self, state: LogState, speed: np.ndarray, which: np.ndarray) -> None:
         """Draw the discs `which` (n,) at their positions, and their periodic images at periodic sides."""
-        colours = self._colours(position, np.nan_to_num(speed))
-        radius, box, position = self._gas.radius, np.array(self._gas.box), position[which]
-        for axis in np.flatnonzero(self._periodic):
+        colours = self._colours(state.position, np.nan_to_num(speed))
+        radius, box, position = self._gas.radius, np.array(self._gas.box), state.position[which]
+        ahead = self._scene.properties.shear * box[1] * state.time  # of the images above sheared sides
+        for axis in np.flatnonzero(self._periodic)[::-1]:
             for side in (-1, 1):
                 reach = (
                     position[:, axis] < radius[which] if side == 1 else position[:, axis] > box[axis] - radius[which]
                 )
-                position = np.concatenate((position, position[reach] + side * box * (np.arange(2) == axis)))
+                images = position[reach] + side * box * (np.arange(2) == axis)
+                if axis and ahead:
+                    images[:, 0] = np.remainder(images[:, 0] + side * ahead, box[0])
+                position = np.concatenate((position, images))
                 which = np.concatenate((which, which[reach]))
         diameter = self._diameter[which]
         self._discs.set(widths=diameter, heights=diameter, angles=np.zeros(len(which)), offsets=position)

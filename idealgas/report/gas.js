@@ -75,10 +75,10 @@ class Gas {
   // Where a disc is in its flight at a time, inside the box.
   placeAt(i, time) {
     const [since, vx, vy] = this.begun(i), dt = time - since, [gx, gy] = this.head.gravity;
-    const [width, height] = this.head.box, [periodicX, periodicY] = this.head.periodic;
+    const [width, height] = this.head.box, [wrapsX, wrapsY] = this.head.wraps;
     let x = this.from[2 * i] + (vx + gx * dt / 2) * dt, y = this.from[2 * i + 1] + (vy + gy * dt / 2) * dt;
-    if (periodicX) x -= Math.floor(x / width) * width;
-    if (periodicY) y -= Math.floor(y / height) * height;
+    if (wrapsX) x -= Math.floor(x / width) * width;
+    if (wrapsY) y -= Math.floor(y / height) * height;
     return [x, y];
   }
 

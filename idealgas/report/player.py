@@ -82,6 +82,8 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
     head = {
         "box": gas.box,
         "periodic": log.periodic,
+        "wraps": log.wrapped_axes,
+        "slide": log.scene.properties.shear * gas.box[1],
         "gravity": log.gravity,
         "positions": log.has_positions,
         "start": first,
@@ -204,7 +206,7 @@ def _unreached(
     speed = np.concatenate((state.velocity, velocity))[order].astype("<f4").astype(float)
     delay = np.diff(np.concatenate((np.zeros(len(every)), time))[order])[:, None]
     off = np.diff(place, axis=0) - (speed[:-1] + np.array(log.gravity) * delay / 2) * delay
-    off -= np.where(log.periodic, log.box, 0.0) * np.round(off / log.box)
+    off -= np.where(log.wrapped_axes, log.box, 0.0) * np.round(off / log.box)
     off[order[1:] < len(every)] = 0.0  # the next disc starts
     cell = np.floor(off.cumsum(axis=0) / (ACCURACY * max(log.box)))
     return np.sort(order[1:][np.diff(cell, axis=0, prepend=0.0).any(axis=1)] - len(every))

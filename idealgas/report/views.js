@@ -164,14 +164,19 @@ class DiscView {
   }
 
   outline(pen, i, inset, height, scale, boxX, boxY) {
-    const { gas } = this, [periodicX, periodicY] = gas.head.periodic;
+    const { gas } = this, { periodic: [periodicX, periodicY], slide } = gas.head;
     const x = gas.x[i], y = gas.y[i], r = Math.max(gas.radius[i], SMALLEST / scale);
-    this.disc(pen, inset + x * scale, height - y * scale, r * scale);
-    const imageX = periodicX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
+    const row = (x, y) => {
+      const imageX = periodicX ? (x < r ? boxX : x > boxX - r ? -boxX : 0) : 0;
+      this.disc(pen, inset + x * scale, height - y * scale, r * scale);
+      if (imageX) this.disc(pen, inset + (x + imageX) * scale, height - y * scale, r * scale);
+    };
+    row(x, y);
     const imageY = periodicY ? (y < r ? boxY : y > boxY - r ? -boxY : 0) : 0;
-    if (imageX) this.disc(pen, inset + (x + imageX) * scale, height - y * scale, r * scale);
-    if (imageY) this.disc(pen, inset + x * scale, height - (y + imageY) * scale, r * scale);
-    if (imageX && imageY) this.disc(pen, inset + (x + imageX) * scale, height - (y + imageY) * scale, r * scale);
+    if (imageY) {
+      const there = x + Math.sign(imageY) * slide * gas.time; // beyond sheared sides images move
+      row(slide ? there - Math.floor(there / boxX) * boxX : x, y + imageY);
+    }
   }
 
   disc(pen, x, y, r) {

@@ -51,14 +51,27 @@ class Discs:
         """The discs with the opposite velocities and spins."""
         return replace(self, velocity=0.0 - self.velocity, angular_velocity=0.0 - self.angular_velocity)
 
-    def wrapped(self, size: Sequence[float], periodic: Sequence[bool]) -> "Discs":
-        """The discs in a box, which may be periodic along x or y; size: its width and height, length."""
-        position = self.position.copy()
+    def wrapped(self, size: Sequence[float], periodic: Sequence[bool], shear: float = 0.0) -> "Discs":
+        """The discs in a box, which may be periodic along x or y.
+
+        Between sheared sides a disc that is moved down by a number of heights of the box becomes slower along x, as the
+        image of the gas from which it comes is faster than the gas. At a start all images are above each other.
+
+        Args:
+            size: width and height of the box, length.
+            periodic: whether it is periodic along x, and along y.
+            shear: shear rate of bottom and top, 1/time.
+        """
+        position, velocity = self.position.copy(), self.velocity.copy()
         for axis in (a for a in range(2) if periodic[a]):
             x = position[:, axis]
-            x -= size[axis] * np.floor(x / size[axis])
-            x[x >= size[axis]] = 0.0
-        return replace(self, position=position)
+            boxes = np.floor(x / size[axis])
+            x -= size[axis] * boxes
+            beyond = x >= size[axis]  # by rounding
+            x[beyond] = 0.0
+            if shear and axis == 1:
+                velocity[:, 0] -= shear * size[1] * (boxes + beyond)
+        return replace(self, position=position, velocity=velocity)
 
     @cached_property
     def numbers(self) -> dict[str, int]:

@@ -72,7 +72,8 @@ def read_start(
         columns, own = import_module(module).read_state(path, start.time)  # a log has a scene, which imports this
         update = {given[0]: str(path), "overlap": own if start.overlap is None else start.overlap}
     key = given[0] if given else "discs"
-    found = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(scene.box.size, scene.box.periodic)
+    box, shear = scene.box, scene.properties.shear
+    found = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(box.size, box.periodic, shear)
     if start.velocities == "reversed":
         found = found.reversed()
     return found, update

@@ -56,7 +56,7 @@ def collect(
         cell = gas.species.astype(np.int64) * shape[1] + strip
         spin = state.angular_velocity if state.angular_velocity is not None else np.zeros(len(gas))
         velocity = state.velocity - frame
-        velocity[:, 0] -= flow_at(state.position[:, 1], rate, height)
+        velocity[:, 0] -= flow_at(state.position[:, 1] - frame[1] * state.time, rate, height)
         energy = gas.mass * (velocity**2).sum(axis=1) / 2
         momentum = gas.mass * (0.0 if flow is None else state.velocity[:, flow])
         for c, value in enumerate((np.ones(len(gas)), energy, inertia * spin**2, momentum, gas.mass)):

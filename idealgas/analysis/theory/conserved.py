@@ -5,6 +5,7 @@ What is not met here is a caveat of every analysis; `caveats` has the sentences.
 
 import numpy as np
 
+from idealgas.physics.shear import flow_at
 from idealgas.scene import Scene
 from idealgas.state import Gas
 
@@ -35,8 +36,21 @@ def conserved_momentum(scene: Scene) -> np.ndarray:
 
 
 def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
-    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
-    return np.where(conserved_momentum(scene), gas.mass @ gas.velocity / gas.mass.sum(), 0.0)
+    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved.
+
+    Between sheared sides it is that relative to their flow, rate · (y − height/2) at the start. Where momentum along y
+    is conserved, so is that along x relative to a flow that moves along y with the gas.
+    """
+    conserved = conserved_momentum(scene)
+    if scene.properties.shear:
+        conserved = conserved[[1, 1]]
+    return np.where(conserved, _mean_velocity(scene, gas), 0.0)
+
+
+def _mean_velocity(scene: Scene, gas: Gas) -> np.ndarray:
+    """Velocity (2,) of the centre of mass at the start, relative to a flow between sheared sides, length/time."""
+    flow = flow_at(gas.position[:, 1], scene.properties.shear, gas.box[1]) if scene.properties.shear else 0.0
+    return np.asarray(gas.mass @ (gas.velocity - np.multiply.outer(flow, (1.0, 0.0))) / gas.mass.sum())
 
 
 def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
@@ -64,7 +78,7 @@ def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
 
     That is its conserved motion and, along the other axes, a motion of the centre of mass that is too large for chance.
     """
-    velocity = gas.mass @ gas.velocity / gas.mass.sum()
+    velocity = _mean_velocity(scene, gas)
     chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
     return np.where(chance, centre_of_mass_velocity(scene, gas), velocity)
 

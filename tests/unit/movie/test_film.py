@@ -110,6 +110,26 @@ def test_discs_at_joined_sides_show_their_other_half():
         assert frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)].max() < WHITE
 
 
+def test_images_beyond_sheared_sides_move():
+    """At t = 6 the image above is 0.25 · 10 · 6 = 15 ahead, so that the halves of a disc are 5 apart."""
+    sides = "".join(f"box.{side}.shear = 0.25\n" for side in ("bottom", "top"))
+    sides += 'box.left = "periodic"\nbox.right = "periodic"\n'
+    made = parse_scene(sides + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
+        f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
+    ))  # fmt: skip
+    painter = Painter(made, make_gas(made), (), 1.0, size=SIZE)
+    state = STATE._replace(position=np.array([[2.0, 0.1], [5.1, 9.9]]), time=6.0)
+    frame, place = painter.paint(state)[..., :3], layout(SIZE, (10.0, 10.0))
+
+    def at(x, y):
+        return frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)]
+
+    for x, y in ((2, 0.25), (7, 9.75), (5.1, 9.75), (0.25, 0.25), (9.75, 0.25)):
+        assert at(x, y).max() < WHITE
+    for x, y in ((2, 9.75), (5.1, 0.25)):
+        assert at(x, y).min() > WHITE
+
+
 def test_a_gate_is_there_until_it_opens():
     wall = "[[wall]]\nfrom = [5, 3]\nto = [5, 9]\nopens_at = 3\n"
     assert paint(wall)[1](5, 6).max() < 100

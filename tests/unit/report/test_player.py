@@ -31,7 +31,7 @@ def test_discs_fly_to_the_places_in_the_log(tmp_path, name):
     simulate(parse_scene(SCENES[name] + GAS), tmp_path / "gas.h5")
     with open_log(tmp_path / "gas.h5") as log:
         played, events = player(log), next(log.chunks())
-        start, box, periodic = log.state_at(0.0), log.box, log.periodic
+        start, box = log.state_at(0.0), log.box
 
     def column(key, kind):
         return np.frombuffer(base64.b64decode(played.arrays[key]), kind)
@@ -42,14 +42,16 @@ def test_discs_fly_to_the_places_in_the_log(tmp_path, name):
     disc, velocity = column("event_disc", "<u2"), column("event_velocity", "<f4").reshape(-1, 2)
     known = dict(zip(column("place_row", "<u4").tolist(), column("place", "<f4").reshape(-1, 2), strict=True))
     states = [(0.0, *state) for state in zip(start.position.astype("f4"), start.velocity.astype("f4"), strict=True)]
-    worst = 0.0
+    worst, wraps = 0.0, played.head["wraps"]
+    assert wraps == ((name in ("periodic", "shear")), name == "periodic")
+    assert played.head["slide"] == (2.5 if name == "shear" else 0.0)
     for k, i in enumerate(disc.tolist()):
         since, place, speed = states[i]
         delay = time[k] - since
         place = place.astype(float) + speed.astype(float) * delay + np.array(played.head["gravity"]) * delay**2 / 2
-        place = known.get(k, np.where(periodic, place % box, place))
+        place = known.get(k, np.where(wraps, place % box, place))
         off = np.abs(place - events.position[k])
-        worst = max(worst, np.minimum(off, np.where(periodic, np.array(box) - off, np.inf)).max())
+        worst = max(worst, np.minimum(off, np.where(wraps, np.array(box) - off, np.inf)).max())
         states[i] = time[k], place, velocity[k]
     assert np.array_equal(disc, events.disc)
     assert time == pytest.approx(events.time, rel=0, abs=played.end / TICKS)
