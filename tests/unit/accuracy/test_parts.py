@@ -49,15 +49,13 @@ def test_the_ladder_goes_down_in_steps_of_two():
 
 
 SCENE = """
-[box]
-size = [10, 10]
+box.size = [10, 10]
+run.collisions_per_disc = 5
 [[species]]
 name = "gas"
 count = 10
 radius = 0.1
 temperature = 1
-[run]
-collisions_per_disc = 5
 """
 
 
@@ -193,7 +191,7 @@ def test_costs_follow_a_power_law_between_steps_and_beyond():
         assert cost_of(dt, steps()) == pytest.approx(0.5 / dt)
 
 
-def test_sentences_say_what_the_numbers_say():
+def test_sentences_say_what_the_numbers_say_and_nothing_of_what_was_not_seen():
     """1 % takes dt = 0.005 and 100 s per time unit, 20 times the event-driven 5."""
     said = " ".join(sentences(study(steps(), BiasLaw(-2.0, 0.0, 0.1))))
     assert "collision rate to 1%, time steps need dt = 0.005 and 20 times the CPU time of the event-driven" in said
@@ -202,9 +200,6 @@ def test_sentences_say_what_the_numbers_say():
     assert "dt^2.0" in said
     assert "No trajectories were compared: no reference." in said
     assert "nan" not in said
-
-
-def test_nothing_is_said_of_what_was_not_seen():
     said = " ".join(sentences(study([row(0.01, 1.0, 0.0), row(0.005, 2.0, 0.0)])))
     assert "collision rate" not in said
     assert "pressure" in said

@@ -33,22 +33,16 @@ def made(text, *overrides):
     return gas, make_effects(scene, gas)
 
 
-def test_gravity_has_a_potential_and_steps():
+def test_spins_and_gravity_have_an_energy():
     """-3 (0.5 · 2 - 3) - (0.5 · 6 - 5): 6 + 2."""
     gas, effects = made("gravity.acceleration = [[0, [0.5, -1]], [3, [0, -2]]]")
     assert energy_parts(effects, gas) == {"potential": 8.0}
     assert tuple(effects.gravity) == (0.5, -1.0)
     assert [(time, item, value) for time, _, item, value in effects.schedule] == [(3.0, 0, 0.0), (3.0, 1, -2.0)]
-
-
-def test_periodic_sides_leave_the_potential_in_space():
     gas, effects = made('gravity.acceleration = [0.5, 0]\nbox.left = "periodic"\nbox.right = "periodic"')
     effects.periodic.image[1] = (2, 0)
     assert energy_parts(effects, gas) == {"potential": -0.5 * (3 * 2 + 26)}
-
-
-def test_spins_have_an_energy_and_a_temperature():
-    """κ m R² = 0.4 · 3/4 and 0.4/16."""
+    # κ m R² = 0.4 · 3/4 and 0.4/16.
     gas, effects = made("rotation = { inertia = 0.4 }\n", "disc.0.angular_velocity=2", "disc.1.angular_velocity=-4")
     assert effects.rotation.inertia == pytest.approx([0.3, 0.025], rel=1e-15)
     assert energy_parts(effects, gas) == {"rotational": pytest.approx(0.5 * 0.3 * 4 + 0.5 * 0.025 * 16, rel=1e-14)}
@@ -93,12 +87,11 @@ def test_a_vibrating_side_reaches_twice_its_amplitude_in_half_a_period():
     assert (side.amplitude, side.half, side.start) == (0.1, 2.0, 0.0)
     assert side.acceleration == pytest.approx(0.2, rel=1e-15)
     assert effects.vibration.amplitude.tolist() == [0.0, 0.0, 0.1, 0.0]
-    assert (
-        reach(parse_scene(DISCS + "box.bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }").box.bottom) == 0.2
-    )
+    other = parse_scene(DISCS + "box.bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }")
+    assert reach(other.box.bottom) == 0.2
 
 
-def test_a_pressed_piston():
+def test_a_pressed_piston_and_an_inner_one():
     """At the top, of mass 4 under 0.3 · 10 and gravity -1: A = -1 - 3/4; energy M (V²/2 - A X), and it is counted."""
     text = "gravity.acceleration = [0, -1]\n" + 'piston = [{ side = "top", position = 7, mass = 4, pressure = 0.3 }]\n'
     gas, effects = made(text)
@@ -112,9 +105,6 @@ def test_a_pressed_piston():
     assert (moved.piston[0].outward, moved.piston[0].v, moved.piston[0].m) == (-1.0, 0.5, 0.0)
     assert [(time, item, value) for time, _, item, value in moved.schedule] == [(2.0, 1, 0.0), (4.0, 1, -0.25)]
     assert "piston" not in {name: e for name, e in energy_parts(moved, gas).items() if e}
-
-
-def test_an_inner_piston_begins_in_the_middle():
     scene = parse_scene(DISCS + 'piston = [{ inner = "x", mass = 2 }]')
     gas = make_gas(scene)
     effects = make_effects(scene, gas)

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from idealgas.initial.build import make_gas
-from idealgas.jit import EntryPoint
 from idealgas.scene import parse_scene
 from idealgas.state import rng
 
@@ -25,15 +24,6 @@ A = species("a", count=50, radius=0.1, temperature=1.5, mass=2)
 B = species("b", count=30, radius=0.2, speed=3)
 
 
-@pytest.mark.parametrize("placement", ["random", "lattice"])
-def test_discs_are_placed_the_same_by_python_and_by_machine_code(placement, monkeypatch):
-    """Few are placed without numba: bit for bit, also where many positions are refused."""
-    tables = (disc(5, 5), species("gas", count=60, radius=0.45, temperature=1, placement=f'"{placement}"'))
-    compiled = gas_of(*tables)
-    monkeypatch.setattr(EntryPoint, "__call__", lambda self, *arguments: self.py_func(*arguments))
-    assert (gas_of(*tables).position == compiled.position).all()
-
-
 def test_explicit_discs_come_first_then_species_in_order():
     gas = gas_of(B, A, disc(1, 1), disc(5, 5))
     assert gas.species_names == ("disc", "b", "a")
@@ -42,48 +32,33 @@ def test_explicit_discs_come_first_then_species_in_order():
     assert gas.velocity[:2].tolist() == [[1, -1], [5, -1]]
     assert gas.radius[[0, 2, 32]].tolist() == [0.5, 0.2, 0.1]
     assert gas.mass[[0, 2, 32]].tolist() == [1, 1, 2]
-
-
-def test_explicit_discs_are_one_species_although_they_differ():
     gas = gas_of(disc(1, 1), disc(3, 1, radius=0.3), disc(5, 1), disc(7, 1, mass=2), A)
     assert gas.species_names == ("disc", "a")
     assert gas.species[:5].tolist() == [0, 0, 0, 0, 1]
     assert gas.radius[:4].tolist() == [0.5, 0.3, 0.5, 0.5]
     assert gas.mass[:4].tolist() == [1, 1, 1, 2]
-
-
-def test_dtypes():
     gas = gas_of(A, disc(1, 1))
     arrays = (gas.position, gas.velocity, gas.radius, gas.mass, gas.species)
     assert [array.dtype.str for array in arrays] == ["<f8"] * 4 + ["<u2"]
     assert [array.shape for array in arrays] == [(51, 2), (51, 2), (51,), (51,), (51,)]
 
 
-def test_a_temperature_is_exact_and_carries_no_momentum():
+def test_a_temperature_is_exact_means_gaussian_velocities_and_carries_no_momentum():
     gas = gas_of(A)
     assert gas.temperature == pytest.approx(1.5, rel=1e-15)
     assert np.abs(gas.velocity.sum(axis=0)).max() < 1e-13
-
-
-def test_a_temperature_means_gaussian_velocities():
-    """Kurtosis 3 of both components, within 4 standard errors √(24/n)."""
+    assert gas_of(species("a", count=1, radius=0.1, temperature=2)).kinetic_energy == pytest.approx(2, rel=1e-15)
+    # Kurtosis 3 of both components, within 4 standard errors √(24/n).
     v = gas_of(species("a", count=20_000, radius=0.01, temperature=1)).velocity
     kurtosis = (v**4).mean(axis=0) / (v**2).mean(axis=0) ** 2
     assert np.abs(kurtosis - 3).max() < 4 * np.sqrt(24 / len(v))
 
 
-def test_a_single_disc_has_its_temperature():
-    assert gas_of(species("a", count=1, radius=0.1, temperature=2)).kinetic_energy == pytest.approx(2, rel=1e-15)
-
-
-def test_equal_speeds_in_all_directions():
+def test_speeds_and_velocities_as_told():
     """The mean direction of n random ones has length 1/√n; twice that allows for 98 % of seeds."""
     v = gas_of(species("a", count=1000, radius=0.05, speed=3)).velocity
     assert np.hypot(*v.T) == pytest.approx(3, rel=1e-15)
     assert np.hypot(*v.mean(axis=0)) < 2 * 3 / np.sqrt(1000)
-
-
-def test_velocities_as_told():
     v = gas_of(species("a", count=2, radius=0.1, velocities="[[1, 0], [0.1, -2]]")).velocity
     assert v.tolist() == [[1, 0], [0.1, -2]]
 
@@ -93,43 +68,45 @@ def test_at_rest(motion):
     assert not gas_of(species("a", count=10, radius=0.1, **motion)).velocity.any()
 
 
-def test_the_same_seed_makes_the_same_gas_and_another_seed_another():
+def test_seeds_and_streams():
     one, same = gas_of(A, B), gas_of(A, B)
     other = gas_of(A, B, overrides=["scene.seed=1"])
     assert (one.position == same.position).all()
     assert (one.velocity == same.velocity).all()
     assert not (one.position == other.position).any()
     assert not (one.velocity == other.velocity).any()
-
-
-def test_another_species_leaves_the_velocities_as_they_were():
     alone, behind = gas_of(A), gas_of(B, A, disc(5, 5))
     assert (behind.velocity[behind.species == 2] == alone.velocity).all()
-
-
-def test_streams_differ_by_seed_and_use():
     first = {rng(seed, use).random() for seed in (0, 1) for use in ("placement", "velocities a", "velocities b")}
     assert len(first) == 6
 
 
-def test_a_region_holds_whole_discs():
+def test_discs_stand_in_their_region_and_before_the_piston():
     for placement in ('"random"', '"lattice"'):
         gas = gas_of(species("a", count=40, radius=0.1, speed=1, region="[2, 3, 4, 9]", placement=placement))
         assert (gas.position >= [2.1, 3.1]).all()
         assert (gas.position <= [3.9, 8.9]).all()
+    for side, low, high in (("right", [0, 0], [4, 10]), ("left", [4, 0], [10, 10]), ("top", [0, 0], [10, 4])):
+        piston = f"piston=[{{ side = '{side}', position = 4, mass = 1, pressure = 1 }}]"
+        for placement in ("random", "lattice"):
+            gas = gas_of(species("a", count=40, radius=0.3, speed=1, placement=f'"{placement}"'), overrides=[piston])
+            assert (gas.position >= np.add(low, 0.3)).all()
+            assert (gas.position <= np.subtract(high, 0.3)).all()
 
 
-def test_species_of_one_region_share_a_lattice_at_random():
+def test_lattices_are_shared_at_random_and_leave_out_what_is_taken():
     gas = gas_of(*(species(n, count=50, radius=0.3, speed=1, placement='"lattice"') for n in "ab"))
     assert len(np.unique(gas.position, axis=0)) == 100
     assert len(np.unique(gas.position[:, 1])) == 10
     for kind in (0, 1):
         assert len(np.unique(gas.position[gas.species == kind, 1])) > 5
-
-
-def test_a_lattice_leaves_out_what_explicit_discs_take():
     gas = gas_of(disc(5, 5, radius=2), species("a", count=60, radius=0.3, speed=1, placement='"lattice"'))
     assert np.hypot(*(gas.position[1:] - 5).T).min() >= 2.3
+    # Two walls cross the box; what does not fit into the rows between them goes elsewhere.
+    walls = "wall=[{ from = [0, 5], to = [10, 5] }, { from = [5, 0], to = [5, 10] }]"
+    gas = gas_of(species("a", count=80, radius=0.3, speed=1, placement='"lattice"'), overrides=[walls])
+    assert np.abs(gas.position - 5).min() >= 0.3
+    assert len(np.unique(gas.position, axis=0)) == 80
 
 
 def test_random_discs_avoid_lattices_and_explicit_discs_of_any_size():
@@ -153,23 +130,6 @@ def test_discs_of_a_periodic_box_stand_anywhere_in_it():
     for axis in range(2):
         assert position[:, axis].min() < 0.3
         assert position[:, axis].max() > 9.7
-
-
-def test_discs_stand_before_the_piston():
-    for side, low, high in (("right", [0, 0], [4, 10]), ("left", [4, 0], [10, 10]), ("top", [0, 0], [10, 4])):
-        piston = f"piston=[{{ side = '{side}', position = 4, mass = 1, pressure = 1 }}]"
-        for placement in ("random", "lattice"):
-            gas = gas_of(species("a", count=40, radius=0.3, speed=1, placement=f'"{placement}"'), overrides=[piston])
-            assert (gas.position >= np.add(low, 0.3)).all()
-            assert (gas.position <= np.subtract(high, 0.3)).all()
-
-
-def test_a_lattice_leaves_out_sites_on_walls():
-    """Two walls cross the box; what does not fit into the rows between them goes elsewhere."""
-    walls = "wall=[{ from = [0, 5], to = [10, 5] }, { from = [5, 0], to = [5, 10] }]"
-    gas = gas_of(species("a", count=80, radius=0.3, speed=1, placement='"lattice"'), overrides=[walls])
-    assert np.abs(gas.position - 5).min() >= 0.3
-    assert len(np.unique(gas.position, axis=0)) == 80
 
 
 def test_sheared_sides_add_their_flow_to_velocities_that_are_drawn():

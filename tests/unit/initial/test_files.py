@@ -69,11 +69,6 @@ def test_rows_of_a_time_in_any_order_and_number(tmp_path):
     assert len(read_state(tmp_path / "a.csv", 0.0)[0]["radius"]) == 13_334
 
 
-def test_a_table_of_a_spreadsheet_begins_with_a_mark(tmp_path):
-    (tmp_path / "a.csv").write_text("x,y,radius\n1,2,0.1\n3,4,0.2\n", encoding="utf-8-sig")
-    assert start_of(tmp_path / "a.csv").position.tolist() == [[1, 2], [3, 4]]
-
-
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
@@ -103,10 +98,12 @@ def test_a_file_that_claims_more_than_it_holds_takes_no_memory(tmp_path):
     tracemalloc.stop()
 
 
-def test_one_number_is_that_of_every_disc_of_a_file(tmp_path):
+def test_one_number_is_that_of_every_disc_of_a_file_and_a_mark_is_read_over(tmp_path):
     np.savez(tmp_path / "a.npz", position=[[1.0, 1], [3, 3]], velocity=[[1.0, 0], [0, 1]], radius=0.25, species="a")
     discs = start_of(tmp_path / "a.npz")
     assert (discs.radius.tolist(), discs.names) == ([0.25, 0.25], ("a",))
+    (tmp_path / "a.csv").write_text("x,y,radius\n1,2,0.1\n3,4,0.2\n", encoding="utf-8-sig")
+    assert start_of(tmp_path / "a.csv").position.tolist() == [[1, 2], [3, 4]]
 
 
 @pytest.mark.parametrize("radius", ["0.2", "nan", "-0.1"])

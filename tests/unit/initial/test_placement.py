@@ -33,6 +33,7 @@ def test_a_square_lattice_can_be_filled_to_the_last_site():
     assert len(sites) == 50
     assert inside(sites, low, high)
     assert pdist(sites).min() == 1.0
+    assert make_lattice(LOW, HIGH, 1.0, 80) is None
 
 
 @pytest.mark.parametrize(("side", "number"), [(40.0, 1711), (31.94, 1000)])
@@ -44,10 +45,6 @@ def test_beyond_the_square_lattice_comes_the_triangular_one(side, number):
     assert inside(sites, low, high)
     assert pdist(sites).min() >= 1.0
     assert make_lattice(low, high, 1.0, int(0.9069 * side**2 / (math.pi / 4))) is None
-
-
-def test_no_lattice_where_there_is_no_room():
-    assert make_lattice(LOW, HIGH, 1.0, 80) is None
 
 
 def placed_at_random(number, packing, seed=0):

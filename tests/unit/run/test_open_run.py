@@ -21,7 +21,7 @@ run.until = 12
 """
 
 
-def test_in_pieces_the_log_is_that_of_one_run(tmp_path):
+def test_in_pieces_or_left_early_the_log_is_that_of_one_run(tmp_path):
     scene = load_scene(GOLDEN)
     whole = simulate(scene, tmp_path / "whole.h5")
     with open_run(scene, tmp_path / "pieces.h5") as run:
@@ -34,28 +34,19 @@ def test_in_pieces_the_log_is_that_of_one_run(tmp_path):
     assert differences(tmp_path / "whole.h5", tmp_path / "pieces.h5") == []
     with open_log(tmp_path / "pieces.h5") as log:
         assert log.complete
-
-
-def test_a_run_that_is_left_early_can_be_resumed(tmp_path):
-    scene = load_scene(GOLDEN)
-    simulate(scene, tmp_path / "whole.h5")
     with open_run(scene, tmp_path / "left.h5") as run:
         assert run.advance(until=4.4)
     with open_log(tmp_path / "left.h5") as log:
         assert not log.complete
     resume(tmp_path / "left.h5")
     assert differences(tmp_path / "whole.h5", tmp_path / "left.h5") == []
-
-
-def test_reversed_by_the_program_as_by_the_scene(tmp_path):
-    """The epoch ends at the same times, so that the events are the same bits."""
-    simulate(load_scene(GOLDEN), tmp_path / "scene.h5")
+    # The epoch ends at the same times, so that the events are the same bits.
     with open_run(load_scene(GOLDEN, ["steering={}"]), tmp_path / "program.h5") as run:
         for time in (2, 5):
             run.advance(until=time)
             run.reverse()
     resume(tmp_path / "program.h5")
-    assert differences(tmp_path / "scene.h5", tmp_path / "program.h5") == ["scene"]
+    assert differences(tmp_path / "whole.h5", tmp_path / "program.h5") == ["scene"]
 
 
 def steer(scene, path):
@@ -115,7 +106,7 @@ def test_a_lost_program_leaves_a_log_that_goes_on_after_the_last_change(tmp_path
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_what_cannot_be_steered_is_one_line(tmp_path):
+def test_a_closed_log_takes_nothing_more_and_what_cannot_be_steered_is_one_line(tmp_path):
     with open_run(parse_scene(BOX, overrides=["steering="]), tmp_path / "plain.h5") as run:
         run.advance(until=1)
         with pytest.raises(UserError, match=r"^only a scene with a table \[steering\] can be changed in its run$"):
@@ -137,11 +128,7 @@ def test_what_cannot_be_steered_is_one_line(tmp_path):
         run.advance()
         with pytest.raises(UserError, match=r"^the run has reached the end of its scene$"):
             run.reverse()
-
-
-@pytest.mark.usefixtures("uncompiled")
-def test_a_closed_log_takes_nothing_more(tmp_path):
-    with open_run(parse_scene(BOX), tmp_path / "run.h5") as run:
+    with open_run(parse_scene(BOX), tmp_path / "closed.h5") as run:
         run.advance(until=1)
     with pytest.raises(OutputError, match=r"this log is closed$"):
         run.advance(until=2)

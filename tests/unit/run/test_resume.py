@@ -23,16 +23,8 @@ from idealgas.scene import SceneError, parse_scene
 SNAPSHOTS = "log.snapshot_every=0.37"
 EVENTS = 12_000
 SCENES = (
-    "quickstart",
-    "periodic",
-    "piston",
-    "cooling",
-    "rough",
-    "heat-bath",
-    "atmosphere",
-    "thermostat",
-    "novak-bortz",
-)
+    "quickstart", "periodic", "piston", "cooling", "rough", "heat-bath", "atmosphere", "thermostat", "novak-bortz"
+)  # fmt: skip
 
 
 def interrupted(slices):
@@ -141,7 +133,7 @@ def test_a_complete_log_that_was_not_closed_is_closed(finished, tmp_path):
         assert (log.unclosed, digest(log)) == (False, digest(whole))
 
 
-def test_a_summary_without_a_field(finished, tmp_path):
+def test_logs_that_were_damaged_by_hand_are_one_line(finished, tmp_path):
     path = tmp_path / "run.h5"
     shutil.copy(finished, path)
     with open_log(path) as log:
@@ -149,9 +141,6 @@ def test_a_summary_without_a_field(finished, tmp_path):
     craft(path, put("summary/name", place, b"unknown"))
     with pytest.raises(LogError, match="summary: has no events"):
         resume(path)
-
-
-def test_a_scene_that_is_none_is_one_line(finished, tmp_path):
     path = tmp_path / "run.h5"
     shutil.copy(finished, path)
     craft(path, put("runs/scene", 0, b"box.size = [1, 1]\nspecies = [{count = -1}, {count = -2}]\n"))
@@ -180,18 +169,14 @@ def test_what_would_not_follow(finished, overrides, message):
     assert finished.read_bytes() == before
 
 
-def test_a_wrong_end(finished):
+def test_a_wrong_end_and_other_laws(finished, monkeypatch):
+    """By their version, and by what they do."""
     with pytest.raises(SceneError, match=r"run\.until: out of range"):
         resume(finished, ["run.until=-1"])
-
-
-def test_other_laws_by_their_version(finished, monkeypatch):
-    monkeypatch.setattr(going_on, "TRAJECTORY", 99)
-    with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has vers"):
-        resume(finished, ["run.events=9000"])
-
-
-def test_other_laws_by_what_they_do(finished, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(going_on, "TRAJECTORY", 99)
+        with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has "):
+            resume(finished, ["run.events=9000"])
     restore = going_on.restore
 
     def displaced(*arguments):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT
+from helpers.support import ROOT, logged
 
 from idealgas import load_scene, open_log, parse_scene, simulate
 from idealgas.columns import Kind
@@ -44,8 +44,7 @@ BUMPER = "[[disc]]\nposition = [8, 5]\nradius = 0.5\nfixed = true\n"
 def test_before_gravity_begins_round_walls_and_fixed_discs_are_there(tmp_path, obstacle, place, time):
     gravity = "gravity.acceleration = [[0, [0, 0]], [20, [0, -1]]]\n"
     text = f"box.size = [10, 10]\n{gravity}run.until = 8\n{obstacle}{DISC.format(place, [1, 0])}"
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(text), tmp_path / "run.h5") as log:
         assert next(log.chunks()).time[0] == time
 
 
@@ -62,8 +61,7 @@ def test_the_velocities_have_the_temperature_of_the_time(tmp_path):
         thermostat = { temperature = [[0, 1], [60, 9]], rate = 0.2 }
         run.until = 120
     """
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(scene), tmp_path / "run.h5") as log:
         time, kind, partner, velocity = rows_of(log, "time", "kind", "partner", "velocity")
     squared = velocity**2 / 2
     left, bath = (kind == Kind.WALL) & (partner == -1), kind == Kind.THERMOSTAT
@@ -79,8 +77,7 @@ def test_the_velocities_have_the_temperature_of_the_time(tmp_path):
 def test_a_side_reflects_where_its_step_says_so(tmp_path):
     """To and fro over 9: it meets the left side at 4, 22 and 40, and is emitted only by the second."""
     side = 'box = { size = [10, 2], left = { thermal = [[0, "reflecting"], [20, 1e-8], [23, "reflecting"]] }}\n'
-    simulate(parse_scene(side + DISC.format([4.5, 1], [-1, 0]) + "[run]\nuntil = 23\n"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(side + DISC.format([4.5, 1], [-1, 0]) + "[run]\nuntil = 23\n"), tmp_path / "run.h5") as log:
         time, velocity = rows_of(log, "time", "velocity")
     assert time.tolist() == [4, 13, 22]
     assert velocity[:2, 0].tolist() == [1, -1]
@@ -130,8 +127,7 @@ def test_a_disc_falls_on_the_parabolas_of_its_gravities(tmp_path):
 def test_a_gate_opens_and_closes_twice(tmp_path):
     gate = "[[wall]]\nfrom = [5, 0]\nto = [5, 2]\nopens_at = [2, 20]\ncloses_at = [6, 30]\n"
     scene = "[box]\nsize = [10, 2]\n" + gate + DISC.format([2, 1], [1, 0]) + "[run]\nuntil = 35\n"
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(scene), tmp_path / "run.h5") as log:
         time, partner = rows_of(log, "time", "partner")
         assert log.scene.wall[0].action == "reflecting, open from 2 to 6, from 20 to 30"
     assert time.tolist() == [7.5, 11.5, 15.5, 19.5, 23.5, 32.5]

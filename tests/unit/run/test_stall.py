@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from helpers.log_compare import differences
+from helpers.small_gases import PERIODIC as ALL_PERIODIC
 from helpers.support import gas_of
 
 from idealgas.errors import UserError
@@ -12,30 +13,17 @@ from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
-PERIODIC = """
-[box]
-size = [10, 10]
-left = "periodic"
-right = "periodic"
-bottom = "periodic"
-top = "periodic"
-"""
-MOVERS = """
-disc = [
-    { position = [1, 1], velocity = [1, 0.1], radius = 0.2 },
-    { position = [3, 3], velocity = [1, -0.1], radius = 0.2 },
-    { position = [5, 5], velocity = [1, 0.2], radius = 0.2 },
-    { position = [7, 7], velocity = [1, -0.2], radius = 0.2 },
-]
-"""
-LANES = """
-box.size = [10, 10]
-disc = [
-    { position = [1, 2], velocity = [1, 0], radius = 0.2 },
-    { position = [5, 4], velocity = [-1, 0], radius = 0.2 },
-    { position = [7, 8], velocity = [1, 0], radius = 0.2 },
-]
-"""
+PERIODIC = f"{ALL_PERIODIC.replace('[8, 8]', '[10, 10]')}\n"
+
+
+def row(*discs):
+    """Tables of discs of the radius 0.2, from (x, y, vx, vy)."""
+    tables = (f"{{ position = [{x}, {y}], velocity = [{vx}, {vy}], radius = 0.2 }}" for x, y, vx, vy in discs)
+    return f"disc = [{', '.join(tables)}]\n"
+
+
+MOVERS = row((1, 1, 1, 0.1), (3, 3, 1, -0.1), (5, 5, 1, 0.2), (7, 7, 1, -0.2))
+LANES = "box.size = [10, 10]\n" + row((1, 2, 1, 0), (5, 4, -1, 0), (7, 8, 1, 0))
 """Discs that never meet, but hit walls for ever."""
 
 
@@ -124,13 +112,9 @@ def test_before_a_gate_opens_nothing_is_in_vain(tmp_path):
     text = """
         box.size = [10, 2]
         wall = [{ from = [5, 0], to = [5, 2], opens_at = 20000 }]
-        disc = [
-            { position = [2, 1], velocity = [1, 0], radius = 0.2 },
-            { position = [8, 1], velocity = [-1, 0], radius = 0.2 },
-        ]
         run.collisions_per_disc = 3
     """
-    summary = simulate(parse_scene(text), tmp_path / "run.h5")
+    summary = simulate(parse_scene(text + row((2, 1, 1, 0), (8, 1, -1, 0))), tmp_path / "run.h5")
     assert summary.completed
     assert summary.end_time > 20_000
 
@@ -184,16 +168,13 @@ def notices(text, path, *overrides):
     return [notice for notice in found if notice]
 
 
-def test_a_disc_that_keeps_the_run_busy_is_told_once(tmp_path):
+def test_a_disc_that_keeps_the_run_busy_is_told_once_and_a_gas_never_is(tmp_path, monkeypatch):
     (line,) = notices(FALL, tmp_path / "run.h5")
     assert line.startswith("1 of 6 discs makes most of the events from t = 0 to t = 1.3")
     assert notices(FALL, tmp_path / "default.h5", "restitution={ wall=0.5 }", "run.until=50") == []
-
-
-def test_a_gas_is_never_called_busy(monkeypatch, tmp_path):
-    """Not even where it has more events than its epochs are made for."""
+    # Not even where it has more events than its epochs are made for.
     monkeypatch.setattr(stall, "OVERDUE", 0.1)
-    assert notices(FALL, tmp_path / "run.h5", "restitution=", "run.until=100") == []
+    assert notices(FALL, tmp_path / "gas.h5", "restitution=", "run.until=100") == []
 
 
 def test_a_stuck_disc_ends_the_run_with_one_line(tmp_path):

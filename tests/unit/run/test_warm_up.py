@@ -3,9 +3,7 @@
 import json
 
 import pytest
-from click.testing import CliRunner
-from helpers.support import ROOT
-from idealgas_cli.main import main
+from helpers.support import ROOT, error_of, output_of
 
 from idealgas.run import simulate as module
 from idealgas.scene import load_scene, parse_scene
@@ -46,12 +44,8 @@ def test_every_method_ends_after_one_event(name, monkeypatch):
 def test_the_command_says_what_it_compiled(tmp_path, monkeypatch):
     scene = tmp_path / "gas.toml"
     scene.write_text(SCENE)
-    done = CliRunner().invoke(main, ["warm-up", str(scene), "--json"])
-    assert done.exit_code == 0, done.output
-    assert list(json.loads(done.stdout)["compile_seconds"]) == [str(scene)]
+    assert list(json.loads(output_of("warm-up", scene, "--json"))["compile_seconds"]) == [str(scene)]
     assert [path.name for path in tmp_path.iterdir()] == ["gas.toml"]
     monkeypatch.setattr("idealgas_cli.warm_up.shipped", lambda: [scene])
-    all_of_them = CliRunner().invoke(main, ["warm-up"])
-    assert str(scene) in all_of_them.stdout.replace("\n", "")
-    wrong = CliRunner().invoke(main, ["warm-up", str(scene), str(tmp_path / "none.toml")])
-    assert (wrong.exit_code, wrong.stderr.count("\n")) == (2, 1)
+    assert str(scene) in output_of("warm-up").replace("\n", "")
+    error_of("warm-up", scene, tmp_path / "none.toml")

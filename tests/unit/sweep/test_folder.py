@@ -79,9 +79,12 @@ def numbers(sweep):
     }
 
 
-def test_a_new_sweep_is_as_it_is(plan, folder):
+def test_a_new_sweep_is_as_it_is_and_values_may_be_there_twice(plan, folder):
     assert resume_numbering(plan(), folder) == plan()
     assert (folder / "sweep.toml").read_text().endswith((folder.parent / "plan.toml").read_text())
+    twice = plan(temperatures=(1, 1))
+    finish(twice, folder, twice.points[:3])
+    assert resume_numbering(twice, folder) == twice
 
 
 def test_new_values_get_new_numbers_and_seeds(plan, folder):
@@ -99,12 +102,6 @@ def test_new_values_get_new_numbers_and_seeds(plan, folder):
     for point in more.points[::4]:
         finish(more, folder, [point])
         assert resume_numbering(plan(temperatures=(0.5, 1, 2), masses=(2, 3, 1), replicates=2), folder) == more
-
-
-def test_values_that_are_there_twice(plan, folder):
-    twice = plan(temperatures=(1, 1))
-    finish(twice, folder, twice.points[:3])
-    assert resume_numbering(twice, folder) == twice
 
 
 @pytest.mark.parametrize(
@@ -143,24 +140,26 @@ def test_a_sweep_that_fails_leaves_only_files_that_others_are_writing(plan, tmp_
     run.__exit__(None, None, None)
 
 
-@pytest.mark.parametrize("name", ["precious", "sweep.toml"])
-def test_a_folder_of_others_is_left_alone(tmp_path, name):
-    (tmp_path / name).write_text("[sweep]")
-    with pytest.raises(UserError, match="exists and is not the folder of a sweep"), hold_folder(tmp_path):
-        pass
-    assert [path.name for path in tmp_path.iterdir()] == [name]
-
-
-@pytest.mark.parametrize("text", ["", "precious", "idealgas sweep"])
-def test_a_lock_file_of_others_makes_no_sweep_folder_and_is_left_as_it_is(tmp_path, text):
-    folder, elsewhere = tmp_path / "folder", tmp_path / "elsewhere"
-    folder.mkdir()
-    elsewhere.write_text(text)
-    (folder / ".lock").symlink_to(elsewhere)
+def is_no_sweep(folder):
+    """The folder is refused, and left as it is."""
+    before = [path.name for path in folder.iterdir()]
     with pytest.raises(UserError, match="exists and is not the folder of a sweep"), hold_folder(folder):
         pass
-    assert elsewhere.read_text() == text
-    assert [path.name for path in folder.iterdir()] == [".lock"]
+    assert [path.name for path in folder.iterdir()] == before
+
+
+def test_a_folder_of_others_is_left_alone(tmp_path):
+    for k, name in enumerate(("precious", "sweep.toml")):
+        (tmp_path / str(k)).mkdir()
+        (tmp_path / str(k) / name).write_text("[sweep]")
+        is_no_sweep(tmp_path / str(k))
+    for text in ("", "precious", "idealgas sweep"):  # a lock file of others makes no folder of a sweep
+        folder, elsewhere = tmp_path / f"folder {text}", tmp_path / "elsewhere"
+        folder.mkdir()
+        elsewhere.write_text(text)
+        (folder / ".lock").symlink_to(elsewhere)
+        is_no_sweep(folder)
+        assert elsewhere.read_text() == text
 
 
 @pytest.mark.parametrize("name", ["sweep.toml", "points/0000.h5", "points/0001.h5"])

@@ -63,12 +63,15 @@ def test_averages_beside_the_paper(plan, tmp_path):
         assert numbers[4] == pytest.approx((own - paper) / (own_error**2 + error**2) ** 0.5)
 
 
-def test_one_value_for_each_point(plan):
+def test_one_value_for_each_point_and_exact_values_agree_or_do_not(plan):
     plan.write_text(SWEEP.replace("[1.2, 1.5]", "[1.2]"))
     with pytest.raises(SceneError) as caught:
         load_sweep(plan)
     (line,) = caught.value.errors
     assert line == f"{plan}:16: published.0.values: not one for each point (got 1 numbers; allowed 2)"
+    assert Comparison("", 3.0, 0.0, 3.0, 0.0).deviation == 0
+    assert Comparison("", 3.0, 0.0, 4.0, 0.0).deviation == -math.inf
+    assert Comparison("", 3.0, 0.3, 4.0, 0.4).deviation == pytest.approx(-2)
 
 
 def test_an_unknown_quantity_is_said(plan, tmp_path):
@@ -76,12 +79,6 @@ def test_an_unknown_quantity_is_said(plan, tmp_path):
     output_of("sweep", ROOT / "configs" / "classics" / "galperin-2003.toml", "-o", tmp_path / "out", "--workers", 1)
     with pytest.raises(UserError, match=r"unknown quantity .*run\.events"):
         list(published_tables(load_sweep(plan), tmp_path / "out"))
-
-
-def test_exact_values_agree_or_do_not():
-    assert Comparison("", 3.0, 0.0, 3.0, 0.0).deviation == 0
-    assert Comparison("", 3.0, 0.0, 4.0, 0.0).deviation == -math.inf
-    assert Comparison("", 3.0, 0.3, 4.0, 0.4).deviation == pytest.approx(-2)
 
 
 def test_several_sweeps_have_one_figure(plan, tmp_path):
