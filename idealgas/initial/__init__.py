@@ -1,1 +1,1 @@
-"""The discs of a scene as arrays: their state, their placement, and whether they are in static contact."""
+"""The discs of a scene as arrays: their state, their placement, and checks for static contact."""

@@ -1,4 +1,4 @@
-"""The discs of a scene as arrays: the one place for their dtypes and shapes."""
+"""The discs of a scene as arrays; dtypes and shapes are defined only here."""
 
 import math
 
@@ -15,14 +15,15 @@ from idealgas.toml.issues import Issue
 
 
 def make_gas(scene: Scene) -> Gas:
-    """Discs of a scene at time 0: given ones have the first ids, then each species in the order of the file.
+    """Make the discs of a scene at time 0: given discs have the first ids, followed by the species in order.
 
-    SceneError if the discs cannot be placed, if one is in static contact with a wall or a piston to which it is
-    pressed, or if pistons crush some or have none between them.
+    Raises:
+        SceneError: the discs cannot be placed, a disc is in static contact with a wall or piston against which it is
+            pressed, pistons crush discs, or there is no disc between two pistons.
     """
     radius, mass, species, names = disc_constants(scene)
     position, velocity = _positions(scene, radius), _all_velocities(scene, mass, species, names)
-    if rate := scene.properties.shear:  # given velocities are kept
+    if rate := scene.properties.shear:  # given velocities remain unchanged
         explicit = [names.index(s.name) for s in scene.species if s.velocities is not None]
         drawn = ~np.isin(species, explicit)
         drawn[: 0 if scene.draws_velocities else len(scene.given)] = False
@@ -50,27 +51,27 @@ def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tu
     count = [s.count for _, s in scene.placed]
     radius = [_radii(s, scene.scene.seed) for _, s in scene.placed]
     mass = [mass_of(s.mass, values) for (_, s), values in zip(scene.placed, radius, strict=True)]
-    others = np.repeat(np.array([number[name] for name in tables], np.uint16), count)
+    placed_species = np.repeat(np.array([number[name] for name in tables], np.uint16), count)
     return (
         np.concatenate((given.radius, *radius)),
         np.concatenate((given.mass, *mass)),
-        np.concatenate((np.array([number[name] for name in given.names], np.uint16)[given.species], others)),
+        np.concatenate((np.array([number[name] for name in given.names], np.uint16)[given.species], placed_species)),
         names,
     )
 
 
 def _radii(species: Species, seed: int) -> np.ndarray:
-    """Radii (count,) of the discs of a species, length; those of a continuous distribution in random order."""
+    """Radii (count,) of the discs of a species, length; radii of a continuous distribution are in random order."""
     if isinstance(species.radius, float):
         return np.full(species.count, species.radius)
-    found = np.array([size.radius for size in species.sizes])
-    return found if isinstance(species.radius, Values) else rng(seed, f"radii {species.name}").permutation(found)
+    radii = np.array([size.radius for size in species.sizes])
+    return radii if isinstance(species.radius, Values) else rng(seed, f"radii {species.name}").permutation(radii)
 
 
 def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Velocities (N, 2) of all discs, length/time; given discs keep theirs unless the scene draws new ones.
+    """Velocities (N, 2) of all discs, length/time; given discs keep their velocities unless the scene draws new ones.
 
-    mass, species: (N,), of all discs.
+    mass, species: (N,) of all discs. names: names of the species.
     """
     velocity = np.empty((len(species), 2))
     kept = 0 if scene.draws_velocities else len(scene.given)
@@ -82,9 +83,9 @@ def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: 
 
 
 def _velocities(species: Species, mass: np.ndarray, random: "np.random.Generator") -> np.ndarray:
-    """Velocities (count, 2) of a species, length/time; those of a temperature T have the kinetic energy count * T.
+    """Velocities (count, 2) of a species, length/time; for a temperature T the kinetic energy is count * T.
 
-    Their total momentum is 0 if there are two discs or more. mass: (count,), of the discs.
+    At a temperature, the total momentum of two or more discs is 0. mass: (count,) of the discs.
     """
     n = species.count
     if n == 0:
@@ -104,7 +105,7 @@ def _velocities(species: Species, mass: np.ndarray, random: "np.random.Generator
 
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length; those of discs that are compressed from where smaller discs are placed at random."""
+    """Positions (N, 2), length; compressed discs start from random positions at which they are smaller."""
     if not any(s.placement == "compressed" and s.count for _, s in scene.placed):
         return _placed(scene, radius)
     from idealgas.initial.compression import compress, loose_scale
@@ -120,8 +121,8 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length: explicit discs first, then lattices, one for each region, then discs at random."""
-    from idealgas.initial import lattices, placement  # compiled code, which a reader of logs does not need
+    """Positions (N, 2), length: first explicit discs, then a lattice for each region, then discs at random."""
+    from idealgas.initial import lattices, placement  # compiled code, which readers of logs do not need
     from idealgas.initial.room import make_room
 
     box, periodic = scene.box, scene.properties.periodic
@@ -140,8 +141,8 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
         if s.count == 0:
             continue
         x0, y0, x1, y1 = region = s.region or space
-        own = radius[ids[k + 1]]
-        bounds[ids[k + 1]] = np.column_stack((x0 + own, y0 + own, x1 - own, y1 - own))
+        radii = radius[ids[k + 1]]
+        bounds[ids[k + 1]] = np.column_stack((x0 + radii, y0 + radii, x1 - radii, y1 - radii))
         if s.placement == "lattice":
             by_region.setdefault(region, []).append(k)
         elif s.placement == "triangular":
@@ -183,6 +184,6 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
-    """Error of a species for whose discs there is not enough room."""
+    """Error for a species whose discs do not find enough room; how: kind of placement."""
     keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
     return SceneError(scene.report([Issue(keys, f"no room for all discs {how}", got, allowed)]))

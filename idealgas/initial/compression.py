@@ -1,8 +1,8 @@
 """Dense states by compression: discs collide while their radii grow at a constant rate, until they reach their size.
 
 This is the event-driven algorithm of Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990), in a periodic box; only
-the initial velocities are random. It prepares the positions before time 0 of a run: all discs have the same mass,
-velocities are rescaled repeatedly, and only the positions are kept.
+the initial positions and velocities are random. The compression prepares the positions at time 0 of a run: all discs
+have the same mass, velocities are rescaled repeatedly, and only the final positions are used.
 """
 
 import math
@@ -14,37 +14,37 @@ from idealgas.jit import inline, njit
 from idealgas.physics.periodic import nearest_image
 
 LOOSE = 0.5
-"""Packing fraction at which the compression starts, from random positions."""
+"""Packing fraction of the random positions from which the compression starts."""
 
 RATE = 5e-3
-"""Growth of the mean radius per time, in units of the root-mean-square of a component of the velocity."""
+"""Rate at which the mean radius grows, in units of the root mean square of a velocity component."""
 
 GAP = 1e-9
-"""Relative growth beyond the final radius, so that rounding causes no overlap at the start of the run."""
+"""Relative growth beyond the final radius, so that rounding does not cause overlaps at the start of the run."""
 
 SLACK = 0.3
 """Gap up to which neighbours are listed, in diameters of the largest disc."""
 
 RESCALE_INTERVAL, MAX_COLLISIONS = 4, 5_000
-"""Collisions per disc after which velocities are rescaled, and after which the discs count as jammed."""
+"""Numbers of collisions per disc after which velocities are rescaled, and after which the discs count as jammed."""
 
 
 class Growing(NamedTuple):
     """N growing discs. Times count from the last synchronization, when all discs were at `origin`.
 
     Attributes:
-        position: (N, 2) f8, where each disc was at its last collision, length.
+        position: (N, 2) f8, position of each disc at its last collision, length.
         velocity: (N, 2) f8, length/time.
         time: (N,) f8, time of the last collision.
         origin: (N, 2) f8, position at the last synchronization, length.
         radius: (N,) f8, radius at the end of the compression, length.
         period: (2,) f8, width and height of the box, length.
-        first: (N + 1,) i8, where the neighbours of each disc begin in `neighbour`.
+        first: (N + 1,) i8, index in `neighbour` at which the neighbours of each disc begin.
         neighbour: i8, discs that a disc may meet before the next synchronization.
         next_time: (N,) f8, time of the next event of each disc.
-        partner: (N,) i8, disc that it then collides with; -1 if it may then leave the range of its neighbours.
+        partner: (N,) i8, partner in this event; -1 if the disc may leave the range of its neighbours instead.
         collisions: (N,) i8, number of collisions of each disc.
-        known: (N,) i8, number of collisions of the partner for which the event was predicted.
+        known: (N,) i8, number of collisions of the partner when the event was predicted.
     """
 
     position: np.ndarray
@@ -62,16 +62,16 @@ class Growing(NamedTuple):
 
 
 def loose_scale(radius: np.ndarray, box: tuple[float, float]) -> float:
-    """Fraction of their final radii at which the discs start; 1 if these are loose enough already."""
+    """Fraction of the final radii at which the discs start; 1 if the final packing fraction is low enough."""
     return min(math.sqrt(LOOSE * box[0] * box[1] / (math.pi * float(radius @ radius))), 1.0)
 
 
 def compress(
     position: np.ndarray, radius: np.ndarray, box: tuple[float, float], scale: float, random: np.random.Generator
 ) -> float:
-    """Let discs grow from scale * radius to radius; return the fraction of the radius reached before they jam.
+    """Let discs grow from scale * radius to radius; return the fraction of the radius that they reach before they jam.
 
-    position: (N, 2), changed in place, length. radius: (N,), length. random: for the initial velocities.
+    position: (N, 2), changed in place, length. radius: (N,), length. random: source of the initial velocities.
     """
     n, period = len(radius), np.array(box)
     velocity, rate = random.standard_normal((n, 2)), RATE / float(radius.mean())
@@ -80,7 +80,7 @@ def compress(
         velocity -= velocity.mean(axis=0)
         velocity /= math.sqrt(float((velocity**2).mean()))
         slack = min(SLACK * 2 * float(radius.max()), (min(box) / 2 - 2 * float(radius.max())) / 2)
-        reach = 2 * float(radius.max()) * scale + 2 * slack  # discs come nearer by `slack`, and grow by as much
+        reach = 2 * float(radius.max()) * scale + 2 * slack  # discs approach by `slack` and grow by the same amount
         longest = min((end - scale) / rate, slack / (2 * float(radius.max()) * rate))
         discs = _synchronised(position, velocity, radius, period, reach)
         events, time = _grow(discs, scale, rate, slack / 2, longest, RESCALE_INTERVAL * n)
@@ -94,7 +94,7 @@ def compress(
 def _synchronised(
     position: np.ndarray, velocity: np.ndarray, radius: np.ndarray, period: np.ndarray, reach: float
 ) -> Growing:
-    """Discs at their positions, with the neighbours of each that are nearer than `reach` (length)."""
+    """Return the discs at their positions, with those neighbours of each that are closer than `reach` (length)."""
     from scipy.spatial import cKDTree
 
     n = len(radius)
@@ -119,7 +119,7 @@ def _synchronised(
 
 @inline
 def _time_to_contact(discs, i, j, scale, rate):
-    """Time at which discs i and j touch, infinite if they never do; their radii are those of `scale` at time 0."""
+    """Time at which discs i and j touch; infinite if they never do. scale: fraction of the final radii at time 0."""
     now = max(discs.time[i], discs.time[j])
     since_i, since_j = now - discs.time[i], now - discs.time[j]
     vx = discs.velocity[i, 0] - discs.velocity[j, 0]
@@ -130,8 +130,8 @@ def _time_to_contact(discs, i, j, scale, rate):
     dy -= discs.position[j, 1] + discs.velocity[j, 1] * since_j
     dx = nearest_image(dx, discs.period[0], True)
     dy = nearest_image(dy, discs.period[1], True)
-    both = discs.radius[i] + discs.radius[j]
-    contact, growth = both * (scale + rate * now), both * rate
+    sum_of_radii = discs.radius[i] + discs.radius[j]
+    contact, growth = sum_of_radii * (scale + rate * now), sum_of_radii * rate
     a = vx * vx + vy * vy - growth * growth
     b = dx * vx + dy * vy - contact * growth
     c = dx * dx + dy * dy - contact * contact
@@ -145,7 +145,7 @@ def _time_to_contact(discs, i, j, scale, rate):
 
 @inline
 def _predict(discs, i, scale, rate, range_):
-    """Find the next event of disc i; range_: how far it may be from its origin, length."""
+    """Find the next event of disc i; range_: largest allowed distance from its origin, length."""
     x, y = discs.position[i, 0] - discs.origin[i, 0], discs.position[i, 1] - discs.origin[i, 1]
     speed = math.hypot(discs.velocity[i, 0], discs.velocity[i, 1])
     discs.next_time[i] = discs.time[i] + max(range_ - math.hypot(x, y), 0.0) / speed
@@ -181,7 +181,7 @@ def _collide(discs, i, j, time, rate):
 
 @njit
 def _grow(discs, scale, rate, range_, longest, most):
-    """Collide discs until the time `longest`, the number of collisions `most`, or a disc that leaves its range.
+    """Collide discs until the time `longest`, `most` collisions, or the time at which a disc may leave its range.
 
     Returns the number of collisions and the time.
     """

@@ -1,7 +1,7 @@
-"""Discs in static contact with a wall to which they are pressed, which would collide indefinitely at one instant.
+"""Discs in static contact with a wall against which they are pressed, which would collide endlessly at one instant.
 
-Only a disc that touches the wall exactly and has no velocity along its normal is in static contact; any other disc
-flies or bounces.
+Only a disc that touches the wall exactly and has no velocity along the normal is in static contact; any other disc
+moves freely or bounces.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from idealgas.toml.issues import Issue, Key
 
 
 def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
-    """One issue for each explicit disc and each species with a disc in static contact with a wall or a piston."""
+    """Yield an issue for each explicit disc and each species with a disc in static contact with a wall or piston."""
     reported = set()
     for name, in_contact in _supports(scene, gas):
         for i in np.flatnonzero(in_contact):
@@ -29,7 +29,7 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
 
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
-    """Name of each wall to which discs may be pressed, and a mask (N,) of the discs in static contact with it."""
+    """Yield the name of each wall against which discs are pressed, and a mask (N,) of the discs in static contact."""
     properties = scene.properties
     accelerations = np.array([properties.acceleration, *properties.later_accelerations])
     for side, name in enumerate(SIDES):
@@ -51,15 +51,15 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
     for piston, name in zip(scene.piston, piston_names(scene.piston), strict=True):
         outward = piston.outward_from(gas.position, gas.box)
         gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius
-        own = np.array([piston.acceleration(gas.box, acceleration) for acceleration in accelerations])
-        relative = _first(own - accelerations[:, piston.axis])
+        piston_acceleration = np.array([piston.acceleration(gas.box, acceleration) for acceleration in accelerations])
+        relative = _first(piston_acceleration - accelerations[:, piston.axis])
         pressed = outward * relative < 0
         in_contact = (gap <= 0) & (gas.velocity[:, piston.axis] == piston.start_velocity)
         yield name, in_contact & pressed
 
 
 def _first(accelerations: np.ndarray) -> np.ndarray:
-    """First component of each series along axis 0 that is not 0: it takes a disc away from a wall, or presses it on."""
+    """First component that is not 0 of each series along axis 0; it moves a disc away from a wall or presses it on."""
     return np.take_along_axis(accelerations, (accelerations != 0).argmax(axis=0)[None, ...], axis=0)[0]
 
 

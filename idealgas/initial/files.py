@@ -1,4 +1,4 @@
-"""Columns of discs from files: .npz, .csv, .gsd and .extxyz, those of `idealgas export` among them."""
+"""Columns of discs from files: .npz, .csv, .gsd and .extxyz, including files from `idealgas export`."""
 
 import csv
 import math
@@ -18,7 +18,7 @@ from idealgas.scene.start import COLUMNS, SINGLE, StartError
 
 Instant = float | Literal["end"]
 State = tuple[dict[str, Any], float]
-"""Columns by name, and the overlap that the precision of the file explains, length."""
+"""Columns by name, and the largest overlap that the precision of the file can cause, length."""
 
 LABELS = {"time", "disc", "image_x", "image_y", "speed"}
 """Columns of exported frames that are not part of a state."""
@@ -27,14 +27,14 @@ MOST_BYTES, MOST_COLUMN_BYTES = 2**31, 2**28
 """Largest sizes of a file, and of a column in memory, bytes."""
 
 LONGEST_LINE = 2**17
-"""Largest number of characters of a line; Python's csv module has the same limit for a field."""
+"""Largest number of characters in a line; Python's csv module has the same limit for a field."""
 
 ROWS = 2**14
-"""Number of rows of a text that are in memory as text at a time."""
+"""Number of rows of a text file that are in memory as text at the same time."""
 
 
 def read_state(path: Path, time: Instant) -> State:
-    """Columns of the discs of a file at a time. Raises StartError if they cannot be read."""
+    """Read the columns of the discs in a file at a time. Raises StartError if they cannot be read."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise StartError("file", "unknown kind of file", path.name, ", ".join(READERS))
@@ -67,7 +67,7 @@ def read_state(path: Path, time: Instant) -> State:
 
 
 def _inside(columns: dict[str, Any]) -> dict[str, Any]:
-    """Columns without discs that have left the gas, whose position and velocity are nan in frames."""
+    """Return the columns without discs that have left the gas, whose position and velocity are nan in frames."""
     motion = [np.asarray(columns.get(name, 0.0), float) for name in ("position", "velocity")]
     if motion[0].shape != motion[1].shape or motion[0].ndim != 2:
         return columns
@@ -76,7 +76,7 @@ def _inside(columns: dict[str, Any]) -> dict[str, Any]:
     def kept(values: Any) -> Any:
         if isinstance(values, list):
             return list(compress(values, here))
-        return np.asarray(values)[here] if np.ndim(values) else values  # one number for all discs
+        return np.asarray(values)[here] if np.ndim(values) else values  # a single number holds for all discs
 
     return {name: kept(values) for name, values in columns.items()}
 
@@ -111,7 +111,7 @@ def _shape_of(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
 
 
 def _check_column(name: str, shape: tuple[int, ...], dtype: np.dtype) -> None:
-    """Refuse a column that is too large before it is read, or of numbers that are not real."""
+    """Raise StartError for a column that is too large, before it is read, or that does not contain real numbers."""
     _check_number(shape[0] if shape else 1)
     if name not in COLUMNS:
         raise StartError("file", "unknown column", name, ", ".join(COLUMNS))
@@ -131,7 +131,7 @@ def _single(columns: dict[str, Any]) -> float:
 
 
 def _lines(file: IO[str]) -> Iterator[str]:
-    """Lines of a text, none of them longer than LONGEST_LINE."""
+    """Yield the lines of a text; ValueError if a line is longer than LONGEST_LINE."""
     while line := file.readline(LONGEST_LINE + 1):
         if len(line) > LONGEST_LINE:
             raise ValueError(f"a line of more than {LONGEST_LINE:,} characters")
@@ -139,7 +139,7 @@ def _lines(file: IO[str]) -> Iterator[str]:
 
 
 def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
-    """Text of the cells (n, width) of the next rows."""
+    """Yield the text of the cells (n, width) in chunks of rows."""
     rows = iter(rows)
     while chunk := list(islice(rows, ROWS)):
         if any(len(row) != width for row in chunk):
@@ -148,18 +148,18 @@ def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
 
 
 class _Moment:
-    """State at the wanted time, from parts of a file with their times, "end" for the last time of all."""
+    """State at the wanted time, or at the last time for "end", from parts of a file with their times."""
 
     def __init__(self, wanted: Instant) -> None:
         self._wanted, self._range = wanted, (math.inf, -math.inf)
         self.begin(-math.inf)
 
     def begin(self, time: float) -> None:
-        """Forget the parts before, as the next ones are at another time, or of a later frame."""
+        """Discard the previous parts, because the next parts belong to another time or a later frame."""
         self.time, self._parts, self._discs = time, list[dict[str, np.ndarray]](), 0
 
     def wants(self, time: float) -> bool:
-        """Whether parts at this time may be those of the wanted state."""
+        """Whether parts at this time may belong to the wanted state."""
         self._range = min(self._range[0], time), max(self._range[1], time)
         return time >= self.time if self._wanted == "end" else time == self._wanted
 
@@ -170,7 +170,7 @@ class _Moment:
         self._parts.append(columns)
 
     def columns(self) -> dict[str, Any]:
-        """Columns of the state; those of text as lists. Raises StartError if the file has no such time."""
+        """Return the columns of the state, columns of text as lists. Raises StartError if the file has no such time."""
         if not self._parts:
             allowed = "{:g} to {:g}".format(*self._range) if self._range[0] < math.inf else "a file with discs"
             raise StartError("time", "no such time in the file", f"{self._wanted}", allowed)
@@ -203,7 +203,7 @@ def _csv(path: Path, time: Instant) -> State:
 
 
 def _state_columns(texts: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Columns of a state from columns of text by name."""
+    """Convert columns of text, by name, to the columns of a state."""
     columns: dict[str, Any] = {}
     for name in (name for name in COLUMNS[2:] if name in texts):
         columns[name] = texts[name] if name == "species" else np.array(texts[name], float)
@@ -227,7 +227,7 @@ def _gsd(path: Path, time: Instant) -> State:
                 wanted = k
         if wanted is None:
             return moment.columns(), 0.0
-        for k in (wanted, 0):  # a frame without a number of its own has that of the first
+        for k in (wanted, 0):  # a frame that does not store its number of discs has that of the first frame
             if file.file.chunk_exists(frame=k, name="particles/N"):
                 _check_number(int(file.file.read_chunk(frame=k, name="particles/N")[0]))
         frame = file[wanted]
@@ -243,7 +243,7 @@ def _gsd(path: Path, time: Instant) -> State:
 
 
 _NAMES = {"pos": "position", "velo": "velocity", "radius": "radius", "mass": "mass", "masses": "mass"}
-"""Columns of extended XYZ."""
+"""Columns of a state, by property of extended XYZ."""
 
 
 def _extxyz(path: Path, time: Instant) -> State:
@@ -271,7 +271,7 @@ def _extxyz(path: Path, time: Instant) -> State:
 
 
 def _places_of(head: str) -> dict[str, tuple[int, int, str]]:
-    """First and last column, and type, of each property in the second line of a frame, by name."""
+    """First column, column after the last, and type of each property in the second line of a frame, by name."""
     if (stated := re.search(r"\bProperties=(\S+)", head)) is None:
         raise ValueError("no Properties in the second line")
     parts, first = stated[1].split(":"), 0
@@ -283,7 +283,7 @@ def _places_of(head: str) -> dict[str, tuple[int, int, str]]:
 
 
 def _frame_columns(cells: np.ndarray, places: dict[str, tuple[int, int, str]]) -> dict[str, np.ndarray]:
-    """Columns of a state from the cells (n, columns) of a frame of extended XYZ, as text."""
+    """Convert the cells (n, columns) of a frame of extended XYZ, as text, to the columns of a state."""
     columns: dict[str, np.ndarray] = {}
     for name, (first, last, kind) in places.items():
         if name in _NAMES and kind in "RI":

@@ -1,4 +1,4 @@
-"""Initial positions on lattices: spaced evenly in a region, or triangular in a whole periodic box."""
+"""Initial positions on lattices: evenly spaced in a region, or triangular in a whole periodic box."""
 
 from collections.abc import Iterator
 
@@ -15,15 +15,15 @@ def place_on_lattice(
 ) -> bool:
     """Place discs on a lattice spaced for the largest of them; return whether there is room for all.
 
-    Sites where discs are already are left out; the free sites are used evenly.
+    Sites that are already occupied are left out; the free sites are used evenly.
 
     Args:
-        room: for the discs.
+        room: room for the discs.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
         bounds: (4,), x0, y0, x1, y1 for the centre of the largest disc, length.
-        placed: ids of the discs that are there already.
-        ids: of the discs to be placed.
+        placed: ids of the discs that are already in place.
+        ids: ids of the discs to be placed.
     """
     largest = radius[ids].max()
     wanted = len(ids)
@@ -31,8 +31,8 @@ def place_on_lattice(
         reach = np.full(len(sites), largest)
         free = is_clear(room, sites, reach)
         if len(placed):
-            others = np.concatenate((sites, position[placed])), np.concatenate((reach, radius[placed]))
-            for i, k in overlapping(room, *others):
+            discs = np.concatenate((sites, position[placed])), np.concatenate((reach, radius[placed]))
+            for i, k in overlapping(room, *discs):
                 free[i[(i < len(sites)) & (k >= len(sites))]] = False
                 free[k[(k < len(sites)) & (i >= len(sites))]] = False
         sites = sites[free]
@@ -44,9 +44,9 @@ def place_on_lattice(
 
 
 def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarray, ids: np.ndarray) -> bool:
-    """Whether discs `ids` at their positions (N, 2) overlap no wall, none of the discs `placed` and none of themselves.
+    """Whether the discs `ids` overlap neither walls nor the discs `placed` nor each other.
 
-    position, radius (N,): length.
+    position: (N, 2), length. radius: (N,), length.
     """
     if not is_clear(room, position[ids], radius[ids]).all():
         return False
@@ -55,7 +55,7 @@ def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarra
 
 
 def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Indices (n,) of both discs of every pair that overlaps, in several parts; position: (M, 2), radius: (M,)."""
+    """Yield the indices (n,) of both discs of all pairs that overlap, in parts; position: (M, 2), radius: (M,)."""
     for i, k in near_pairs(position, radius, (room.period_x, room.period_y)):
         (dx, dy), contact = (position[i] - position[k]).T, radius[i] + radius[k]
         dx = nearest_image(dx, room.period_x, room.period_x > 0)
@@ -65,10 +65,10 @@ def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterato
 
 
 def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int) -> np.ndarray | None:
-    """At least `sites` points (M, 2) from `low` to `high`, no two closer than a diameter; None if there is no room.
+    """Return at least `sites` points (M, 2) from `low` to `high`, no two closer than a diameter; None without room.
 
-    low, high: (2,), length. The lattice is square if that fits, else triangular; its points are in rows from below, and
-    fill the whole region.
+    low, high: (2,), length. The lattice is square if a square lattice fits, otherwise triangular; its points are in
+    rows from below, and fill the whole region.
     """
     width, height = high - low + diameter
     rows = np.arange(1, min(int(2 * height / diameter), sites) + 1)
@@ -85,7 +85,7 @@ def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int)
 
 
 def _square(low: np.ndarray, high: np.ndarray, columns: int, rows: int, diameter: float) -> np.ndarray:
-    """Points (M, 2) of a square lattice, each in the middle of a cell of its own."""
+    """Points (M, 2) of a square lattice, each at the centre of a cell."""
     shape = np.array((columns, rows))
     index = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
     corner = low - diameter / 2

@@ -1,8 +1,8 @@
-"""Initial positions at random without overlap, and clear of the walls.
+"""Random initial positions without overlaps of discs or walls.
 
 Random placement is sequential addition, the largest discs first. Whenever a position is refused, one of the discs
-placed so far makes a Metropolis step: the gas stays close to equilibrium and does not jam at the packing fraction 0.547
-of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density refusals are rare.
+placed so far makes a Metropolis step. The gas therefore stays close to equilibrium and does not jam at the packing
+fraction 0.547 of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density refusals are rare.
 """
 
 from typing import Any
@@ -20,7 +20,7 @@ MIN_REFUSALS = 3_000_000
 """Number of refused positions, of all discs together, before which random placement never fails."""
 
 FEW, FEW_REFUSALS = 10_000, 20_000
-"""Numbers of discs, one in a cell, and of refused positions that Python takes less time for than the compilation."""
+"""Numbers of discs, at one disc per cell, and of refused positions up to which Python is faster than compilation."""
 
 
 def place_at_random(
@@ -33,23 +33,24 @@ def place_at_random(
     random: np.random.Generator,
     max_refusals: int,
 ) -> int:
-    """Place discs at random in the order of `ids`; return the number of those that found room.
+    """Place discs at random in the order of `ids`; return the number of discs that found room.
 
-    Few discs are placed in Python, the rest of them or many discs by compiled code, with the same result bit for bit.
+    A few discs are placed in Python. If there are many, or too many positions are refused, compiled code places the
+    rest, with the same result bit for bit.
 
     Args:
-        room: for the discs.
+        room: room for the discs.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
         bounds: (N, 4), x0, y0, x1, y1 for the centre of each disc, length.
-        placed: ids of the discs that are there already.
-        ids: of the discs to be placed.
-        random: random numbers.
+        placed: ids of the discs that are already in place.
+        ids: ids of the discs to be placed.
+        random: source of random numbers.
         max_refusals: number of refused positions after which to stop.
     """
     first, behind = _linked_lists(room, position, placed, len(radius))
     state = [first, behind, position[:, 0].copy(), position[:, 1].copy()]
-    crowding = max(len(radius) / len(first), 1.0)  # discs in a cell
+    crowding = max(len(radius) / len(first), 1.0)  # mean number of discs per cell, at least 1
     number, refusals = 0, min(int(FEW_REFUSALS / crowding), max_refusals)
     if len(radius) * crowding > FEW:
         refusals = 0
@@ -66,8 +67,8 @@ def place_at_random(
 
 
 def _linked_lists(room: Room, position: np.ndarray, placed: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """The first of the discs `placed` in each cell, and the next one behind each of n discs in its cell; else -1."""
-    placed = placed[::-1]  # the last first: those on lattices are in the way most often
+    """First of the discs `placed` in each cell, and the next disc in the cell after each of n discs; -1 for none."""
+    placed = placed[::-1]  # the last come first, because discs on lattices are in the way most often
     cell = cells_of(room, position[placed])
     order = np.argsort(cell, kind="stable")
     cell, placed = cell[order], placed[order]
@@ -87,7 +88,7 @@ def _cell_of(room, x, y):
 
 @inline
 def _is_free(room, first, behind, xs, ys, radius, x, y, i):
-    """Whether disc i at (x, y) would overlap no wall, no solid and no disc of the cells but itself."""
+    """Whether disc i at (x, y) would overlap neither walls nor solids nor other discs."""
     column, row = _cell_of(room, x, y)
     wraps_x, wraps_y = room.period_x > 0.0, room.period_y > 0.0
     for c in range(column - 1, column + 2):
@@ -122,13 +123,13 @@ def _take_out(room, first, behind, xs, ys, i):
 
 
 def insert(room, first, behind, xs, ys, radius, bounds, ids, random, placed, max_refusals):
-    """Place discs at random in the order of `ids`, of which the first `placed` are there; return how many then are.
+    """Place discs at random in the order of `ids`, of which the first `placed` are in place; return the new number.
 
-    first, behind: of the cells' linked lists. xs, ys: (N,) coordinates, length. bounds: (N, 4), see `place_at_random`.
-    In Python all are lists, in compiled code arrays.
+    first, behind: linked lists of the cells. xs, ys: (N,) coordinates, length. bounds: (N, 4), see `place_at_random`.
+    In Python all of these are lists; in compiled code they are arrays.
     """
     refused = 0
-    step = False  # whether a disc in place makes a step, instead of a new one that looks for room
+    step = False  # whether a disc that is in place makes a Metropolis step, instead of a new disc being tried
     while placed < len(ids) and (refused < max_refusals or step):
         i = ids[int(placed * random.random())] if step else ids[placed]
         x0, y0, x1, y1 = bounds[i][0], bounds[i][1], bounds[i][2], bounds[i][3]
@@ -139,7 +140,7 @@ def insert(room, first, behind, xs, ys, radius, bounds, ids, random, placed, max
             x = min(x0 + (x1 - x0) * random.random(), x1)
             y = min(y0 + (y1 - y0) * random.random(), y1)
         inside = not step or (x0 <= x <= x1 and y0 <= y <= y1)
-        if inside and _is_free(room, first, behind, xs, ys, radius, x, y, i):  # once: it is long, and inlined
+        if inside and _is_free(room, first, behind, xs, ys, radius, x, y, i):  # a single call: the code is inlined
             if step:
                 _take_out(room, first, behind, xs, ys, i)
             else:

@@ -1,4 +1,4 @@
-"""Where discs can be: the box, its walls and its solids, in cells for the search of what a disc would overlap."""
+"""Room for discs: the box, its walls and its solids, in cells for the search of discs and walls that overlap."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,17 +14,17 @@ from idealgas.scene.solids import NO_SOLIDS
 WALL = np.dtype(
     [("x", "f8"), ("y", "f8"), ("along_x", "f8"), ("along_y", "f8"), ("radius", "f8"), ("arc", ARC)], align=True
 )
-"""A `PlacedWall` in compiled code."""
+"""Type of a `PlacedWall` in compiled code."""
 
 
 class PlacedWall(NamedTuple):
     """A wall or a fixed disc.
 
     Attributes:
-        x, y: its start, length.
-        along_x, along_y: from the start to the end, length.
-        radius: of a fixed disc, length; else 0.
-        arc: the arc, if it is one, else NO_ARC.
+        x, y: start of the wall, length.
+        along_x, along_y: vector from the start to the end, length.
+        radius: radius of a fixed disc, length; 0 for walls.
+        arc: the arc; NO_ARC for a straight wall.
     """
 
     x: float
@@ -36,20 +36,21 @@ class PlacedWall(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Cells no smaller than the largest diameter, about one for each disc, and the walls near each.
+    """Cells no smaller than the largest diameter, about one per disc, and the walls near each cell.
 
     Attributes:
         columns: number of cells along x.
         rows: number of cells along y; cell (c, r) has the index c * rows + r.
-        width: of a cell, length.
-        height: of a cell, length.
-        period_x: width of the box if its left and right sides are periodic, length; else 0.
-        period_y: height of the box if its lower and upper sides are periodic, length; else 0.
-        wall: every wall, images included: a list of `PlacedWall`, or (W,) WALL for compiled code.
+        width: width of a cell, length.
+        height: height of a cell, length.
+        period_x: width of the box if its left and right sides are periodic, otherwise 0, length.
+        period_y: height of the box if its bottom and top sides are periodic, otherwise 0, length.
+        wall: all walls, including images: a list of `PlacedWall`, or (W,) WALL for compiled code.
         wall_start: (cells + 1,) i8, first entry of each cell in `wall_item`.
-        wall_item: i8, numbers of the walls that a disc of a cell may touch, cell by cell.
-        inside: closed curves of walls in which no disc is, like `wall`.
-        outside: closed curves of walls outside of which no disc is; no walls if discs are everywhere else.
+        wall_item: i8, numbers of the walls that a disc in a cell may touch, cell by cell.
+        inside: walls of the closed curves inside which there is no gas, in the form of `wall`.
+        outside: walls of the closed curves outside which there is no gas, in the form of `wall`; empty without such
+            curves.
     """
 
     columns: int
@@ -72,10 +73,14 @@ def make_room(
     walls: Sequence[Any] = (),
     solids: Mapping[str, Sequence[Any]] = NO_SOLIDS.walls,
 ) -> Room:
-    """Room for discs of some radii (N,), length.
+    """Make the room for discs.
 
-    box: width and height, length. periodic: whether the sides along x and along y are periodic. walls: with start, end,
-    arc and radius. solids: the walls of solids, as in `Solids`.
+    Args:
+        box: width and height, length.
+        radius: (N,) radii of the discs, length.
+        periodic: whether the sides along x and along y are periodic.
+        walls: walls, with the attributes start, end, arc and radius.
+        solids: walls of solids, as in `Solids`.
     """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
@@ -93,7 +98,7 @@ def make_room(
 
 
 def for_kernels(room: Room) -> Room:
-    """The same room with arrays of walls, for compiled code."""
+    """Return the same room with arrays of walls, for compiled code."""
     wall, inside, outside = (np.array(a, WALL).view(np.recarray) for a in (room.wall, room.inside, room.outside))
     return room._replace(wall=wall, inside=inside, outside=outside)
 
@@ -105,7 +110,7 @@ def _numbers(walls: Sequence[Any]) -> np.ndarray:
 
 
 def _placed(rows: np.ndarray) -> list[PlacedWall]:
-    """Walls from the numbers (W, 12) of `_numbers`."""
+    """Convert the numbers (W, 12) of `_numbers` to walls."""
     columns = np.hstack((rows[:, :2], rows[:, 2:4] - rows[:, :2], rows[:, 4:]))
     return [PlacedWall(x, y, dx, dy, radius, Arc(*arc)) for x, y, dx, dy, radius, *arc in columns.tolist()]
 
@@ -118,7 +123,7 @@ def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
 
 
 def _cells_near(wall: np.ndarray, shape: tuple[int, int], size: np.ndarray, reach: float) -> np.ndarray:
-    """Indices of the cells of which a point may be within reach (length) of a wall."""
+    """Indices of the cells that may contain a point within reach (length) of a wall."""
     ends, reach = wall[:4].reshape(2, 2), reach + wall[4]
     arc = Arc(*wall[5:])
     place = (*ends, arc if arc.radius else None)
@@ -137,7 +142,7 @@ def cells_of(room: Room, position: np.ndarray) -> np.ndarray:
 
 
 def is_clear(room: Room, position: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Mask (M,) of discs at positions (M, 2), of radii (M,), length, that would overlap no wall and no solid."""
+    """Mask (M,) of the positions (M, 2), length, at which discs of radii (M,) would not overlap walls or solids."""
     x, y = position.T
     clear = ~np.broadcast_to(is_in_solid(room, x, y), x.shape)
     cell = cells_of(room, position)
@@ -148,7 +153,7 @@ def is_clear(room: Room, position: np.ndarray, radius: np.ndarray) -> np.ndarray
 
 @inline
 def meets_wall(room, cell, x, y, reach):
-    """Whether a disc of radius `reach` at (x, y), a point of the cell, would overlap a wall."""
+    """Whether a disc of radius `reach` at the point (x, y) of a cell would overlap a wall."""
     for k in range(room.wall_start[cell], room.wall_start[cell + 1]):
         wall = room.wall[room.wall_item[k]]
         contact = reach + wall.radius
@@ -173,7 +178,7 @@ def is_in_solid(room, x, y):
 
 @inline
 def _squared_distance(wall, dx, dy):
-    """Squared distance, length², of a point from a wall, from the centre of a fixed disc.
+    """Squared distance, length², of a point from a wall or from the centre of a fixed disc.
 
     dx, dy: position of the point relative to the start of the wall, length.
     """

@@ -1,1 +1,1 @@
-"""From a scene to a finished log: the only part that imports scene, engine and log."""
+"""Running scenes: from a scene to a finished log. This is the only package that imports scene, engine and log."""

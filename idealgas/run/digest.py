@@ -1,4 +1,4 @@
-"""Digests of short runs, which are the same on every machine."""
+"""Digests of short runs, which are identical on every machine."""
 
 import tempfile
 from pathlib import Path
@@ -9,14 +9,14 @@ from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene
 
 EVENTS = 20_000
-"""Number of events after which a run ends, unless the scene ends it before."""
+"""Number of events after which a run ends, unless the scene ends it earlier."""
 
 
 def scene_digest(path: Path) -> str:
-    """Digest of the log of a scene's first events.
+    """Return the digest of a log with the first events of a scene.
 
     Raises:
-        UserError: if the scene cannot be read or run.
+        UserError: the scene cannot be read or run.
     """
     with tempfile.TemporaryDirectory() as folder:
         log_path = Path(folder) / "run.h5"

@@ -1,4 +1,4 @@
-"""The effects of a scene in a run: states at time 0, and exact sums, which checkpoints store and samples round."""
+"""Effects in a run: their states at time 0, and exact sums, which are stored in checkpoints and rounded in samples."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -19,15 +19,15 @@ from idealgas.state import MOST_PAIRED, Gas
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
 LEAST_SHARE = 2.0**-40
-"""Smallest typical energy over the largest that effects may add, so that sums stay far below 2^100 units."""
+"""Smallest ratio of the typical energy to the largest energy that effects may add; keeps sums far below 2^100 units."""
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:
-    """Effects of a scene at time 0, with all sums; gas: its discs at time 0."""
+    """Make the effects of a scene at time 0, with all sums; gas: discs at time 0."""
     scene = scene.resolved()
     start = _start(scene, gas)
     tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
-    states = {e.field: e.make(own, start) for e, own in tables if e.make_always or e.find(own) is not None}
+    states = {e.field: e.make(table, start) for e, table in tables if e.make_always or e.find(table) is not None}
     effects = Effects(**states, schedule=_schedule(scene, start))
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
     loses, inner = scene.properties.dissipative, inner_energy(effects, gas)
@@ -38,7 +38,7 @@ Schedule = tuple[tuple[float, int, int, float], ...]
 
 
 def make_schedule(scene: Scene, gas: Gas) -> Schedule | None:
-    """Changes in time of all effects, in order: time, index of the effect, item of its state, value."""
+    """Return the changes in time of all effects, in order: time, index of the effect, item of its state, value."""
     return _schedule(scene, _start(scene, gas))
 
 
@@ -49,13 +49,13 @@ def _start(scene: Scene, gas: Gas) -> Start:
 
 def _schedule(scene: Scene, start: Start) -> Schedule | None:
     tables = ((k, effect, scene.tables_of(effect)) for k, effect in enumerate(EFFECTS))
-    own = ((k, effect.schedule(table, start)) for k, effect, table in tables if effect.find(table) is not None)
-    found = ((change.time, k, change.item, change.value) for k, changes in own for change in changes)
-    return tuple(sorted(found)) or None
+    schedules = ((k, effect.schedule(table, start)) for k, effect, table in tables if effect.find(table) is not None)
+    entries = ((change.time, k, change.item, change.value) for k, changes in schedules for change in changes)
+    return tuple(sorted(entries)) or None
 
 
 def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
-    """Angular velocity (N,), 1/time, and temperature of the spins (N,), energy, of each disc; 0 where not given."""
+    """Angular velocity (N,), 1/time, and temperature of the spin (N,), energy, of each disc; 0 if not given."""
     given = 0 if scene.draws_velocities else len(scene.given)
     velocity, temperature = np.zeros(len(gas)), np.zeros(len(gas))
     velocity[:given] = scene.given.angular_velocity[:given]
@@ -68,10 +68,10 @@ def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
 def with_sums(
     effects: Effects, scene: Scene, gas: Gas, *, gives_energy: bool, loses_energy: bool, inner_energy: float
 ) -> Effects:
-    """The effects at time 0 with all sums of a run.
+    """Return the effects at time 0 with all sums of a run.
 
-    gives_energy: whether walls give energy to discs, or take some. loses_energy: whether collisions lose energy.
-    inner_energy: energy of the discs that collisions may turn into kinetic energy.
+    gives_energy: whether walls give energy to discs, or take it. loses_energy: whether collisions lose energy.
+    inner_energy: energy of the discs that collisions may turn into kinetic energy, mass length²/time².
     """
     potentials_change = any(EFFECTS[k].energy for _, k, *_ in effects.schedule or ())
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
@@ -87,7 +87,7 @@ def with_sums(
 
 
 def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
-    """Sums of the momentum flux; speed: typical speed of the discs, length/time."""
+    """Make the sums of the momentum flow; speed: typical speed of the discs, length/time."""
     momentum = float(gas.mass.mean()) * speed
     encounters = encounters_per_length(gas, scene.properties.periodic)
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
@@ -116,7 +116,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
 
 
 def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> float:
-    """Typical speed of the discs, length/time: at the start, or the larger one that effects may drive."""
+    """Typical speed of the discs, length/time: at the start, or the speed that effects may cause if it is larger."""
     mass = float(gas.mass.mean())
     hottest = max(scene.properties.temperatures, default=0.0)
     start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
@@ -125,7 +125,7 @@ def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> flo
 
 
 def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
-    """Columns of the samples and arrays of all sums of these effects."""
+    """Yield the columns of samples and the arrays of all sums of these effects."""
     if (given := effects.wall_energy) is not None:
         yield Column("wall_energy", "f8", given.shape, ENERGY), given
     if (lost := effects.dissipated) is not None:
@@ -135,7 +135,7 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
     if (steps := effects.step_energy) is not None:
         yield Column("step_energy", "f8", (), ENERGY), steps
     if (flow := effects.flow) is not None:
-        tensor = np.asarray(flow.tensor)  # a slice of a recarray takes ten times as long
+        tensor = np.asarray(flow.tensor)  # slicing a recarray takes ten times as long
         yield Column("kinetic_flow", "f8", (3,), ACTION), tensor[KINETIC]
         yield Column("collision_flow", "f8", (4,), ACTION), tensor[COLLISIONAL]
         yield Column("wall_virial", "f8", (), ACTION), flow.walls
@@ -151,7 +151,7 @@ def _sums(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
 
 
 def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
-    """Columns and arrays of all numbers of collisions."""
+    """Yield the columns and arrays of all numbers of collisions."""
     if (flow := effects.flow) is not None:
         yield Column("face_hits", "i8", flow.hits.shape), flow.hits
         if flow.pairs is not None:
@@ -164,22 +164,22 @@ def _exact(column: Column, sums: np.ndarray) -> Column:
 
 
 def exact_sums(effects: Effects) -> Values:
-    """Exact sums and numbers of collisions, for checkpoints."""
+    """Return the exact sums and the numbers of collisions, for checkpoints."""
     entries = {_exact(column, sums): stored(sums) for column, sums in _sums(effects)}
     return entries | {column: counts.copy() for column, counts in _counts(effects)}
 
 
 def observed_sums(effects: Effects) -> Values:
-    """Sums rounded to floats and numbers of collisions, for samples."""
+    """Return the sums rounded to floats and the numbers of collisions, for samples."""
     rounded = {column: _shaped(values(sums), column) for column, sums in _sums(effects)}
     return rounded | {column: counts.copy() for column, counts in _counts(effects)}
 
 
-def _shaped(found: np.ndarray, column: Column) -> np.ndarray:
-    """Values in the shape of a column; yx of a collision flow without a sum of its own is xy."""
-    if column.shape and len(found) < column.shape[0]:
-        found = np.append(found, found[TENSOR.index("xy")])
-    return found.reshape(column.shape)
+def _shaped(array: np.ndarray, column: Column) -> np.ndarray:
+    """Return values in the shape of a column; if a collision flow has no separate sum yx, it equals xy."""
+    if column.shape and len(array) < column.shape[0]:
+        array = np.append(array, array[TENSOR.index("xy")])
+    return array.reshape(column.shape)
 
 
 def restore_sums(effects: Effects, entries: Mapping[str, np.ndarray]) -> None:

@@ -1,4 +1,4 @@
-"""Energy account of a run: the parts of the energy, and their balance, which is conserved."""
+"""Energy account of a run: parts of the energy, and their balance, which is conserved."""
 
 from typing import NamedTuple
 
@@ -13,13 +13,13 @@ class Energy(NamedTuple):
     """Parts of the energy, mass length²/time².
 
     Attributes:
-        kinetic: of the discs.
-        rotational: of the discs.
-        potential: of the discs.
+        kinetic: kinetic energy of the discs.
+        rotational: rotational energy of the discs.
+        potential: potential energy of the discs.
         piston: kinetic and potential energy of the pistons with a mass.
-        given: energy that walls, a heat bath and changes of a potential in time gave, less the losses at walls; without
-            pistons with a mass, whose energy is counted itself.
-        lost: energy lost in collisions between discs, and with pistons with a mass.
+        given: energy that walls, a heat bath, and changes of potentials or velocities gave to the discs, minus the
+            losses at walls. Pistons with a mass are not included, because their energy is counted separately.
+        lost: energy lost in collisions between discs, and in collisions with pistons with a mass.
     """
 
     kinetic: float
@@ -36,21 +36,21 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> float:
-        """Conserved energy: discs and pistons plus losses, less the energy given from outside."""
+        """Conserved energy: energy of discs and pistons plus losses, minus the energy given from outside."""
         return self.gas + self.piston + self.lost - self.given
 
     @property
     def scale(self) -> float:
-        """Largest part by absolute value, the scale of an energy drift."""
+        """Largest absolute value of a part, to which an energy drift is compared."""
         return max(map(abs, self))
 
 
 def energy_of(gas: Gas, effects: Effects, local_time: float = 0.0) -> Energy:
-    """Energy account of a gas; local_time: of the gas, from the start of the epoch, time."""
+    """Return the energy account of a gas; local_time: time of the gas since the start of the epoch."""
     by_wall = np.zeros(0) if effects.wall_energy is None else values(effects.wall_energy)
     losses = np.zeros(0) if effects.dissipated is None else values(effects.dissipated)
-    others = [values(sums) for sums in (effects.bath_energy, effects.step_energy) if sums is not None]
-    given, lost = float(by_wall.sum() + sum(map(np.sum, others))), float(losses[:1].sum())
+    energies = [values(sums) for sums in (effects.bath_energy, effects.step_energy) if sums is not None]
+    given, lost = float(by_wall.sum() + sum(map(np.sum, energies))), float(losses[:1].sum())
     for effect, state in present(effects):
         for wall in effect.own_walls(state):
             given -= float(by_wall[wall : wall + 1].sum())

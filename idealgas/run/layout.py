@@ -1,4 +1,4 @@
-"""Contents of the log of a run: columns and their values."""
+"""Contents of the log of a run: its columns and their values."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -31,7 +31,7 @@ from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-"""Numbers that every run counts from time 0 on."""
+"""Columns of the numbers that every run counts from time 0 on."""
 
 DIAGNOSTICS = (
     Column("kinetic_energy", "f8", unit="energy"),
@@ -44,7 +44,7 @@ DIAGNOSTICS = (
 def layout_of(
     scene: Scene, gas: Gas, effects: Effects, has_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
-    """Layout of the log of a scene, from its discs and effects at time 0.
+    """Return the layout of the log of a scene; gas, effects: at time 0.
 
     has_positions: whether discs have positions. extra_state: values of the method that checkpoints store.
     """
@@ -77,19 +77,19 @@ def row_columns(effects: Effects, has_positions: bool = True) -> tuple[Column, .
 
 
 def disc_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
-    """Arrays per disc that a checkpoint stores; times count from the checkpoint."""
+    """Arrays with an entry per disc that a checkpoint stores; times count from the checkpoint."""
     motion = {POSITION: gas.position, VELOCITY: gas.velocity} if has_positions else {VELOCITY: gas.velocity}
     return motion | bundle.disc_state(effects)
 
 
 def snapshot_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
-    """Arrays per disc that a snapshot stores: those that are columns of events."""
+    """Arrays with an entry per disc that a snapshot stores, which are also columns of events."""
     state = disc_state(gas, effects, has_positions)
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 
 def write_steered(batch: EventBatch, discs: np.ndarray, simulation: Simulation) -> None:
-    """Write a row for each of these discs, whose velocity was changed at the start of the epoch."""
+    """Write a row for each of the discs, whose velocities were changed at the start of the epoch."""
     rows = batch.rows(0, len(discs))
     rows.time[:], rows.disc[:], rows.partner[:], rows.kind[:] = simulation.time, discs, OUTSIDE, Kind.STEERED
     for column, values in snapshot_state(simulation.gas, simulation.effects, True).items():
@@ -97,12 +97,12 @@ def write_steered(batch: EventBatch, discs: np.ndarray, simulation: Simulation) 
 
 
 def whole_state(effects: Effects) -> Values:
-    """Values of the effects as a whole and exact sums that a checkpoint stores, at the start of an epoch."""
+    """Values without an entry per disc that a checkpoint stores at the start of an epoch, including exact sums."""
     return bundle.whole_state(effects) | exact_sums(effects)
 
 
 def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
-    """Return the gas at a checkpoint and set the effects to their state there; gas: the same discs at any time."""
+    """Return the gas at a checkpoint and set the effects to their state there; gas: the discs at any time."""
     arrays = checkpoint.arrays
     bundle.restore_effects(effects, arrays)
     restore_sums(effects, arrays)
@@ -110,7 +110,7 @@ def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
-    """Values that a sample adds to the diagnostics: energy of the discs and its parts, effects as a whole, and sums."""
+    """Values that a sample contains in addition to the diagnostics: energies, values of the effects, and sums."""
     energy = energy_of(gas, effects, local_time)
     sample: Values = {Column("energy", "f8", (), "energy"): energy.gas}
     parts = {effect.energy.part: effect.energy.observed for effect, _ in bundle.present(effects) if effect.energy}
@@ -121,5 +121,5 @@ def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
 
 
 def by_name(values: Mapping[Column, Any]) -> dict[str, Any]:
-    """The values by the names of their columns."""
+    """Return the values by the names of their columns."""
     return {column.name: value for column, value in values.items()}

@@ -1,4 +1,4 @@
-"""A run on the way to its end, with its log."""
+"""A run in progress, with its log."""
 
 import math
 import time
@@ -25,7 +25,7 @@ from idealgas.state import Gas
 from idealgas.system import free_unused_memory
 
 ONE_WAS_FASTER = "one was faster: few events, a busy machine, or a log that needs a core"
-"""Why no slice was shared although several threads were available."""
+"""Reason why no slice was shared although several threads were available."""
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between reports of progress and checks for interruption
 
@@ -38,7 +38,7 @@ class Progress:
         share: fraction done, 0 to 1.
         time: time of the last event.
         events: number of events so far.
-        notice: one line for the user, given once; usually empty.
+        notice: a line for the user, which is given only once; usually empty.
     """
 
     share: float
@@ -48,7 +48,7 @@ class Progress:
 
 
 def stop_of(scene: Scene, n: int) -> Stop:
-    """Stop rules of a scene with n discs."""
+    """Return the stop rules of a scene with n discs."""
     run = scene.run
     collisions = run.collisions_per_disc and min(math.ceil(run.collisions_per_disc * n / 2), UNLIMITED)
     given: dict[str, Any] = {
@@ -61,7 +61,15 @@ def stop_of(scene: Scene, n: int) -> Stop:
 
 
 class RunHistory(NamedTuple):
-    """Past of a run: energy at time 0, largest overlap and distance outside, number of snapshots, whether it began."""
+    """Past of a run.
+
+    Attributes:
+        start_energy: energy account at time 0.
+        overlap: deepest overlap of two discs, divided by the sum of their radii.
+        outside: largest distance by which a disc protruded beyond a side, divided by its diameter.
+        snapshots: number of snapshots.
+        begun: whether the log already contains the start of the run.
+    """
 
     start_energy: Energy
     overlap: float = 0.0
@@ -71,7 +79,7 @@ class RunHistory(NamedTuple):
 
 
 class LoggedRun:
-    """A run and its log on the way to the end of its scene.
+    """A run and its log, up to the end of the scene.
 
     Attributes:
         summary: summary of the run; None until it is finished.
@@ -88,7 +96,7 @@ class LoggedRun:
         compiled_before: float,
         on_events: Callable[[EventBatch], None] | None = None,
     ) -> None:
-        """Take a simulation and its log. compiled_before: `compile_seconds` before either was made."""
+        """Begin with a simulation and its log; compiled_before: `compile_seconds` before these were made."""
         self._scene = scene
         self._simulation = simulation
         self._log = log
@@ -108,7 +116,7 @@ class LoggedRun:
         """Simulate to the end of the scene, or until `interrupted` returns True, and close the log.
 
         Raises:
-            UserError: as `simulate` does.
+            UserError: as in `simulate`.
         """
         self._advance(self._stop, on_progress, interrupted)
         self.summary = self._summarise()
@@ -129,7 +137,7 @@ class LoggedRun:
         started = time.perf_counter()
         while not simulation.finished(stop):
             before = time.perf_counter()
-            alone = simulation.method.threads.serial_events if self._log.behind else 0  # the log needs a core
+            alone = simulation.method.threads.serial_events if self._log.behind else 0  # leave a core to the log
             self._slice(alone or self._slice_events)
             if simulation.paused and self._scene.log.snapshot_every:  # not at the largest representable time
                 self._snapshot()
@@ -154,7 +162,7 @@ class LoggedRun:
         self._seconds += time.perf_counter() - started
 
     def _begin(self, least: int) -> None:
-        """Store the start of a new run, and compile before the clock starts. least: number of events of a slice."""
+        """Store the start of a new run, and compile before the clock starts; least: events of the first slice."""
         self._slice_events = max(4096, least)
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -195,7 +203,7 @@ class LoggedRun:
         return self._snapshots * every if every else LATEST
 
     def _snapshot(self) -> None:
-        """Store a snapshot of the discs, and a sample unless an epoch begins here, which has one."""
+        """Store a snapshot of the discs, and a sample unless an epoch begins at this time, which stores one anyway."""
         simulation, time = self._simulation, self._next_snapshot
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.has_positions))
@@ -205,10 +213,10 @@ class LoggedRun:
         self._snapshots += 1
 
     def _begin_epoch(self, changed: bool = False) -> None:
-        """Check the invariants at the start of an epoch, and store a checkpoint if events have occurred.
+        """Check the invariants at the start of an epoch, and store a sample and a checkpoint if they are due.
 
         Raises:
-            UserError: if the run stalls; the log is closed before.
+            UserError: the run stalls; the log is closed first.
         """
         simulation, stall = self._simulation, self._stall
         self._log_steered()
@@ -221,7 +229,7 @@ class LoggedRun:
             self._give_up(reason)
 
     def _give_up(self, reason: str) -> NoReturn:
-        """Close the log of a run that stalls."""
+        """Close the log of a run that stalls, and raise UserError."""
         self._log.close()
         raise UserError(
             f"{self._log.path}: {reason}, up to t = {self._simulation.time:g}, so the end of the run may never come; "
@@ -233,9 +241,9 @@ class LoggedRun:
         ids = self._simulation.steered
         while len(ids) and self._scene.log.events:
             batch = self._log.batch()
-            some, ids = np.split(ids, [len(batch.time) - 1])
-            write_steered(batch, some, self._simulation)
-            self._write(batch, len(some))
+            discs, ids = np.split(ids, [len(batch.time) - 1])
+            write_steered(batch, discs, self._simulation)
+            self._write(batch, len(discs))
 
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""

@@ -1,4 +1,4 @@
-"""Resuming a run from the last checkpoint of its log; the events are bit for bit those of an uninterrupted run."""
+"""Resuming a run from the last checkpoint of its log, with the same events, bit for bit, as an uninterrupted run."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -23,10 +23,10 @@ from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
 
-REPLAYED_ROWS = 4096  # after the checkpoint, which the program must reproduce before it resumes
+REPLAYED_ROWS = 4096  # number of rows after the checkpoint that the program must reproduce before it resumes
 
 STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
-"""Keys of [run] that end a run: the only keys that may change when it is resumed."""
+"""Keys of [run] that end a run; only these keys may change when a run is resumed."""
 
 
 def resume(
@@ -37,23 +37,26 @@ def resume(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Continue a run that was interrupted or killed, or that is to end later, from the last checkpoint of its log.
+    """Continue a run that was interrupted or killed, or that should end later, from the last checkpoint of its log.
 
-    The events in the log become bit for bit those of an uninterrupted run. The events of a complete log stay as they
-    are, and its summary is returned.
+    The log then contains, bit for bit, the events of an uninterrupted run. The events of a complete log remain
+    unchanged, and its summary is returned.
 
     Args:
         path: path of the log, to which events are appended.
-        overrides: new ends of the run, such as "run.until=100" or "run.events=1000000" (any of STOP_RULES; the others
-            remain unless removed, as in "run.until=").
+        overrides: new ends of the run, such as "run.until=100" or "run.events=1000000" (any of STOP_RULES; other stop
+            rules remain unless they are removed, as in "run.until=").
         command: as in `simulate`.
         on_progress: as in `simulate`.
         interrupted: as in `simulate`.
 
+    Returns:
+        The summary of the whole run.
+
     Raises:
-        SceneError: for an invalid override.
-        LogError or OutputError: if the log is being written, if this program or the changed scene does not
-            reproduce its events, if the log is already past the new end, or if it cannot be written.
+        SceneError: an override is invalid.
+        LogError or OutputError: the log is being written, this program or the changed scene does not reproduce its
+            events, the log is already past the new end, or it cannot be written.
     """
     compiled_before = compile_seconds()
     with open_log(path) as log:
@@ -81,12 +84,12 @@ def resume(
 
 
 def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
-    """Text of the scene with other ends, and that scene with the changes of a program."""
+    """Return the text of the scene with the new end, and this scene with the changes that a program made."""
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     before, given, name = log.scene, log.given, f"{log.path}: scene"
-    asked = scene = parse_scene(log.scene_text, name, overrides, discs=given)
+    requested = scene = parse_scene(log.scene_text, name, overrides, discs=given)
     if log.changes:
         scene = parse_scene(log.scene_text, name, overrides, discs=given, changes=log.changes)
     run = before.run.model_copy(update={key: getattr(scene.run, key) for key in (*STOP_RULES, "threads")})
@@ -95,27 +98,27 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
     if changed:
         tables = " and ".join(f"[{name}]" for name in changed)
         raise LogError(f"{log.path}: cannot be resumed with another {tables}: only {', '.join(STOP_RULES)} may change")
-    return dump_document(asked), scene
+    return dump_document(requested), scene
 
 
 def _check_end(log: Log, scene: Scene) -> None:
-    """Raise LogError where a run would have to end before the log does, or at the same number."""
+    """Raise LogError if the run would have to end before the log does, or at a number that is already reached."""
     run, n = scene.run, len(log.discs)
     stop, time = stop_of(scene, n), log.end_time
     events, collisions, trials = log.counts.values()
-    for passed, asked, there, unit in (
+    for passed, limit, reached, unit in (
         (time > stop.time, run.until, time, "units of time"),
         (events >= stop.events, run.events, events, "events"),
         (collisions >= stop.disc_collisions, run.collisions_per_disc, 2 * collisions / n, "collisions per disc"),
         (trials >= stop.trials, run.trials, trials, "trials"),
     ):
-        if passed and asked is not None:
-            where = "lies before that" if asked < there else "is not a later end"
-            raise LogError(f"{log.path}: already at {there:,.12g} {unit}; {asked:,.12g} {where}")
+        if passed and limit is not None:
+            where = "lies before that" if limit < reached else "is not a later end"
+            raise LogError(f"{log.path}: already at {reached:,.12g} {unit}; {limit:,.12g} {where}")
 
 
 def _simulation_at(log: Log, checkpoint: Checkpoint | None, scene: Scene) -> Simulation:
-    """Simulation of a scene at a checkpoint, or at its start."""
+    """Return the simulation of a scene at a checkpoint, or at its start."""
     start = log.discs
     effects = make_effects(scene, start)
     v_ref = None if checkpoint is None else checkpoint.values.get(V_REF.name)
@@ -137,7 +140,7 @@ def _restored(log: Log, effects: Effects, checkpoint: Checkpoint) -> Gas:
 
 
 def _check_columns(log: Log, layout: LogLayout) -> None:
-    """Raise DamageError if a column of the log is not one of a run of its scene, or has another type or shape."""
+    """Raise DamageError if a column of the log does not belong to a run of its scene, or has a wrong type or shape."""
     discs = len(log.discs)
     arrays = [column._replace(shape=(discs, *column.shape)) for column in layout.checkpoint_arrays]
     kept = [*CHECKPOINT_COLUMNS, *arrays, *layout.checkpoint_values]
@@ -152,7 +155,7 @@ def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation)
     """Raise LogError unless this program reproduces the first events after the last checkpoint."""
     first = 0 if last is None else last.row
     batch = empty_batch(REPLAYED_ROWS + 2, row_columns(simulation.effects, simulation.method.has_positions))
-    an_event = 1 if simulation.method.has_positions else 2  # at least: the next event may be an error
+    an_event = 1 if simulation.method.has_positions else 2  # fewest rows per event, as the next event may be an error
     events = min(REPLAYED_ROWS, (len(log) - first) // an_event)
     rows = min(simulation.advance(Stop(), batch, events), len(log) - first)
     for stored in log.chunks(None, first, first + rows):

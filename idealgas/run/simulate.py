@@ -1,4 +1,4 @@
-"""Running a scene: places the discs, simulates them with its method, and writes every event to a log."""
+"""Running a scene: placing its discs, simulating them with its method, and writing all events to a log."""
 
 import math
 import os
@@ -33,7 +33,7 @@ from idealgas.toml.dump import dump_document
 
 
 def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
-    """Method of a scene; start: its discs at time 0; v_ref: raised reference speed of a resumed run, length/time."""
+    """Make the method of a scene; start: discs at time 0; v_ref: raised reference speed of a resumed run."""
     run = scene.run
     if run.method == "brute_force":
         return PreciseBruteForce(run.precision) if run.precision in ("float32", "double-double") else BruteForce()
@@ -46,12 +46,12 @@ def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
 
 
 def _threads(run: Run) -> int | None:
-    """Number of threads of a scene; None for as many as are worthwhile."""
+    """Number of threads that a scene requests; None for as many as are worthwhile."""
     return None if run.threads == "auto" else run.threads
 
 
 def threads_of(scene: Scene, gas: Gas) -> Threads:
-    """Threads that will share the work of a run; gas: the discs at time 0."""
+    """Return how threads will share the work of a run; gas: discs at time 0."""
     if scene.run.method != "event_driven":
         return Threads()
     return expected_threads(gas, _threads(scene.run), bool(scene.piston), bool(scene.properties.shear))
@@ -67,24 +67,29 @@ def simulate(
     interrupted: Callable[[], bool] = lambda: False,
     on_events: Callable[[EventBatch], None] | None = None,
 ) -> Summary:
-    """Run a scene to the end that its table [run] asks for, and write its log.
+    """Run a scene to the end specified in its table [run], and write its log.
 
-    The first run with a set of effects compiles its machine code, which takes some seconds and is cached on disk.
+    The first run with a set of effects compiles machine code, which takes several seconds and is cached on disk.
 
     Args:
-        scene: from `load_scene` or `parse_scene`.
-        path: path of the log to write, an HDF5 file that `open_log` reads.
+        scene: scene from `load_scene` or `parse_scene`.
+        path: path of the log, an HDF5 file that `open_log` reads.
         force: whether to overwrite an existing log.
-        command: command of the run, stored in the log.
-        on_progress: called several times per second with the `Progress` of the run.
-        interrupted: called as often; once it returns True, the run ends after its last event, and the summary has
-            `completed` False. The log can then be read and resumed, as after Ctrl-C (KeyboardInterrupt).
-        on_events: called with the next rows of the log, in order, which it may read until it returns; the run waits.
+        command: command of the run, which is stored in the log.
+        on_progress: function that is called several times per second with the `Progress` of the run.
+        interrupted: function that is called equally often. Once it returns True, the run ends after its last event, and
+            `completed` is False in the summary. The log can then be read and resumed, as after Ctrl-C
+            (KeyboardInterrupt).
+        on_events: function that is called with the next rows of the log, in order; the run waits until it returns, and
+            the rows are valid only until then.
+
+    Returns:
+        The summary of the run.
 
     Raises:
-        SceneError: if the discs cannot be placed.
-        OutputError: if the log exists (without `force`), cannot be written, or is removed during the run.
-        UserError: in an inelastic collapse, or if the events that would end the run do not occur (see
+        SceneError: the discs cannot be placed.
+        OutputError: the log exists (without `force`), cannot be written, or is removed during the run.
+        UserError: an inelastic collapse occurs, or the events that would end the run do not occur (see
             `idealgas.run.stall`); the log can be read and resumed.
     """
     with open_run(scene, path, force=force, command=command, on_events=on_events) as run:
@@ -100,10 +105,10 @@ def open_run(
     command: str = "",
     on_events: Callable[[EventBatch], None] | None = None,
 ) -> Iterator[SteeredRun]:
-    """Begin a run of a scene that the program advances and steers; `simulate` describes the arguments and errors.
+    """Begin a run that a Python program advances and steers; `simulate` describes the arguments and errors.
 
-    At the end of the context the log is closed: complete if the run has reached the end of its scene, or else as after
-    an interruption.
+    At the end of the context the log is closed: as complete if the run has reached the end of its scene, otherwise as
+    after an interruption.
     """
     compiled_before = compile_seconds()
     gas = make_gas(scene)
@@ -128,9 +133,9 @@ def open_run(
 
 
 def warm_up(scene: Scene) -> float:
-    """Compile the machine code of a scene and return the seconds it took; almost none if it was cached.
+    """Compile the machine code for a scene and return the time in seconds, which is short if the code was cached.
 
-    The scene runs up to its first event, and its log is deleted. Raises the same errors as `simulate`.
+    The scene is run up to its first event, and the log is deleted. Raises the same errors as `simulate`.
     """
     first = {"events": 1, "collisions_per_disc": None, "trials": None}
     short = scene.model_copy(update={"run": scene.run.model_copy(update=first)})

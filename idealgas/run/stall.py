@@ -1,4 +1,4 @@
-"""Detection of runs that make no progress: epochs without events, and few discs with most of the events."""
+"""Detection of runs that make no progress: epochs without events, and a few discs with most of the events."""
 
 import math
 from dataclasses import replace
@@ -13,53 +13,53 @@ from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.state import Gas
 
 EMPTY_EPOCHS = 10_000
-"""Number of consecutive epochs without an event after which a run without `until` stops, unless it may be chance."""
+"""Consecutive epochs without an event after which a run without `until` stops, unless this may happen by chance."""
 
 EXPECTED = 10_000
-"""Number of pair collisions, expected by kinetic theory, above which their absence is not chance.
+"""Number of pair collisions, expected by kinetic theory, whose absence cannot be due to chance.
 
-A run that only pair collisions can end also stops when so many were expected and none occurred.
+A run that only pair collisions can end also stops when this number was expected and none occurred.
 """
 
 HOPELESS = 1e-9
-"""Expected collisions per epoch below which waiting is pointless: no disc moves past another."""
+"""Expected number of collisions per epoch below which it is pointless to wait, because no disc moves past another."""
 
 QUIET_SAMPLES = 64
-"""Number of consecutive epochs without an event that are sampled; later ones are not."""
+"""Number of consecutive epochs without an event that are sampled; later epochs without an event are not sampled."""
 
 STUCK = 1000
-"""Collisions of a disc per contact duration, averaged over one or more, above which it is stuck; one at rest has 1/e.
+"""Largest number of collisions of a disc per contact duration, averaged over at least one; above it the disc is stuck.
 
-Between walls, or under an arch of other discs, gaps may be so small that all collisions count as contacts at rest. They
-are elastic, so the disc keeps its speed.
+A disc at rest has 1/e collisions per contact duration. Between walls, or under an arch of other discs, gaps may be so
+small that all collisions count as contacts at rest; these are elastic, so the disc keeps its speed.
 """
 
 OVERDUE = 8
-"""Ratio of events to those for which an epoch is planned above which the busiest discs are looked for."""
+"""Ratio of the events in an epoch to the planned number above which the busiest discs are determined."""
 
 
 class StallDetector:
-    """Detects runs that no event will end: no events, or no pair collisions where only those can end the run.
+    """Detects runs that will not end, because there are no events, or no pair collisions if only these end the run.
 
     A resumed run counts from zero.
     """
 
     def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:
-        """Start at the beginning of an epoch; begun: whether the log already has a checkpoint of it."""
+        """Start at the beginning of an epoch; begun: whether the log already has a checkpoint at this time."""
         self._simulation = simulation
         self._events_at_checkpoint = simulation.totals.events if begun else -1
         never = Stop()
         self._endless = stop.time == never.time and stop.trials == never.trials
         self._needs_pairs = self._endless and stop.events == never.events
-        self._empty = 0  # epochs in a row without an event
-        self._expected = 0.0  # collisions of two discs to be expected in these
-        self._missed = 0.0  # the same since two discs collided, where only they end the run
+        self._empty = 0  # consecutive epochs without an event
+        self._expected = 0.0  # pair collisions expected in these epochs
+        self._missed = 0.0  # pair collisions expected since the last one, if only pair collisions end the run
         self._overdue: float = OVERDUE
-        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id, in the epochs before, since
+        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id, in previous epochs, since
         self._hits_since = simulation.time
 
     def end_epoch(self) -> None:
-        """Count the epoch that is over, before the next one begins."""
+        """Take account of the epoch that is over, before the next epoch begins."""
         simulation = self._simulation
         before, now = simulation.totals, simulation.counters
         empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
@@ -72,7 +72,7 @@ class StallDetector:
             self._empty, self._expected, self._missed = min(self._empty, QUIET_SAMPLES), 0.0, 0.0
 
     def checkpoint_due(self, every: int) -> bool:
-        """Whether to store the start of this epoch: each `every` epochs, if events occurred since the last one."""
+        """Whether to store the start of this epoch: one in `every` epochs, if there were events since the last one."""
         simulation = self._simulation
         due = simulation.epoch % every == 0 and simulation.totals.events > self._events_at_checkpoint
         if due:
@@ -85,7 +85,7 @@ class StallDetector:
         return self._empty < QUIET_SAMPLES
 
     def stall_reason(self) -> str:
-        """Why the run cannot be expected to reach its stop; empty if it can."""
+        """Reason why the run cannot be expected to reach its stop; empty if it can."""
         if not self._endless:
             return ""
         if self._simulation.totals.escaped == len(self._simulation.gas):
@@ -98,7 +98,7 @@ class StallDetector:
         return ""
 
     def stuck(self) -> int:
-        """Id of an inelastic disc that is stuck; -1 if there is none. To be called at the end of every epoch, too."""
+        """Id of an inelastic disc that is stuck; -1 if there is none. It must also be called at each epoch's end."""
         simulation, restitution = self._simulation, self._simulation.effects.restitution
         if restitution is None or simulation.method.single_epoch:
             return -1
@@ -112,7 +112,7 @@ class StallDetector:
         return disc if hits[disc] > STUCK * (1 + durations) else -1
 
     def busy(self) -> str:
-        """Notice, once per run, that few discs have most events of an epoch with far too many; else empty."""
+        """Notice, once per run, that a few discs have most events of an epoch with far too many events; or empty."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
         if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, EVENTS_OF_FEW):
@@ -128,7 +128,7 @@ class StallDetector:
 
 
 def _expected_collisions(gas: Gas, duration: float, absorbing: np.ndarray | None = None) -> float:
-    """Pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
+    """Number of pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
     here = inside(gas.position[:, 0], absorbing)
     gas = replace(gas, velocity=gas.velocity[here], radius=gas.radius[here], mass=gas.mass[here])
     if (n := len(gas)) < 2:

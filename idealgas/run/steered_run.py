@@ -1,4 +1,4 @@
-"""A run that a Python program advances, looks at and steers."""
+"""A run that a Python program advances, observes and steers."""
 
 import math
 
@@ -17,18 +17,18 @@ from idealgas.scene.changes import SceneChange, changed_scene
 from idealgas.toml.table import LARGEST
 
 LONGEST_SETTING = np.dtype(CHANGE_COLUMNS[-1].dtype).itemsize
-"""Largest length of the text of a change, bytes."""
+"""Largest size of the text of a change, bytes."""
 
 
 class SteeredRun(LoggedRun):
-    """A run on the way to the end of its scene, which `open_run` begins.
+    """A run that `open_run` begins, and that the program advances up to the end of the scene.
 
-    Each change ends an epoch, is written into the log, and is followed by a checkpoint.
+    Each change ends an epoch, is written to the log, and is followed by a checkpoint.
 
     Attributes:
-        time: time that it has reached.
+        time: time that the run has reached.
         events: number of events so far.
-        ended: whether it has reached the end of its scene.
+        ended: whether the run has reached the end of its scene.
         summary: summary of the run; None until it is finished.
     """
 
@@ -48,17 +48,17 @@ class SteeredRun(LoggedRun):
         return self._simulation.finished(self._stop)
 
     def advance(self, *, until: float = math.inf, events: int = UNLIMITED) -> bool:
-        """Simulate to a time or by a number of events, at most to the end of the scene.
+        """Simulate to a time or for a number of events, at most to the end of the scene.
 
         Args:
-            until: time.
-            events: number of events from now on.
+            until: time at which to return.
+            events: number of events after which to return.
 
         Returns:
-            Whether the scene goes on: False once its end is reached.
+            True if the run can continue, False once it has reached the end of the scene.
 
         Raises:
-            UserError: as `simulate` does.
+            UserError: as in `simulate`.
         """
         stop = self._stop
         if until > self.time:
@@ -67,7 +67,7 @@ class SteeredRun(LoggedRun):
         return not self.ended
 
     def state(self) -> LogState:
-        """All discs at the time reached, in order of id."""
+        """Return the state of all discs at the time reached, in order of id."""
         gas, effects = self._simulation.state()
         arrays = by_name(snapshot_state(gas, effects, self._simulation.method.has_positions))
         arrays.setdefault("position", np.full_like(gas.velocity, np.nan))
@@ -78,14 +78,16 @@ class SteeredRun(LoggedRun):
         return LogState(self.time, **arrays)
 
     def set_velocities(self, velocity: ArrayLike, discs: ArrayLike | None = None) -> None:
-        """Give discs new velocities, at the time reached. The log has a row of kind STEERED for each that changes.
+        """Give discs new velocities at the time reached.
+
+        The log contains a row of kind STEERED for each disc whose velocity changes.
 
         Args:
-            velocity: (n, 2), length/time.
-            discs: (n,), their ids; all by default.
+            velocity: (n, 2) velocities, length/time.
+            discs: (n,) ids of the discs; all discs by default.
 
         Raises:
-            UserError: if the scene has no table [steering], or for arrays of other shapes or values.
+            UserError: the scene has no table [steering], or an array has a wrong shape or invalid values.
         """
         number = len(self._simulation.gas)
         ids = np.arange(number) if discs is None else np.asarray(discs)
@@ -106,10 +108,10 @@ class SteeredRun(LoggedRun):
         self._begin_epoch(changed=True)
 
     def reverse(self) -> None:
-        """Reverse all velocities and spins, and the velocity of a piston with a mass, at the time reached.
+        """Reverse all velocities and spins, and the velocities of pistons with a mass, at the time reached.
 
         Raises:
-            UserError: if the scene has no table [steering].
+            UserError: the scene has no table [steering].
         """
         self._arrive()
         self._stall.end_epoch()
@@ -117,14 +119,15 @@ class SteeredRun(LoggedRun):
         self._begin_epoch(changed=True)
 
     def change(self, setting: str) -> None:
-        """Change a value of the scene, from the time reached on; later steps of it in the scene are dropped.
+        """Change a value of the scene from the time reached on; later steps of this value in the scene are dropped.
 
         Args:
             setting: "table.key=value" for a value that may be in steps, such as "thermostat.temperature=2", or
-                "wall.NAME.open=true" or "false" for a gate.
+                "wall.NAME.open=true" or "wall.NAME.open=false" for a gate.
 
         Raises:
-            UserError: if the scene has no table [steering], or SceneError if the setting does not fit it.
+            UserError: the scene has no table [steering].
+            SceneError: the setting does not fit the scene.
         """
         self._arrive()
         if self.time == 0:
@@ -139,7 +142,7 @@ class SteeredRun(LoggedRun):
         self._begin_epoch(changed=True)
 
     def _arrive(self) -> None:
-        """Make sure that everything up to the time reached has happened, so that the epoch can end there."""
+        """Process all events up to the time reached, so that the epoch can end there."""
         simulation = self._simulation
         if self._scene.steering is None:
             raise UserError("only a scene with a table [steering] can be changed in its run")

@@ -1,4 +1,4 @@
-"""Changes that a program makes to a scene while it runs: the past stays, and the rest of the steps is replaced."""
+"""Changes that a program makes to a scene during its run: past steps are kept, and later steps are replaced."""
 
 from typing import Any, NamedTuple
 
@@ -9,14 +9,14 @@ from idealgas.toml.overrides import OverrideError, find, value_of
 from idealgas.toml.text import Origin
 
 OPEN = "open"
-"""Key of a wall that opens it, or closes it if false."""
+"""Key that opens a wall, or closes it if false."""
 
 
 class SceneChange(NamedTuple):
     """A change of a scene.
 
     Attributes:
-        time: from which it holds, time.
+        time: time from which on the change holds.
         setting: "table.key=value" for a value that may be in steps, or "wall.NAME.open=true" or "false".
     """
 
@@ -25,7 +25,7 @@ class SceneChange(NamedTuple):
 
 
 def changed_scene(scene: Scene, change: SceneChange) -> Scene:
-    """The scene with a change. Raises SceneError if it is none of a scene, or the changed scene is invalid."""
+    """Return the scene with a change. Raises SceneError if the setting or the changed scene is invalid."""
     document = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
     try:
         apply_change(document, change)
@@ -35,7 +35,7 @@ def changed_scene(scene: Scene, change: SceneChange) -> Scene:
 
 
 def apply_change(document: dict[str, Any], change: SceneChange) -> None:
-    """Make a change in a document. Raises OverrideError if the document has no such key."""
+    """Apply a change to a document. Raises OverrideError if the document has no such key."""
     (*tables, key), table, text = find(change.setting, document)
     if not text:
         raise OverrideError("no value")

@@ -1,4 +1,4 @@
-"""Speeds that follow from the discs at the start, and discs that have come to rest."""
+"""Mean speeds and energies that follow from the discs at the start, and the motion of discs that have come to rest."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
-    """Expected mean speed of some species and of discs with velocities (n, 2) at the start, length/time."""
+    """Expected mean speed of species and of discs with velocities (n, 2) at the start, length/time."""
     speeds = [math.hypot(*v) for v in velocity.tolist()]
     for s in species:
         if s.velocities is not None:
@@ -29,7 +29,7 @@ def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
 
 
 def mean_kinetic_energy(species: Sequence[Species], mass: np.ndarray, velocity: np.ndarray) -> float:
-    """Return the mean kinetic energy of some species and of discs of masses (n,) and velocities (n, 2) at the start."""
+    """Mean kinetic energy of species and of discs with masses (n,) and velocities (n, 2) at the start, energy."""
     total = float(mass @ (velocity**2).sum(axis=1)) / 2
     for s in species:
         masses = np.repeat([size.mass for size in s.sizes], [size.number for size in s.sizes])
@@ -41,23 +41,23 @@ def mean_kinetic_energy(species: Sequence[Species], mass: np.ndarray, velocity: 
 
 
 def reference_speed(run: Run, largest: float) -> float:
-    """Reference speed of the Monte Carlo method, by default five times the largest speed at the start, length/time."""
+    """Reference speed of the Monte Carlo method, length/time; by default five times the largest speed at the start."""
     return run.v_ref or 5.0 * largest
 
 
 @dataclass(frozen=True)
 class RestingDisc:
-    """A disc that has come to rest on a wall or disc to which a constant force presses it.
+    """A disc that has come to rest on a wall or disc against which a constant force presses it.
 
-    It keeps bouncing without loss, as each of its hits comes less than a contact duration t after the previous one:
-    with the acceleration a its speed is a t/2 at most.
+    It keeps bouncing without loss, because each hit comes less than a contact duration t after the previous one. With
+    the acceleration a, its speed is at most a t/2.
 
     Attributes:
-        hits: smallest and largest number of hits of one disc per time, 1/t and 1/(et), 1/time.
+        hits: smallest and largest rate of hits of the disc, 1/t and 1/(et), 1/time.
         height: largest height of its bounces, a t²/8, length.
-        energy: their largest energy divided by the disc's mass, a² t²/8, (length/time)².
-        per_free_time: largest number of its hits in a mean free time of the gas at the start. Both largest numbers are
-            None for a coefficient e = 0: the disc then collides without end at one instant.
+        energy: largest energy of its bounces divided by the disc's mass, a² t²/8, (length/time)².
+        per_free_time: largest number of its hits in a mean free time of the gas at the start. This number and the
+            largest rate are None for a coefficient e = 0, for which the disc has endless collisions at one instant.
     """
 
     hits: tuple[float, float | None]

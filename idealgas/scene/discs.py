@@ -1,4 +1,4 @@
-"""Discs given one by one, as arrays: those of the tables [[disc]], or those from which a scene starts."""
+"""Discs that are given individually, as arrays: from tables [[disc]], or from the state in which a scene starts."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ import numpy as np
 from idealgas.effects.wall import FixedDisc
 
 EXPLICIT = "disc"
-"""Species of given discs that name none."""
+"""Species of given discs without a species."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +25,8 @@ class Discs:
         mass: (n,), mass.
         angular_velocity: (n,), 1/time.
         species: (n,), index into names.
-        names: names of their species.
-        index: (n,), number of the table of each disc, or of the disc in its file.
+        names: names of the species.
+        index: (n,), number of each disc's table, or of the disc in its file.
     """
 
     position: np.ndarray
@@ -42,24 +42,24 @@ class Discs:
         return len(self.radius)
 
     def first(self, number: int) -> "Discs":
-        """The first discs."""
+        """Return the first discs; number: how many."""
         keys = ("position", "velocity", "radius", "mass", "angular_velocity", "species", "index")
         names = self.names[: int(self.species[:number].max()) + 1]
         return replace(self, names=names, **{key: getattr(self, key)[:number] for key in keys})
 
     def reversed(self) -> "Discs":
-        """The discs with the opposite velocities and spins."""
+        """Return the discs with reversed velocities and spins."""
         return replace(self, velocity=0.0 - self.velocity, angular_velocity=0.0 - self.angular_velocity)
 
     def wrapped(self, size: Sequence[float], periodic: Sequence[bool], shear: float = 0.0) -> "Discs":
-        """The discs in a box, which may be periodic along x or y.
+        """Return the discs wrapped into a box, which may be periodic along x or y.
 
-        Between sheared sides a disc that is moved down by a number of heights of the box becomes slower along x, as the
-        image of the gas from which it comes is faster than the gas. At a start all images are above each other.
+        Between sheared sides, a disc that is moved down by a number of heights of the box becomes slower along x,
+        because the image of the gas from which it comes is faster. At the start all images are above each other.
 
         Args:
             size: width and height of the box, length.
-            periodic: whether it is periodic along x, and along y.
+            periodic: whether the box is periodic along x, and along y.
             shear: shear rate of bottom and top, 1/time.
         """
         position, velocity = self.position.copy(), self.velocity.copy()
@@ -67,7 +67,7 @@ class Discs:
             x = position[:, axis]
             boxes = np.floor(x / size[axis])
             x -= size[axis] * boxes
-            beyond = x >= size[axis]  # by rounding
+            beyond = x >= size[axis]  # because of rounding
             x[beyond] = 0.0
             if shear and axis == 1:
                 velocity[:, 0] -= shear * size[1] * (boxes + beyond)
@@ -80,15 +80,15 @@ class Discs:
 
     @cached_property
     def digest(self) -> str:
-        """Digest of all numbers and names."""
-        found = hashlib.sha256("\n".join(self.names).encode())
+        """Digest of all values and names."""
+        sha = hashlib.sha256("\n".join(self.names).encode())
         for array in (self.position, self.velocity, self.radius, self.mass, self.angular_velocity, self.species):
-            found.update(np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes())
-        return found.hexdigest()[:32]
+            sha.update(np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes())
+        return sha.hexdigest()[:32]
 
 
 def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> Discs:
-    """Discs from columns by name, without a check. names: species of each disc."""
+    """Make discs from columns by name, without checks. names: species of each disc."""
     numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
     n = len(names)
     return Discs(
@@ -104,7 +104,7 @@ def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[in
 
 
 def discs_of_tables(tables: Sequence[Any]) -> Discs:
-    """Discs of the valid tables [[disc]] that are not fixed; None marks invalid ones."""
+    """Discs of the valid tables [[disc]] that are not fixed; None marks invalid tables."""
     items = [(i, d) for i, d in enumerate(tables) if d is not None and not d.fixed]
     keys = ("position", "velocity", "radius", "mass")
     columns = {key: [getattr(d, key) for _, d in items] for key in keys}
@@ -122,13 +122,14 @@ NO_DISCS = discs_of_tables(())
 
 @dataclass(eq=False)
 class Given:
-    """Holder of the given discs of a scene; all are equal, as the digest of the table [start] distinguishes them.
+    """Given discs of a scene; all instances compare equal, because the digest in the table [start] distinguishes them.
 
     Attributes:
         discs: the discs.
         update: keys of the table [start] that follow from its state.
-        tables: tables [[disc]] from which they were made; None for those of a start.
+        tables: tables [[disc]] from which the discs were made; None for the discs of a start.
         walls: fixed discs of the tables `walls_of`.
+        walls_of: tables [[disc]] from which `walls` were made.
     """
 
     discs: Discs = NO_DISCS

@@ -1,6 +1,6 @@
 """All tables of a scene, before checks between them, and the defaults and estimates that follow from several tables.
 
-Reduced units, k_B = 1. The tables of the effects follow from the list of effects.
+Units are reduced units (k_B = 1). The tables of the effects follow from the list of effects.
 """
 
 import math
@@ -24,10 +24,10 @@ from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
 from idealgas.toml.table import Rectangle, Table, Vector
 
 DEFAULT_CONTACT = 0.05
-"""Default contact duration in units of the mean free time, where a constant force presses discs together."""
+"""Default contact duration in units of the mean free time, if a constant force presses discs together."""
 
 SHORT_CONTACT = 1e-6
-"""Default contact duration in units of the time for a mean diameter at the mean speed, where no force does."""
+"""Default contact duration in units of the time for a mean diameter at the mean speed, without such a force."""
 
 
 class _Discs(Table):
@@ -41,7 +41,7 @@ class _Discs(Table):
 
 
 def _fields_of_effects() -> dict[str, Any]:
-    """Fields for the tables of the effects; arrays of tables come first, next to those of the discs."""
+    """Fields for the tables of the effects; arrays of tables come first, after those of the discs."""
     fields: dict[str, Any] = {}
     for effect in sorted(EFFECTS, key=lambda effect: not effect.many):
         if effect.table is not None and effect.many:
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 
     class _DiscsAndEffects(_Discs):
         def __getattr__(self, name: str) -> Any:
-            """The table of an effect."""
+            """Return the table of an effect."""
             ...
 
 else:
@@ -72,21 +72,21 @@ class Document(_DiscsAndEffects):
 
     @property
     def given(self) -> Discs:
-        """Discs of the table [start] or of the tables [[disc]]."""
+        """Discs from the table [start] or the tables [[disc]]."""
         if self.start is None and self._given.tables is not self.disc:
             self._given = Given(discs_of_tables(self.disc), tables=self.disc)
         return self._given.discs
 
     @property
     def segments(self) -> tuple[Any, ...]:
-        """Tables [[wall]], None for invalid ones, then the fixed discs."""
+        """Tables [[wall]], with None for invalid tables, followed by the fixed discs."""
         if self._given.walls_of is not self.disc:
             self._given.walls, self._given.walls_of = fixed_discs(self.disc), self.disc
         return (*self.wall, *self._given.walls)
 
     @property
     def walls(self) -> tuple[Any, ...]:
-        """Walls inside the box: the segments, then inner pistons where they are at the start."""
+        """Walls inside the box: the segments, followed by inner pistons at their positions at the start."""
         return (*self.segments, *(inner_pistons(self.piston, self.box.size) if self.box else ()))
 
     @property
@@ -96,33 +96,33 @@ class Document(_DiscsAndEffects):
 
     @property
     def solids(self) -> Solids:
-        """Solids that the tables [[wall]] make, with the area of fixed discs."""
+        """Solids formed by the tables [[wall]]; their area includes fixed discs."""
         width, height = self.box.size
         made = any(wall is not None and wall.solid for wall in self.wall)
-        found = find_solids(tuple(self.wall), width * height) if made else NO_SOLIDS
+        solids = find_solids(tuple(self.wall), width * height) if made else NO_SOLIDS
         if fixed := self.segments[len(self.wall) :]:
-            return found._replace(area=found.area + covered_area(fixed, (width, height), self.box.periodic))
-        return found
+            return solids._replace(area=solids.area + covered_area(fixed, (width, height), self.box.periodic))
+        return solids
 
     @property
     def free_area(self) -> float:
-        """Area of the room without solids and fixed discs, length²."""
+        """Area of the room outside solids and fixed discs, length²."""
         left, bottom, right, top = self.room
         area, solid = (right - left) * (top - bottom), self.solids.area
-        return area - solid if area > solid else area  # else some of it is beyond a piston
+        return area - solid if area > solid else area  # otherwise part of the solids is beyond a piston
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
-        """Valid tables [[species]] with their indices, and the number of their discs that are not given as count."""
+        """Valid tables [[species]] with their indices; their counts do not include given discs."""
         given = self.given
-        found = [(i, s) for i, s in enumerate(self.species) if s is not None]
+        tables = [(i, s) for i, s in enumerate(self.species) if s is not None]
         if not given.names:
-            return found
-        return [(i, s.model_copy(update={"count": max(s.count - given.numbers.get(s.name, 0), 0)})) for i, s in found]
+            return tables
+        return [(i, s.model_copy(update={"count": max(s.count - given.numbers.get(s.name, 0), 0)})) for i, s in tables]
 
     @property
     def sizes(self) -> list[Size]:
-        """Discs that are not given, by size."""
+        """Sizes and numbers of the discs that are not given."""
         return [size for _, s in self.placed for size in s.sizes]
 
     @property
@@ -132,26 +132,26 @@ class Document(_DiscsAndEffects):
 
     @property
     def draws_velocities(self) -> bool:
-        """Whether given discs get the velocities of their species."""
+        """Whether given discs receive new velocities from their species."""
         return self.start is not None and self.start.velocities == "new"
 
     @property
     def accepted_overlap(self) -> float:
-        """Overlap of given discs that is accepted beyond rounding, length."""
+        """Accepted overlap of given discs in addition to rounding, length."""
         return self._given.update.get("overlap", self.start and self.start.overlap) or 0.0
 
     def tables_of(self, effect: EffectSpec[Any]) -> Tables:
-        """Part of the scene for an effect; while a scene is checked, its box may be missing."""
-        own = getattr(self, effect.key) if effect.key else None
-        own = self.segments if effect.key == "wall" else own
+        """Return the part of the scene for an effect; while a scene is being checked, its box may be missing."""
+        table = getattr(self, effect.key) if effect.key else None
+        table = self.segments if effect.key == "wall" else table
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
-        return Tables(own, size, sides, self.walls)
+        return Tables(table, size, sides, self.walls)
 
     @property
     def active_effects(self) -> tuple[ActiveEffect, ...]:
-        """The effects that the scene has, in the order of EFFECTS."""
-        found = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
-        return tuple(effect for effect in found if effect is not None)
+        """Effects that the scene has, in the order of EFFECTS."""
+        effects = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
+        return tuple(effect for effect in effects if effect is not None)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -164,25 +164,25 @@ class Document(_DiscsAndEffects):
         return combine(self.active_effects)
 
     def lacking(self, *properties: str) -> tuple[str, ...]:
-        """Names of the effects for which one of these properties is not true."""
+        """Names of the effects for which at least one of these properties is not true."""
         return lacking(self.active_effects, *properties)
 
     @property
     def room(self) -> Rectangle:
-        """Space of the gas at the start, x0, y0, x1, y1, length."""
+        """Rectangle x0, y0, x1, y1 that the gas may fill at the start, length."""
         rooms = [(0.0, 0.0, *self.box.size), *(piston.room(self.box.size) for piston in self.pistons)]
         left, bottom, right, top = zip(*rooms, strict=True)
         return max(left), max(bottom), min(right), min(top)
 
     @property
     def lattice(self) -> TriangularLattice | None:
-        """Triangular lattice on which discs start; None if none do, or if their number is odd."""
+        """Triangular lattice on which discs start; None if there are no such discs or their number is odd."""
         number = sum(s.count for _, s in self.placed if s.placement == "triangular")
         return triangular_lattice(number, self.box.size) if number else None
 
     @property
     def body_force(self) -> Vector:
-        """Largest acceleration that presses discs on walls or a wall on discs, along x and y, length/time²."""
+        """Largest acceleration that presses discs against walls or walls against discs, along x and y, length/time²."""
         gravity = self.properties.strongest_pull
         body_force = list(gravity)
         for piston in self.pistons:
@@ -222,14 +222,14 @@ class Document(_DiscsAndEffects):
 
     @property
     def mean_free_time(self) -> float:
-        """Expected time between two collisions of a disc, with discs and sides, time; infinite if nothing moves.
+        """Expected time between two collisions of a disc with discs or sides, time; infinite if nothing moves.
 
-        The speed is that of a disc with the mean speed at the start after a fall through half of the room.
+        The speed is the speed of a disc that starts with the mean speed and has fallen through half of the room.
         """
         return self.free_time_at(self.mean_speed)
 
     def free_time_at(self, speed: float) -> float:
-        """Expected time between two collisions of a disc at a mean speed (length/time) before its fall, time."""
+        """Expected time between two collisions of a disc, time; speed: mean speed before the fall, length/time."""
         n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
         size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
@@ -251,7 +251,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def expected_end(self) -> float:
-        """About when the run ends, by what happens at the start, time; infinite if nothing ends it."""
+        """Estimated time of the end of the run, from the rates of events at the start; infinite if nothing ends it."""
         run = self.run
         ends = [run.until or math.inf]
         if run.events is not None:
@@ -264,11 +264,12 @@ class Document(_DiscsAndEffects):
 
     @property
     def contact_duration(self) -> float:
-        """Time after a collision in which a disc loses no energy, time; 0 if discs never do, infinite if nothing moves.
+        """Duration after a collision during which a disc loses no energy, time; 0 in an elastic gas.
 
-        A constant force presses a resting disc on the wall below it, so the default bounds its hits by a multiple of
-        those of the gas. Without such a force the discs of a cluster part as soon as their collisions are elastic, and
-        the default only has to end the collapse: no average can distinguish it from zero.
+        If a constant force presses a resting disc against the wall below it, the default limits its rate of hits to a
+        multiple of the collision rate of the gas. Without such a force the discs of a cluster separate as soon as their
+        collisions are elastic, and the default only has to end the collapse; no average can distinguish it from zero.
+        It is infinite if nothing moves.
         """
         if self.restitution is None or self.restitution.elastic:
             return 0.0
@@ -286,7 +287,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def rest(self) -> RestingDisc | None:
-        """Motion of discs that have come to rest; None without a constant force or without energy loss."""
+        """Motion of discs that have come to rest; None without a constant force or if collisions lose no energy."""
         force = math.hypot(*self.body_force)
         if self.restitution is None or self.restitution.elastic or force == 0:
             return None

@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 
 UNSTRAINED = math.sqrt(3) / 2
-"""Ratio of the distance of rows to that of neighbours in a row, without strain."""
+"""Distance between rows divided by the distance between neighbours in a row, without strain."""
 
 
 @dataclass(frozen=True)
 class TriangularLattice:
-    """Triangular lattice in a periodic box; every other row is shifted by half a spacing, so their number is even.
+    """Triangular lattice in a periodic box; every other row is shifted by half a spacing, so there is an even number.
 
     Attributes:
         size: width and height of the box, length.
@@ -27,34 +27,34 @@ class TriangularLattice:
 
     @property
     def spacing(self) -> float:
-        """Distance of neighbours in a row, length."""
+        """Distance between neighbours in a row, length."""
         return self.size[self.axis] / self.columns
 
     @property
     def height(self) -> float:
-        """Distance of neighbouring rows, length."""
+        """Distance between neighbouring rows, length."""
         return self.size[1 - self.axis] / self.rows
 
     @property
     def strain(self) -> float:
-        """Relative excess of the distance of rows over that of an equilateral lattice."""
+        """Relative excess of the distance between rows over its value in an equilateral lattice."""
         return self.height / (UNSTRAINED * self.spacing) - 1
 
     @property
     def nearest(self) -> float:
-        """Smallest distance of two sites, length."""
+        """Smallest distance between two sites, length."""
         return min(self.spacing, math.hypot(self.spacing / 2, self.height))
 
     @property
     def unstrained(self) -> tuple[float, float]:
-        """Width and height of the box of the same area in which the lattice has no strain."""
+        """Width and height of the box of the same area in which the lattice has no strain, length."""
         along = math.sqrt(self.size[0] * self.size[1] * self.columns / (UNSTRAINED * self.rows))
         sides = along, UNSTRAINED * along * self.rows / self.columns
         return sides if self.axis == 0 else sides[::-1]
 
 
 def triangular_lattice(number: int, size: tuple[float, float]) -> TriangularLattice | None:
-    """Lattice with a number of sites and the smallest strain in a periodic box; None if the number is odd.
+    """Return the lattice with a number of sites that has the smallest strain in a periodic box; None for an odd number.
 
     size: width and height of the box, length.
     """
@@ -64,4 +64,4 @@ def triangular_lattice(number: int, size: tuple[float, float]) -> TriangularLatt
         for axis in (0, 1)
         if number % rows == 0
     ]
-    return min(lattices, key=lambda one: abs(math.log1p(one.strain)), default=None)
+    return min(lattices, key=lambda lattice: abs(math.log1p(lattice.strain)), default=None)

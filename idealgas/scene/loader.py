@@ -12,7 +12,7 @@ from idealgas.toml.text import Origin, parse_document, read_text
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from a TOML file and check all of it.
+    """Read a scene from a TOML file and check it completely.
 
     Args:
         path: path of the file.
@@ -20,7 +20,7 @@ def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scen
             "species.0.count=500"; without a value, the key is removed.
 
     Raises:
-        SceneError: with one line per error, if the file cannot be read or the scene is invalid.
+        SceneError: the file cannot be read or the scene is invalid; the error has a line for each mistake.
     """
     return parse_scene(read_text(path), str(path), overrides)
 
@@ -33,15 +33,23 @@ def parse_scene(
     discs: Discs | None = None,
     changes: Sequence[SceneChange] = (),
 ) -> Scene:
-    """Make a scene from TOML text and check all of it, as `load_scene` does.
+    """Make a scene from TOML text and check it completely, as `load_scene` does.
 
-    name: file name in messages. discs: discs from which the scene of a log starts. changes: made during its run.
+    Args:
+        text: TOML text of the scene.
+        name: file name in messages.
+        overrides: as in `load_scene`.
+        discs: discs from which the scene of a log starts.
+        changes: changes that a program made during the run.
+
+    Raises:
+        SceneError: the scene is invalid.
     """
     text = text.replace("\r\n", "\n")
     document = parse_document(text, name)
     overridden: dict[Key, str] = {}
     errors = []
-    for override in [overrides] if isinstance(overrides, str) else overrides:  # a single string
+    for override in [overrides] if isinstance(overrides, str) else overrides:  # a single string is accepted too
         try:
             overridden[apply(override, document)] = f"--set {override}"
         except OverrideError as error:

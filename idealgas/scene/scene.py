@@ -1,4 +1,4 @@
-"""Checked scenes, and digests by which equal runs and equal gases are recognised."""
+"""Checked scenes, and digests that identify equal runs and equal gases."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ from idealgas.toml.text import Origin
 
 
 class _SceneType(type(BaseModel)):  # type: ignore[misc]
-    """Type of scenes: a call makes a checked scene, as `make_scene` does."""
+    """Metaclass of scenes: calling the class makes a checked scene, as `make_scene` does."""
 
     def __call__(cls, *, discs: Mapping[str, Any] | None = None, **tables: Any) -> "Scene":
         if discs is not None:
@@ -31,8 +31,9 @@ class _SceneType(type(BaseModel)):  # type: ignore[misc]
 class Scene(Document, metaclass=_SceneType):
     """A checked scene: its numbers are in range, its discs fit into the box, and its run ends.
 
-    `Scene(box=…, run=…)` takes the tables of a scene as dictionaries, or as instances of their classes, and `discs`: a
-    dictionary of columns, from which the scene starts (`idealgas.scene.start` describes them). It raises SceneError.
+    `Scene(box=…, run=…)` takes the tables of a scene as dictionaries or as instances of their classes. The argument
+    `discs` is a dictionary of columns from which the scene starts; `idealgas.scene.start` describes the columns. It
+    raises SceneError for an invalid scene.
     """
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
@@ -43,14 +44,16 @@ class Scene(Document, metaclass=_SceneType):
             try:
                 self._given = Given(*read_start(self, **info.context or {}))
             except StartError as error:
-                found = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
-                raise PydanticCustomError("issues", "{summary}", {"summary": str(found[0]), "issues": found}) from None
-        if found := list(issues(self)):
-            raise PydanticCustomError("issues", "{summary}", {"summary": str(found[0]), "issues": found})
+                errors = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
+                raise PydanticCustomError(
+                    "issues", "{summary}", {"summary": str(errors[0]), "issues": errors}
+                ) from None
+        if errors := list(issues(self)):
+            raise PydanticCustomError("issues", "{summary}", {"summary": str(errors[0]), "issues": errors})
         return self
 
     def resolved(self) -> Self:
-        """This scene with the defaults that follow from other tables."""
+        """Return this scene with the defaults that follow from other tables."""
         update: dict[str, Any] = {}
         sides = [{} if piston.inner else {"side": piston.wall} for piston in self.piston]
         update["piston"] = tuple(
@@ -65,20 +68,20 @@ class Scene(Document, metaclass=_SceneType):
         return self.model_copy(update=update)
 
     def from_origin(self, origin: Origin) -> Self:
-        """This scene with its origin."""
+        """Set the origin of this scene and return the scene."""
         self._origin = origin
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line per issue that was found after the check of the scene, with file and line."""
+        """Return a line, with file and line number, for each issue that was detected after the check of the scene."""
         return self._origin.report(issues)
 
 
 MOST_NAMED = 6
-"""Number of different radii that the description of a gas lists."""
+"""Largest number of different radii that the description of a gas lists."""
 
 STATE = ("temperature", "position", "velocity")
-"""Keys, outside the tables of discs, of the initial state and temperature of a gas, which are not in `gas_digest`."""
+"""Keys of the initial state and temperature of a gas, outside the tables of discs; `gas_digest` ignores them."""
 
 
 def draws_random_numbers(scene: Scene) -> bool:
@@ -88,9 +91,9 @@ def draws_random_numbers(scene: Scene) -> bool:
 
 
 def run_digest(scene: Scene) -> str:
-    """Digest of everything that determines the motion: logs with the same digest have the same run, or parts of it.
+    """Digest of everything that determines the motion; logs with the same digest contain the same run, or parts of it.
 
-    Title and description, and the tables `run` and `log`, are left out.
+    The tables `scene` (except for the seed), `run` and `log` are left out.
     """
     tables = _tables(scene)
     if start := tables.get("start"):
@@ -100,7 +103,7 @@ def run_digest(scene: Scene) -> str:
 
 
 def gas_digest(scene: Scene) -> str:
-    """Digest of the discs, the box and the effects of a scene, without its initial state and temperature."""
+    """Digest of the discs, the box and the effects of a scene, without the initial state and temperature."""
     left_out = ("scene", "run", "log", "species", "disc", "start")
     rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
     box = {side: "thermal" if "thermal" in value else value for side, value in rest["box"].items()}
@@ -109,7 +112,7 @@ def gas_digest(scene: Scene) -> str:
 
 
 def gas_kind(scene: Scene) -> str:
-    """Description of a gas by the sizes of its discs and its effects, without their number and the size of the box."""
+    """Describe a gas by the sizes of its discs and its effects, without their number and the size of the box."""
     sizes = _sizes(scene)
     smallest, number = min(sizes), sizes.total()
     if len(sizes) > MOST_NAMED:
@@ -128,14 +131,14 @@ def is_mixture(scene: Scene) -> bool:
 
 
 def describe_gas(scene: Scene) -> str:
-    """Description of the gas of a scene: number of discs, box, and kind of gas."""
+    """Describe the gas of a scene: number of discs, box, and kind of gas."""
     width, height = scene.box.size
     number = _discs(scene).total()
     return f"N = {number} in {width:.6g} × {height:.6g}, {gas_kind(scene)}"
 
 
 def _discs(scene: Scene) -> Counter[tuple[float, float]]:
-    """Number of discs by their radius and mass."""
+    """Number of discs by radius and mass."""
     discs: Counter[tuple[float, float]] = Counter()
     for size in scene.sizes:
         discs[size.radius, size.mass] += size.number
@@ -144,7 +147,7 @@ def _discs(scene: Scene) -> Counter[tuple[float, float]]:
 
 
 def _sizes(scene: Scene) -> Counter[float]:
-    """Number of discs by their radius."""
+    """Number of discs by radius."""
     sizes: Counter[float] = Counter()
     for (radius, _), count in _discs(scene).items():
         sizes[radius] += count
@@ -173,9 +176,17 @@ def make_scene(
     columns: Mapping[str, Any] | None = None,
     discs: Discs | None = None,
 ) -> Scene:
-    """Scene of a document. Raises SceneError for its errors and the given ones.
+    """Make the scene of a document.
 
-    columns: discs from which the scene starts, by column. discs: the same, of the log of this scene.
+    Args:
+        document: tables by name.
+        origin: origin of the document.
+        errors: errors that are already known.
+        columns: columns of the discs from which the scene starts, by name.
+        discs: discs from which the scene starts, from the log of this scene.
+
+    Raises:
+        SceneError: there are errors in the document, or given errors.
     """
     try:
         origin.names = names_of(document)
@@ -189,7 +200,7 @@ def make_scene(
 
 
 def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
-    """Errors in tables and, between the valid ones, of several tables."""
+    """Errors in single tables and, among the valid tables, errors between several tables."""
     findings = error.errors(include_url=False)
     if findings[0]["type"] == "issues":
         return findings[0]["ctx"]["issues"]
@@ -198,7 +209,7 @@ def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]
 
 
 def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
-    """Valid tables of a document, None for each invalid one, and the names of the invalid ones."""
+    """Valid tables of a document, with None for each invalid table, and the names of the invalid tables."""
     parts: dict[str, Any] = {}
     invalid = set()
     for name, field in Scene.model_fields.items():

@@ -1,7 +1,8 @@
-"""Radii and masses of the discs of a species: equal ones, or a distribution.
+"""Radii and masses of the discs of a species: equal values or a distribution.
 
-The radii of N discs are the quantiles (k + 1/2)/N of their distribution: the gas has the same discs with every seed,
-and its packing fraction, mean radius and polydispersity are those of the distribution up to terms of 1/N².
+The radii of N discs are the quantiles (k + 1/2)/N of their distribution. The gas therefore has the same discs with
+every seed, and its packing fraction, mean radius and polydispersity agree with the distribution up to terms of order
+1/N².
 """
 
 import math
@@ -29,11 +30,11 @@ class Uniform(Table):
 
 
 class Normal(Table):
-    """`{ normal = [mean, s.d.], least = a, most = b }`: a normal distribution, cut off at a and b."""
+    """`{ normal = [mean, s.d.], least = a, most = b }`: a normal distribution, truncated at a and b."""
 
     normal: Pair = Field(description="[mean, s.d.], length")
     least: NotNegative = Field(default=0.0, description="smallest radius, length")
-    most: Positive | None = Field(default=None, description="largest radius, length; if absent there is none")
+    most: Positive | None = Field(default=None, description="largest radius, length; if absent, unlimited")
 
     def radii(self, count: int) -> np.ndarray:
         """Radii (count,), the smallest first, length."""
@@ -43,33 +44,33 @@ class Normal(Table):
 
     @property
     def shares(self) -> tuple[float, float]:
-        """Parts of the whole distribution below the smallest and below the largest radius."""
+        """Fractions of the untruncated distribution below the smallest and below the largest radius."""
         law = NormalDist(*self.normal)
         return law.cdf(self.least), 1.0 if self.most is None else law.cdf(self.most)
 
 
 class Values(Table):
-    """`{ values = [r, ...] }`: disc k has radius number k, from the first one again after the last."""
+    """`{ values = [r, ...] }`: disc k has radius number k; after the last radius the list begins again."""
 
     values: Annotated[tuple[Positive, ...], Field(strict=False)] = Field(description="[radius, ...], length")
 
     def radii(self, count: int) -> np.ndarray:
-        """Radii (count,) in order of disc, length."""
+        """Radii (count,) in the order of the discs, length."""
         return np.resize(self.values, count)
 
 
 class Density(Table):
-    """`{ density = d }`: masses in proportion to the areas of the discs."""
+    """`{ density = d }`: masses proportional to the areas of the discs."""
 
     density: Positive = Field(description="mass per area > 0")
 
 
 LEAST_SHARE = 1e-6
-"""Least part of a normal distribution between the smallest and the largest radius."""
+"""Smallest fraction of a normal distribution between the smallest and the largest radius."""
 
 
 class Size(NamedTuple):
-    """Discs of one radius (length) and one mass: radius, mass, and their number."""
+    """Radius (length), mass and number of equal discs."""
 
     radius: float
     mass: float
@@ -81,26 +82,26 @@ def _shares(count: int) -> np.ndarray:
 
 
 def mass_of(mass: float | Density, radius: np.ndarray) -> np.ndarray:
-    """Masses of discs of some radii (length), by the key `mass` of their species."""
+    """Masses (n,) of discs with radii (n,), length; mass: key of their species."""
     return mass.density * math.pi * radius * radius if isinstance(mass, Density) else np.full(len(radius), mass)
 
 
 @lru_cache(maxsize=32)
 def sizes_of(radius: float | Uniform | Normal | Values, mass: float | Density, count: int) -> tuple[Size, ...]:
-    """Discs of a species by size: a single entry where the radius is a number, else one for each disc."""
-    found = np.array([radius]) if isinstance(radius, float) else radius.radii(count)
-    masses, number = mass_of(mass, found).tolist(), count if isinstance(radius, float) else 1
-    return tuple(Size(r, m, number) for r, m in zip(found.tolist(), masses, strict=True))
+    """Sizes of the discs of a species: a single entry if the radius is a number, otherwise an entry for each disc."""
+    radii = np.array([radius]) if isinstance(radius, float) else radius.radii(count)
+    masses, number = mass_of(mass, radii).tolist(), count if isinstance(radius, float) else 1
+    return tuple(Size(r, m, number) for r, m in zip(radii.tolist(), masses, strict=True))
 
 
 def wrong_radius(radius: float | Uniform | Normal | Values) -> tuple[str, str, str] | None:
-    """What is wrong with the key `radius` of a species, what was found and what is allowed; None if it is valid."""
+    """Return what is wrong with the key `radius` of a species, its value and what is allowed; None if it is valid."""
     match radius:
         case Uniform(uniform=(low, high)) if low > high:
             return "largest radius below the smallest", str([low, high]), "[smallest, largest]"
         case Normal() if radius.shares[1] - radius.shares[0] < LEAST_SHARE:
-            found = f"{radius.least} to {radius.most or 'infinity'}"
-            return "hardly any radii between least and most", found, f">= {LEAST_SHARE:g} of the distribution"
+            interval = f"{radius.least} to {radius.most or 'infinity'}"
+            return "hardly any radii between least and most", interval, f">= {LEAST_SHARE:g} of the distribution"
         case Values(values=()):
             return "no radii", "[]", "at least one"
     return None

@@ -1,4 +1,4 @@
-"""Solids: what closed curves of walls enclose, or leave outside, so that no gas is there."""
+"""Solids: the areas without gas inside, or outside, closed curves of walls."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Solids(NamedTuple):
     """Solids of a scene.
 
     Attributes:
-        walls: of the solids, by what is solid of their curves: "inside" or "outside".
-        area: of the box that they and fixed discs cover, length²; without that beyond open curves.
-        loose: number of a wall and its end, of which the curve is not closed.
+        walls: walls of the solids, by the solid side of their curves: "inside" or "outside".
+        area: area of the box that the solids and fixed discs cover, length²; open curves do not count.
+        loose: numbers of the walls whose curves are not closed, each with the loose end.
     """
 
     walls: dict[str, tuple[Wall, ...]]
@@ -32,30 +32,30 @@ class Solids(NamedTuple):
     loose: tuple[tuple[int, Point], ...]
 
     def contain(self, points: np.ndarray) -> np.ndarray:
-        """Mask (M,) of the points (M, 2) that are in a solid."""
-        found = enclosed(points, self.walls["inside"])
-        return found | ~enclosed(points, self.walls["outside"]) if self.walls["outside"] else found
+        """Mask (M,) of the points (M, 2) that are inside a solid."""
+        inside = enclosed(points, self.walls["inside"])
+        return inside | ~enclosed(points, self.walls["outside"]) if self.walls["outside"] else inside
 
 
 NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
-"""Those of a scene without any."""
+"""Solids of a scene without solids."""
 
 
 @lru_cache(maxsize=4)
 def find_solids(walls: tuple[Wall | None, ...], box_area: float) -> Solids:
-    """Solids that tables [[wall]] make in a box of some area, length²; None for invalid tables."""
+    """Find the solids that tables [[wall]] form in a box; walls: None for invalid tables; box_area: length²."""
     numbered = [(k, wall) for k, wall in enumerate(walls) if wall is not None and wall.solid is not None]
     kinds = {kind: tuple(wall for _, wall in numbered if wall.solid == kind) for kind in ("inside", "outside")}
     curves, loose = _curves(numbered)
-    rectangles = {kind: np.array([_rectangle(wall) for wall in found]).T for kind, found in kinds.items()}
+    rectangles = {kind: np.array([_rectangle(wall) for wall in members]).T for kind, members in kinds.items()}
     areas = dict.fromkeys(kinds, 0.0)
     for curve in curves:
         first, kind = curve[0][0], str(curve[0][0].solid)
-        (x, y), own = first.start, {id(wall) for wall, _ in curve}
+        (x, y), curve_ids = first.start, {id(wall) for wall, _ in curve}
         low, right, high = rectangles[kind]
         met = np.flatnonzero((low <= y) & (y <= high) & (x <= right))  # by a ray from the point to the right
-        others = [wall for wall in (kinds[kind][k] for k in met) if id(wall) not in own]
-        within = bool(enclosed(np.array([first.start]), others)[0])
+        other_walls = [wall for wall in (kinds[kind][k] for k in met) if id(wall) not in curve_ids]
+        within = bool(enclosed(np.array([first.start]), other_walls)[0])
         areas[kind] += (-1 if within else 1) * abs(math.fsum(_swept(*part) for part in curve))
     covered = areas["inside"] + (box_area - areas["outside"] if kinds["outside"] else 0.0)
     return Solids(kinds, covered, loose)
@@ -63,21 +63,21 @@ def find_solids(walls: tuple[Wall | None, ...], box_area: float) -> Solids:
 
 def enclosed(points: np.ndarray, walls: Iterable[Wall]) -> np.ndarray:
     """Mask (M,) of the points (M, 2) that closed curves of walls enclose, by the even–odd rule."""
-    found = np.zeros(len(points), bool)
+    inside = np.zeros(len(points), bool)
     for wall in walls:
         x, y = (points - wall.start).T
-        found ^= toggles(x, y, *np.subtract(wall.end, wall.start), wall.arc or NO_ARC)
-    return found
+        inside ^= toggles(x, y, *np.subtract(wall.end, wall.start), wall.arc or NO_ARC)
+    return inside
 
 
 def _rectangle(wall: Wall) -> tuple[float, float, float]:
-    """Lower, right and upper edge of the rectangle around a wall."""
+    """Lower, right and upper edges of the rectangle around a wall."""
     (_, low), (right, high) = bounds(wall.start, wall.end, wall.arc)
     return low, right, high
 
 
 def _curves(walls: Sequence[tuple[int, Wall]]) -> tuple[list[list[tuple[Wall, bool]]], tuple[tuple[int, Point], ...]]:
-    """Closed curves, each of walls and whether it runs from start to end of each, and the loose ends of the others."""
+    """Closed curves, each a list of walls and whether the curve follows each from start to end; and the loose ends."""
     at: dict[tuple[str | None, Point], list[int]] = defaultdict(list)
     known = dict(walls)
     for k, wall in walls:
@@ -93,14 +93,14 @@ def _curves(walls: Sequence[tuple[int, Wall]]) -> tuple[list[list[tuple[Wall, bo
             forwards = known[k].start == place
             curve.append((known[k], forwards))
             place = known[k].end if forwards else known[k].start
-            k = next((other for other in at[known[k].solid, place] if other != k), first)
+            k = next((neighbour for neighbour in at[known[k].solid, place] if neighbour != k), first)
         if place == known[first].start:
             curves.append(curve)
     return curves, loose
 
 
 def _swept(wall: Wall, forwards: bool) -> float:
-    """Area that the line from the origin to a point sweeps as it moves along a wall, counterclockwise, length²."""
+    """Area swept counterclockwise by the line from the origin to a point that moves along a wall, length²."""
     (x0, y0), (x1, y1) = wall.start, wall.end
     area = (x0 * y1 - x1 * y0) / 2
     if arc := wall.arc:
@@ -110,10 +110,10 @@ def _swept(wall: Wall, forwards: bool) -> float:
 
 @lru_cache(maxsize=4)
 def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]) -> float:
-    """Area of a box that fixed discs cover, length², however they overlap each other and its sides.
+    """Area of a box that is covered by fixed discs, length²; the discs may overlap each other and the sides.
 
-    It is the integral of x dy along the boundary of what they cover in the box: the arcs of their rims that are in the
-    box and in no other disc, and the parts of the right side that are in discs.
+    It is the integral of x dy along the boundary of the covered part of the box: the arcs of the rims that are in the
+    box and outside all other discs, and the parts of the right side that are inside discs.
     """
     width, height = size
     shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
@@ -133,25 +133,30 @@ def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool
 
 
 def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
-    """For each of several discs in order of x, no two the same, the angles from and to which others or a box hide."""
-    each = np.arange(len(r))
-    number = x.searchsorted(x + 2 * r.max(initial=0.0), "right") - each - 1  # of later discs that are near along x
-    low = np.repeat(each, number)
+    """Intervals of angle in which the rim of each disc is inside other discs or outside a box.
+
+    The discs must be in order of x and differ from each other.
+    """
+    indices = np.arange(len(r))
+    number = (
+        x.searchsorted(x + 2 * r.max(initial=0.0), "right") - indices - 1
+    )  # number of later discs that are near in x
+    low = np.repeat(indices, number)
     high = low + 1 + np.arange(len(low)) - np.repeat(np.cumsum(number) - number, number)
-    one, other = np.concatenate((low, high)), np.concatenate((high, low))
-    dx, dy = x[other] - x[one], y[other] - y[one]
+    disc, partner = np.concatenate((low, high)), np.concatenate((high, low))
+    dx, dy = x[partner] - x[disc], y[partner] - y[disc]
     distance = np.hypot(dx, dy)
-    meet = (distance < r[one] + r[other]) & (distance > r[one] - r[other])
-    one, other, dx, dy, distance = one[meet], other[meet], dx[meet], dy[meet], distance[meet]
-    within = distance <= r[other] - r[one]
+    meet = (distance < r[disc] + r[partner]) & (distance > r[disc] - r[partner])
+    disc, partner, dx, dy, distance = disc[meet], partner[meet], dx[meet], dy[meet], distance[meet]
+    within = distance <= r[partner] - r[disc]
     nearest = np.where(
-        within, -r[one], (distance + (r[one] ** 2 - r[other] ** 2) / np.where(within, 1.0, distance)) / 2
+        within, -r[disc], (distance + (r[disc] ** 2 - r[partner] ** 2) / np.where(within, 1.0, distance)) / 2
     )
-    owner = np.concatenate((one, *[each] * 4))
+    owner = np.concatenate((disc, *[indices] * 4))
     towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
     reach = np.concatenate((nearest, size[0] - x, size[1] - y, x, y)) / r[owner]
     half = np.arccos(np.clip(reach, -1.0, 1.0))
-    hidden: list[list[tuple[float, float]]] = [[] for _ in each]
+    hidden: list[list[tuple[float, float]]] = [[] for _ in indices]
     for k, low, high in zip(
         owner.tolist(), ((towards - half) % (2 * math.pi)).tolist(), (2 * half).tolist(), strict=True
     ):
@@ -161,7 +166,10 @@ def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[li
 
 
 def _gaps(covered: Iterable[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:
-    """Parts of 0 to a length that no interval from and to places covers; those that end before they begin are none."""
+    """Yield the parts of the interval from 0 to a length that the given intervals do not cover.
+
+    Intervals that end before they begin are ignored.
+    """
     reached = 0.0
     for low, high in sorted(covered):
         if low >= length:

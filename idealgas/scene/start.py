@@ -1,14 +1,14 @@
 """Discs from which a scene starts: columns by name, from a log, a file or a Python program.
 
-| column | unit | without it |
+| column | unit | default |
 |---|---|---|
 | `position` (n, 2) | length | required; `x` and `y` in a .csv file |
 | `velocity` (n, 2) | length/time | 0; `vx` and `vy` in a .csv file |
-| `radius`, `mass` (n,) | length, mass | those of the species' table; without a table radius is required and mass 1 |
+| `radius`, `mass` (n,) | length, mass | value in the species' table; without one, radius is required and mass is 1 |
 | `angular_velocity` (n,) | 1/time | 0 |
-| `species` (n,) | names | that of the only table [[species]], or "disc" |
+| `species` (n,) | names | name of the only table [[species]], or "disc" |
 
-A radius or mass that differs from that of the species' table is an error.
+A radius or mass that differs from the value in the species' table is an error.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 VECTORS = ("position", "velocity")
 SINGLE = 2.0**-22
-"""Relative difference that rounding to single precision explains: four roundings by 2⁻²⁴."""
+"""Largest relative difference due to rounding to single precision: four roundings of 2⁻²⁴."""
 
 COLUMNS = (*VECTORS, "radius", "mass", "angular_velocity", "species")
 """Names of the columns."""
 
 
 class StartError(ValueError):
-    """A start is invalid: key of the table [start], what is wrong, what was found and what is allowed."""
+    """A start is invalid: key of the table [start], what is wrong, the value, and what is allowed."""
 
     def __init__(self, key: str, wrong: str, got: str, allowed: str) -> None:
         super().__init__(wrong)
@@ -47,16 +47,16 @@ class StartError(ValueError):
 def read_start(
     scene: Document, folder: Path = Path(), columns: Mapping[str, Any] | None = None, discs: Discs | None = None
 ) -> tuple[Discs, dict[str, Any]]:
-    """Discs from which a scene starts, and the keys of its table [start] that follow from them.
+    """Return the discs from which a scene starts, and the keys of its table [start] that follow from them.
 
     Args:
         scene: the scene, with valid tables.
-        folder: folder from which paths start.
-        columns: columns of a Python program.
-        discs: discs of the log of this scene; its first ones are those from which it starts.
+        folder: folder to which paths are relative.
+        columns: columns from a Python program.
+        discs: discs of the log of this scene, of which the first are those from which it starts.
 
     Raises:
-        StartError: if they cannot be read, or are invalid.
+        StartError: the discs cannot be read, or are invalid.
     """
     start = scene.start
     assert start is not None
@@ -69,18 +69,20 @@ def read_start(
     if columns is None:
         path = (folder / (start.source or "")).absolute()
         module = "idealgas.log.start" if start.log is not None else "idealgas.initial.files"
-        columns, own = import_module(module).read_state(path, start.time)  # a log has a scene, which imports this
-        update = {given[0]: str(path), "overlap": own if start.overlap is None else start.overlap}
+        columns, file_overlap = import_module(module).read_state(
+            path, start.time
+        )  # a log has a scene, which imports this
+        update = {given[0]: str(path), "overlap": file_overlap if start.overlap is None else start.overlap}
     key = given[0] if given else "discs"
     box, shear = scene.box, scene.properties.shear
-    found = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(box.size, box.periodic, shear)
+    start_discs = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(box.size, box.periodic, shear)
     if start.velocities == "reversed":
-        found = found.reversed()
-    return found, update
+        start_discs = start_discs.reversed()
+    return start_discs, update
 
 
 def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) -> Discs:
-    """Discs of columns, with the constants of their species. tables: tables [[species]] by name."""
+    """Check columns and make their discs, with radius and mass of their species. tables: tables [[species]] by name."""
     if unknown := [name for name in columns if name not in COLUMNS]:
         raise StartError(key, "unknown column", str(unknown[0]), ", ".join(COLUMNS))
     if "position" not in columns:
@@ -122,7 +124,7 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
 
 
 def _numbers(name: str, values: Any, key: str) -> np.ndarray:
-    """Column of numbers, (n,) or (n, 2)."""
+    """Return a column of numbers, (n,) or (n, 2)."""
     try:
         if np.iscomplexobj(values):
             raise TypeError

@@ -1,4 +1,4 @@
-"""Tables of a scene, except those of effects: box, discs, run and log."""
+"""Tables of a scene, except for the tables of effects: box, discs, run and log."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -16,10 +16,10 @@ from idealgas.toml.dump import toml_value
 from idealgas.toml.table import LARGEST, NotNegative, Number, Positive, Real, Table, Vector, Whole, Word, either
 
 WORDS = ("reflecting", *(effect.side for effect in EFFECTS if isinstance(effect.side, str)))
-"""Kinds of sides that are a word."""
+"""Kinds of sides that are written as a word."""
 
 TABLES = tuple(effect.side for effect in EFFECTS if isinstance(effect.side, type))
-"""Kinds of sides that are a table with one key."""
+"""Kinds of sides that are written as a table with a single key."""
 
 
 def _description() -> str:
@@ -50,7 +50,7 @@ class Box(Table):
 
     @property
     def sides(self) -> tuple[Side, Side, Side, Side]:
-        """Left, right, bottom and top."""
+        """Left, right, bottom and top side."""
         return self.left, self.right, self.bottom, self.top
 
     @property
@@ -59,7 +59,7 @@ class Box(Table):
         return self.left == PERIODIC, self.bottom == PERIODIC or isinstance(self.bottom, ShearedSide)
 
     def after(self, time: float) -> Self:
-        """The box in a scene whose clock starts at a later time."""
+        """Return the box for a scene whose clock starts at a later time."""
         sides = zip(SIDES, self.sides, strict=True)
         later = {name: side.after(time) for name, side in sides if isinstance(side, SteppedTable)}
         return self.model_copy(update=later)
@@ -69,7 +69,7 @@ class Species(Table):
     """`[[species]]`: discs of one kind, with exactly one of temperature, speed and velocities."""
 
     name: Word = Field(description="unique word")
-    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1, those of [start] and [[disc]] included")
+    count: Whole = Field(ge=1, lt=2**31, description="number of discs, >= 1, including discs of [start] and [[disc]]")
     radius: Radius = Field(
         description="radius > 0, length, or { uniform = [a, b] }, { normal = [mean, s.d.] } or { values = [r, ...] }"
     )
@@ -89,22 +89,22 @@ class Species(Table):
         default="random", description="how the discs are placed in the region"
     )
     region: Annotated[tuple[Number, Number, Number, Number], Field(strict=False)] | None = Field(
-        default=None, description="[x0, y0, x1, y1], length: whole discs lie in it; if absent the box, up to the piston"
+        default=None, description="[x0, y0, x1, y1], length, contains whole discs; if absent, the box up to the piston"
     )
 
     @property
     def sizes(self) -> tuple[Size, ...]:
-        """Its discs by size."""
+        """Sizes and numbers of the discs."""
         return sizes_of(self.radius, self.mass, self.count)
 
     @property
     def largest_radius(self) -> float:
-        """Largest radius of its discs, length; 0 without discs of a distribution."""
+        """Largest radius of the discs, length; 0 for a distribution without discs."""
         return max((size.radius for size in self.sizes), default=0.0)
 
 
 class Disc(Table):
-    """`[[disc]]`: one disc. A fixed one is a wall, not a disc of the gas: only its position and radius count."""
+    """`[[disc]]`: a single disc. A fixed disc is a wall, not a disc of the gas: only its position and radius matter."""
 
     position: Vector = Field(description="[x, y] of the centre, length")
     velocity: Vector = Field(default=(0.0, 0.0), description="[vx, vy], length/time")
@@ -112,9 +112,9 @@ class Disc(Table):
     mass: Positive = Field(default=1.0, description="mass")
     angular_velocity: Number | None = Field(default=None, description="1/time; with [rotation], 0 if absent")
     species: Word | None = Field(
-        default=None, description='its species, one of [[species]] or another; if absent "disc"'
+        default=None, description='name of its species, in [[species]] or not; if absent, "disc"'
     )
-    fixed: bool | None = Field(default=None, description="whether it never moves: a scatterer")
+    fixed: bool | None = Field(default=None, description="whether it never moves, as a scatterer")
 
 
 Instant = Annotated[
@@ -124,7 +124,7 @@ Instant = Annotated[
 
 
 class Start(Table):
-    """`[start]`: discs with positions and velocities from a log or a file, in place of `[[disc]]` tables."""
+    """`[start]`: discs with positions and velocities from a log or a file, instead of `[[disc]]` tables."""
 
     log: str | None = Field(default=None, description="path of a log, relative to this file")
     file: str | None = Field(
@@ -135,10 +135,10 @@ class Start(Table):
         default="keep", description="as in the state, drawn for the tables [[species]], or reversed"
     )
     overlap: NotNegative | None = Field(
-        default=None, description="largest overlap that is accepted, length; if absent that of the state in its own log"
+        default=None, description="largest accepted overlap, length; if absent, the overlap of the state in its log"
     )
     number: Whole | None = Field(default=None, ge=1, lt=2**31, description="number of discs; follows from the state")
-    digest: str | None = Field(default=None, max_length=64, description="digest of the state, in a log")
+    digest: str | None = Field(default=None, max_length=64, description="digest of the state; set in logs")
 
     @property
     def source(self) -> str | None:
@@ -159,17 +159,17 @@ def _known(name: str) -> str:
 
 
 AnalysisName = Annotated[str, AfterValidator(_known), Field(json_schema_extra={"enum": list(commands())})]
-"""Name of an analysis, that of its command."""
+"""Name of an analysis, which is the name of its command."""
 
 
 class Header(Table):
-    """`[scene]`: title, description, what it shows, and seed of the random numbers."""
+    """`[scene]`: title, description, analyses to show, and seed of the random numbers."""
 
     title: str = Field(default="", description="one line")
     description: str = Field(default="", description="what the scene shows, in paragraphs; the report begins with it")
     shows: Annotated[tuple[AnalysisName, ...], Field(strict=False)] = Field(
         default=(),
-        description="names of the analyses that answer the question of the scene, the first one first; the report "
+        description="names of the analyses that answer the question of the scene, the most important first; the report "
         "begins with them. If absent, they follow from the effects",
     )
     seed: Whole = Field(
@@ -178,7 +178,7 @@ class Header(Table):
 
 
 class Run(Table):
-    """`[run]`: method, and stop rules, at least one; the run ends at the first that is met."""
+    """`[run]`: method, and at least one stop rule; the run ends when the first of them is met."""
 
     method: Literal["event_driven", "brute_force", "time_driven", "monte_carlo"] = Field(
         default="event_driven", description="how events are found"
@@ -189,14 +189,14 @@ class Run(Table):
         default=None, description="average number of pair collisions per disc (2 * collisions / N)"
     )
     trials: Whole | None = Field(default=None, ge=1, lt=2**62, description="with monte_carlo: number of pairs tried")
-    dt: Positive | None = Field(default=None, description="with time_driven, and required there: step, time")
+    dt: Positive | None = Field(default=None, description="with time_driven, which requires it: step, time")
     precision: Literal["float32", "float64", "double-double"] | None = Field(
         default=None, description="with brute_force: precision of numbers, about 7, 16 (default) or 32 digits"
     )
     v_ref: Positive | None = Field(
         default=None,
         description="with monte_carlo: relative speed at which a pair of the largest discs always collides; "
-        "if absent 5 times the largest speed at the start",
+        "if absent, 5 times the largest speed at the start",
     )
     impact: Literal["symmetric", "one_sided"] | None = Field(
         default=None, description="with monte_carlo: whether impact parameters have both signs (default) or one"
@@ -209,17 +209,17 @@ class Run(Table):
 
 
 class Log(Table):
-    """`[log]`: what the run writes."""
+    """`[log]`: contents of the log."""
 
     events: bool = Field(default=True, description="whether every event is recorded; otherwise only checkpoints")
-    compression: Literal["gzip", "none"] = Field(default="gzip", description="of the event columns")
+    compression: Literal["gzip", "none"] = Field(default="gzip", description="compression of the event columns")
     pressure: bool = Field(
         default=False,
-        description="whether samples contain the momentum flow and the impulses on walls: pressure without events",
+        description="whether samples contain the momentum flow and the impulses on walls, for pressure without events",
     )
     heat_flow: bool | None = Field(
         default=None,
-        description="with pressure: whether samples contain the heat flow: thermal conductivity without events",
+        description="with pressure: whether samples contain the heat flow, for thermal conductivity without events",
     )
     checkpoint_every: Whole = Field(default=1, ge=1, lt=2**31, description="epochs between checkpoints")
     snapshot_every: Positive | None = Field(default=None, description="time between snapshots; none if absent")

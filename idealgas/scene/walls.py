@@ -1,4 +1,4 @@
-"""Walls of a scene by number: the sides of the box are walls 0 to 3, segments and inner pistons follow."""
+"""Walls of a scene by number: the sides of the box are walls 0 to 3, followed by segments and inner pistons."""
 
 from __future__ import annotations
 
@@ -13,15 +13,23 @@ if TYPE_CHECKING:
 
 
 ARROWS = dict(zip(SIDES, "→←↑↓", strict=True))
-"""Direction in which discs pass a wall, by the side from which they do."""
+"""Direction in which discs pass a wall, by the side from which they come."""
 
 
 class NumberedWall(NamedTuple):
-    """Wall with name, ends (length), description of its action, and times from and until which it is absent.
+    """A wall of a scene.
 
-    radius: of a fixed disc, whose ends are its centre, length; 0 for others. is_permeable: whether discs of some
-    species pass it. label: its name in pictures, with an arrow if they pass in one direction. arc: None for
-    other walls. moves: whether it is an inner piston, whose ends are those at the start.
+    Attributes:
+        name: name in output.
+        start: one end, length.
+        end: the other end, length.
+        action: description of its action on discs.
+        absences: pairs of times from and until which the wall is absent.
+        radius: radius of a fixed disc, whose ends are its centre, length; 0 for other walls.
+        is_permeable: whether discs of some species pass the wall.
+        label: name in pictures, with an arrow if discs pass in one direction only.
+        arc: the arc; None for other walls.
+        moves: whether it is an inner piston, whose ends are those at the start.
     """
 
     name: str
@@ -37,12 +45,12 @@ class NumberedWall(NamedTuple):
 
     @property
     def is_straight(self) -> bool:
-        """Whether it is neither an arc nor a fixed disc."""
+        """Whether the wall is neither an arc nor a fixed disc."""
         return not self.radius and self.arc is None
 
     @property
     def points(self) -> list[Point]:
-        """Points between which lines draw it."""
+        """Corners of the polygonal line by which the wall is drawn."""
         return drawn_points(self.start, self.end, self.arc)
 
     @property
@@ -52,7 +60,7 @@ class NumberedWall(NamedTuple):
 
     @property
     def is_passable(self) -> bool:
-        """Whether discs pass the wall, at some time or of some species."""
+        """Whether discs pass the wall, at some time or if they are of some species."""
         return self.is_gate or self.is_permeable
 
     def is_there(self, time: float) -> bool:
@@ -61,7 +69,7 @@ class NumberedWall(NamedTuple):
 
 
 def number_walls(scene: Scene) -> list[NumberedWall]:
-    """All walls in the order of their numbers."""
+    """Return all walls in the order of their numbers."""
     walls = []
     for name, ends, side in zip(SIDES, side_ends(scene.box.size), scene.box.sides, strict=True):
         action = side if isinstance(side, str) else side.action
@@ -70,8 +78,8 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
-        if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs have no such key
-            # Solids have many short walls, whose numbers would overlap in a picture.
+        if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs do not have this key
+            # Solids consist of many short walls, whose numbers would overlap in a picture.
             label = ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))
@@ -79,5 +87,5 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
 
 
 def walls_inside(scene: Scene) -> list[NumberedWall]:
-    """Walls at rest inside the box, in the order of the scene."""
+    """Return the walls at rest inside the box, in the order of the scene."""
     return [wall for wall in number_walls(scene)[FIRST_SEGMENT:] if not wall.moves]

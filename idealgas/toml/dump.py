@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 
 def dump_document(document: BaseModel) -> str:
-    """TOML text of a scene with all defaults. Loading it gives an equal scene, with the same bits of every float."""
+    """Return the TOML text of a scene with all defaults. Loading it gives an equal scene, with identical floats."""
     tables = []
     for name, value in document.model_dump(by_alias=True, exclude_none=True).items():
         if isinstance(value, Mapping):
@@ -19,7 +19,7 @@ def dump_document(document: BaseModel) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """TOML text of a value, on one line."""
+    """Return the TOML text of a value on one line."""
     match value:
         case bool():
             return str(value).lower()

@@ -1,4 +1,4 @@
-"""Errors of a document, also those of pydantic, as `table.key: what is wrong (got …; allowed …)`."""
+"""Errors of a document, including errors of pydantic, in the form `table.key: what is wrong (got …; allowed …)`."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +12,7 @@ from idealgas.errors import UserError, did_you_mean
 from idealgas.toml.dump import toml_value
 
 Key = tuple[str | int, ...]
-"""Path of a key in the document: ("species", 0, "radius")."""
+"""Path of a key in the document, such as ("species", 0, "radius")."""
 
 LONGEST_VALUE = 60
 """Largest number of characters of a value in a message."""
@@ -38,7 +38,14 @@ _WORDS = {
 
 
 class Issue(NamedTuple):
-    """An error of a document: the key to show, then the other keys that are involved."""
+    """An error of a document.
+
+    Attributes:
+        keys: the key that the message names, followed by other keys that are involved.
+        wrong: what is wrong.
+        got: the value.
+        allowed: what is allowed.
+    """
 
     keys: tuple[Key, ...]
     wrong: str
@@ -46,7 +53,7 @@ class Issue(NamedTuple):
     allowed: str
 
     def line(self, names: Mapping[Key, str]) -> str:
-        """Return the issue as a line of a message; names: of tables in arrays, by key, in place of their numbers."""
+        """Return the issue as a line of a message; names: names that replace the numbers of tables, by key."""
         key = self.keys[0]
         steps = [str(names.get(key[: k + 1], step)) for k, step in enumerate(key)]
         return f"{'.'.join(steps)}: {self.wrong} (got {self.got}; allowed {self.allowed})"
@@ -56,7 +63,11 @@ class Issue(NamedTuple):
 
 
 class SceneError(UserError, ValueError):
-    """A scene is invalid; `errors` has one line per error."""
+    """A scene is invalid.
+
+    Attributes:
+        errors: a line for each error.
+    """
 
     def __init__(self, errors: Sequence[str]) -> None:
         super().__init__("\n".join(errors))
@@ -64,9 +75,9 @@ class SceneError(UserError, ValueError):
 
 
 def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
-    """Issues from the errors that pydantic found in a document of a model.
+    """Convert the errors that pydantic found in a document of a model to issues.
 
-    An array of too few valid items is no mistake of its own if an item is invalid.
+    If an item of an array is invalid, it is not reported that the array has too few valid items.
     """
     above = {finding["loc"][:n] for finding in findings for n in range(len(finding["loc"]))}
     return [
@@ -117,7 +128,7 @@ def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
 
 
 def table_at(key: Key, model: type[BaseModel]) -> type[BaseModel]:
-    """Model of the table at a key; the first of several kinds."""
+    """Model of the table at a key; if several kinds of tables are allowed, the first."""
     return _tables_at(key, model)[0]
 
 

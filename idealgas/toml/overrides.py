@@ -1,4 +1,4 @@
-"""`--set table.key=value`: changes to a document before it is checked."""
+"""Changes to a document before it is checked, such as `--set table.key=value`."""
 
 import re
 import tomllib
@@ -16,10 +16,10 @@ class OverrideError(ValueError):
 
 
 def apply(override: str, document: dict[str, Any]) -> Key:
-    """Set one key of a document, or remove it if the value is empty; return the key.
+    """Set a key of a document, or remove it if the value is empty; return the key.
 
-    A table in an array is chosen by index or name (`species.0.count=10`, `species.argon.count=10`), which may be left
-    out if it is the only one (`species.count=10`).
+    A table in an array is chosen by index or name (`species.0.count=10`, `species.argon.count=10`); for the only table
+    of an array this may be omitted (`species.count=10`).
     """
     key, node, text = find(override, document, missing=True)
     if text:
@@ -32,9 +32,9 @@ def apply(override: str, document: dict[str, Any]) -> Key:
 
 
 def find(override: str, document: dict[str, Any], missing: bool = False) -> tuple[Key, Any, str]:
-    """Key that an override sets, the table or array that has it, and the text of the value.
+    """Return the key that an override sets, the table or array that contains it, and the text of the value.
 
-    missing: whether tables that the document does not have are made.
+    missing: whether to create tables that the document does not have.
     """
     path, equals, text = override.partition("=")
     names = [name.strip() for name in path.split(".")]
@@ -83,12 +83,12 @@ def _names(node: Any) -> dict[str, int]:
 
 
 def names_of(document: Mapping[str, Any]) -> dict[Key, str]:
-    """Return the names of the tables in arrays, by key, with which `--set` finds them: ("species", 1) is "heavy"."""
+    """Return the names by which `--set` can address tables in arrays, by key: {("species", 1): "heavy"}."""
     return {(array, k): name for array, node in document.items() for name, k in _names(node).items()}
 
 
 def value_of(text: str) -> Any:
-    """Value of a TOML text; the text itself if it is not TOML."""
+    """Return the value of a TOML text, or the text itself if it is not TOML."""
     try:
         document = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

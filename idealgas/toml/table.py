@@ -1,4 +1,4 @@
-"""Base class of all tables of a scene, types of their numbers, and their JSON Schema."""
+"""Base class of all tables of a scene, types of numbers in them, and their JSON Schema."""
 
 import json
 from typing import Annotated, Any
@@ -7,14 +7,14 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 from pydantic_core import PydanticCustomError
 
 SMALLEST, LARGEST = 1e-60, 1e30
-"""Bounds on the size of every number but 0, so that no product of a few of them underflows or overflows."""
+"""Bounds on the absolute value of every number except 0, so that products of a few never underflow or overflow."""
 
 SCHEMA_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
-"""JSON Schema keywords for bounds, which pydantic writes under its own names if the type has a validator."""
+"""JSON Schema keywords for bounds, for which pydantic uses other names if the type has a validator."""
 
 
 def _not_tiny(number: float) -> float:
-    """Refuse a number that is too close to 0."""
+    """Return the number; raise an error if it is too close to 0."""
     if 0 < abs(number) < SMALLEST:
         raise PydanticCustomError("too_close_to_0", "", {"smallest": SMALLEST})
     return number
@@ -39,7 +39,7 @@ Rectangle = tuple[float, float, float, float]
 
 
 class Table(BaseModel):
-    """A TOML table: immutable, without unknown keys, with strict types."""
+    """A TOML table: immutable, with strict types and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -49,15 +49,19 @@ def _key_of(table: type[Table]) -> str:
 
 
 def either(plain: Any, *tables: type[Table]) -> Any:
-    """Type of a value that is plain, or one of several tables, which are told apart by their first keys.
+    """Type of a value that is either plain or one of several kinds of tables, distinguished by their first keys.
 
-    A table without a known key counts as the first kind, whose error then lists all keys.
+    A table without a known key counts as the first kind, so that its error lists the keys.
     """
 
     def tag(value: Any) -> str:
         if not isinstance(value, (dict, *tables)):
             return "(plain)"
-        given = (one for one in tables if isinstance(value, one) or (isinstance(value, dict) and _key_of(one) in value))
+        given = (
+            candidate
+            for candidate in tables
+            if isinstance(value, candidate) or (isinstance(value, dict) and _key_of(candidate) in value)
+        )
         return f"({_key_of(next(given, tables[0]))})"
 
     kinds: Any = Annotated[plain, Tag("(plain)")]
@@ -67,7 +71,7 @@ def either(plain: Any, *tables: type[Table]) -> Any:
 
 
 def schema_text(model: type[BaseModel]) -> str:
-    """JSON Schema of the documents of a model, as text, without the rules between tables."""
+    """Return the JSON Schema of the documents of a model, as text, without the rules between tables."""
     return json.dumps(_standard(model.model_json_schema(by_alias=True)), indent=1, ensure_ascii=False) + "\n"
 
 

@@ -17,19 +17,19 @@ from idealgas.system import STDIN
 from idealgas.toml.issues import Issue, Key, SceneError
 
 MOST_BYTES, MOST_TEXT = 2_000_000, 8_000_000
-"""Largest sizes of a TOML file, bytes, and of a text, which may have all defaults of a file, characters."""
+"""Largest size of a TOML file, in bytes, and of a text, which may contain all defaults in addition, in characters."""
 
 MOST_LINES = 20
-"""Largest number of mistakes of a document that are reported one by one."""
+"""Largest number of mistakes of a document that are reported individually."""
 
 MOST_PARTS = 32
-"""Largest number of parts of a dotted key; a scene needs 4; the time to parse one grows with their square."""
+"""Largest number of parts of a dotted key. A scene needs 4; the time to parse a key grows with the square."""
 
 _DOTTED = re.compile(rf"""(?<![\w"'.-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 
 
 def read_text(path: str | PathLike[str]) -> str:
-    """Text of a TOML file. Raises SceneError if it cannot be read."""
+    """Return the text of a TOML file. Raises SceneError if it cannot be read."""
     try:
         with open(os.dup(0) if str(path) == STDIN and not Path(STDIN).exists() else path, "rb") as file:
             raw = file.read(MOST_BYTES + 1)
@@ -48,11 +48,11 @@ def read_text(path: str | PathLike[str]) -> str:
 
 
 def parse_document(text: str, name: str) -> dict[str, Any]:
-    """Values of a TOML text. Raises SceneError if it is not TOML, or too large to be parsed in seconds."""
+    """Return the values of a TOML text. Raises SceneError if it is not TOML, or too large to be parsed in seconds."""
     if len(text) > MOST_TEXT:
         raise SceneError([f"{name}: too long (got {len(text):,} characters; allowed <= {MOST_TEXT:,})"])
-    if found := _DOTTED.search(text):
-        line = text.count("\n", 0, found.start()) + 1
+    if dotted := _DOTTED.search(text):
+        line = text.count("\n", 0, dotted.start()) + 1
         raise SceneError([f"{name}:{line}: a key of too many parts (got {MOST_PARTS} dots; allowed fewer)"])
     try:
         return tomllib.loads(text)
@@ -71,7 +71,7 @@ _VALUE = re.compile(r'''"""(?:[^\\]|\\.)*?"{3,5}|\'{3}.*?\'{3,5}|"(?:[^"\\]|\\.)
 
 
 def key_lines(text: str) -> dict[Key, int]:
-    """Line number of every table, key and array element of a valid TOML text."""
+    """Return the line number of every table, key and array element of a valid TOML text."""
     return _Scanner(text).lines
 
 
@@ -83,7 +83,7 @@ class _Scanner:
         self.position = 0
         self.newlines = [match.start() for match in re.finditer("\n", text)]
         self.lines: dict[Key, int] = {}
-        self.tables: dict[Key, int] = {}  # arrays of tables, and the index of the latest of each
+        self.tables: dict[Key, int] = {}  # index of the latest table in each array of tables
         table: Key = ()
         while self.skip_blank() < len(text):
             if self.take("[["):
@@ -107,9 +107,9 @@ class _Scanner:
 
     def take(self, token: str) -> bool:
         self.skip_blank()
-        found = self.text.startswith(token, self.position)
-        self.position += len(token) * found
-        return found
+        is_next = self.text.startswith(token, self.position)
+        self.position += len(token) * is_next
+        return is_next
 
     def match(self, pattern: re.Pattern[str]) -> str:
         self.skip_blank()
@@ -131,7 +131,7 @@ class _Scanner:
         return parts
 
     def current(self, names: list[str]) -> Key:
-        """Path of a table, with the index of the latest one after each array of tables."""
+        """Path of a table, with the index of the latest table after each array of tables."""
         path: Key = ()
         for name in names:
             path = (*path, name)
@@ -163,12 +163,12 @@ class _Scanner:
 
 @dataclass
 class Origin:
-    """Where a document was written. All origins are equal, so that they do not matter when scenes are compared.
+    """Origin of a document. All origins compare equal, so that they do not matter when scenes are compared.
 
     Attributes:
         text: TOML text.
-        name: name of its file.
-        overridden: overrides as written, by the key that they set.
+        name: name of the file.
+        overridden: overrides in the form in which they were written, by the key that they set.
         above: key of the scene within the text.
         names: names of tables in arrays, by key.
     """
@@ -181,13 +181,13 @@ class Origin:
 
     @property
     def folder(self) -> Path:
-        """Folder of the file, from which paths in it start."""
+        """Folder of the file, to which paths in the document are relative."""
         return Path(self.name).parent
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """One line per issue, in the order of the file; issues of overrides come last.
+        """Return a line for each issue, in the order of the file; issues of overrides come last.
 
-        Of many the first MOST_LINES and the number of the others.
+        If there are more than MOST_LINES, the last line is the number of further issues.
         """
         lines: dict[str, tuple[bool, int]] = {}
         for issue in issues:
@@ -200,7 +200,7 @@ class Origin:
         return [*texts[:MOST_LINES], *more]
 
     def _override(self, key: Key) -> str | None:
-        """Override that sets the key, or another key of a table that is missing in the text."""
+        """Override that sets the key, or that sets another key of a table that the text does not contain."""
         tables = [key[:n] for n in range(1, len(key) + 1)]
         absent = [table for table in tables if (*self.above, *table) not in self._lines][:1]
         set_by = self.overridden.items()
@@ -209,7 +209,7 @@ class Origin:
         return next(chain(exact, around), None)
 
     def line(self, key: Key) -> int:
-        """Line number of the key or of the closest table above it, by default the first line."""
+        """Line number of the key or of the closest table that contains it; by default the first line."""
         key = (*self.above, *key)
         return next((self._lines[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self._lines), 1)
 

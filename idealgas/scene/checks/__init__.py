@@ -24,23 +24,23 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 
 MOST_DISCS = 2_000_000
-"""Largest number of discs, which take 2 GB."""
+"""Largest number of discs, which need 2 GB of memory."""
 
 MAX_THERMOSTAT_COLLISIONS = 1e10
-"""Largest number of thermostat collisions of a run, which takes hours."""
+"""Largest number of thermostat collisions of a run, which take hours."""
 
 
 def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
-    """Errors between the tables of a scene, and between the keys of a table.
+    """Yield errors between the tables of a scene, and between the keys of a table.
 
-    Tables in `invalid`, and None in an array of tables, have other errors and are left out.
+    Tables in `invalid`, and None in an array of tables, already have errors and are left out.
     """
-    if found := list(_radius_issues(scene)) or list(_size_issues(scene)):
-        yield from found  # before anything that takes long for so many
+    if errors := list(_radius_issues(scene)) or list(_size_issues(scene)):
+        yield from errors  # before checks that would take too long
         return
     box = None if "box" in invalid else scene.box
-    if box is not None and "piston" not in invalid and (found := list(piston.closed_issues(scene, invalid))):
-        yield from found  # before anything that needs room for the gas
+    if box is not None and "piston" not in invalid and (errors := list(piston.closed_issues(scene, invalid))):
+        yield from errors  # before checks that require room for the gas
         return
     mobile = [i for i, disc in enumerate(scene.disc) if disc is None or not disc.fixed]
     if not scene.species and not mobile and scene.start is None:
@@ -65,7 +65,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield from discs_in_walls(scene)
         if solid := list(solid_issues(scene)):
             yield from solid
-            return  # there may be no area left
+            return  # the solids may leave no area
     yield from piston.issues(scene, invalid)
     if not invalid:
         yield from _thermostat_issues(scene)
@@ -90,7 +90,7 @@ def _radius_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _size_issues(scene: Document) -> Iterator[Issue]:
-    """Check the numbers of species, walls and discs, whose arrays have to fit into memory."""
+    """Check the numbers of species, walls and discs, whose arrays must fit into memory."""
     names = {s.name for s in scene.species if s is not None} | set(scene.given.names)
     for key, what, number, most in (
         ("species", "species", len(names), MOST_SPECIES),
@@ -102,12 +102,12 @@ def _size_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _valid(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
-    """Valid tables of an array with their indices; None marks the others."""
+    """Valid tables of an array with their indices; None marks invalid tables."""
     return [(i, item) for i, item in enumerate(items) if item is not None]
 
 
 def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check spins without rotation, and rotation without effect on any spin."""
+    """Check for spins without rotation, and for a rotation that never changes a spin."""
     rotation = scene.rotation
     for table, items in (("species", scene.species), ("disc", scene.disc)):
         for i, item in _valid(items):
@@ -129,7 +129,7 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 
 def _contact_issues(scene: Document) -> Iterator[Issue]:
-    """Check for a contact duration without default."""
+    """Check that the contact duration has a finite default."""
     if scene.has_discs and math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
         yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")

@@ -1,4 +1,4 @@
-"""Checks of the discs: their motion, overlaps, and room in the box and on lattices."""
+"""Checks of the discs: their motion, and their room in the box and on lattices."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ RANDOM_PACKING = 0.65
 """Largest packing fraction of random placement; see `idealgas.initial.placement`."""
 
 RESOLUTION = 1e-9
-"""Smallest radius in units of the longer side of the box, so that floats distinguish contact from gap."""
+"""Smallest radius in units of the longer side of the box, so that floats can distinguish a contact from a gap."""
 
 PERIODIC_ONLY = ("triangular", "compressed")
-"""Placements that need a whole periodic box."""
+"""Placements that require a whole periodic box."""
 
 NARROWEST = 5.0
-"""Smallest width of a box for compression, in radii, so that no disc meets two images of another one."""
+"""Smallest width of a box for compression, in radii, so that no disc meets two images of another disc."""
 
 
 def species_issues(scene: Document) -> Iterator[Issue]:
-    """Check that the names of species are unique, and that each has the given discs and exactly one way of motion."""
+    """Check that the names of species are unique, and that each has enough discs and exactly one kind of motion."""
     first: dict[str, int] = {}
     numbers = scene.given.numbers
     for i, s in scene.placed:
@@ -63,7 +63,7 @@ def species_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[Issue]:
-    """Check that discs of a species with a table have its radius and mass, and that new velocities have a table."""
+    """Check that given discs have the radius and mass of their species, and that new velocities have a species."""
     discs = scene.given
     for k, name in enumerate(discs.names):
         if name not in tables:
@@ -86,7 +86,7 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
 
 
 def permeable_issues(scene: Document) -> Iterator[Issue]:
-    """Check that the species that pass a wall are those of discs."""
+    """Check that there are discs of the species that pass a wall."""
     known = dict.fromkeys((*(s.name for _, s in scene.placed), *scene.given.names))
     for i, wall in enumerate(scene.wall):
         for name in (wall and wall.permeable_to) or ():
@@ -97,7 +97,7 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
 
 
 def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check that the discs lie in the space of the gas, and are not too large, too small or too many."""
+    """Check that the discs lie in the space of the gas, are neither too large nor too small, and are not too many."""
     box, space, discs = scene.box, scene.room, scene.given
     kinds = [(i, s) for i, s in scene.placed if s.count]
     outside = [*_regions_outside(scene, space, kinds), *_discs_outside(scene)]
@@ -119,24 +119,24 @@ def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 def _regions_outside(scene: Document, space: Rectangle, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     left, bottom, right, top = space
-    place, others = _name_of(scene.box, space), _limits(scene)
+    place, limits = _name_of(scene.box, space), _limits(scene)
     for i, s in kinds:
         key: Key = ("species", i, "region")
         x0, y0, x1, y1 = s.region or space
         if not (left <= x0 < x1 <= right and bottom <= y0 < y1 <= top):
             allowed = f"[x0, y0, x1, y1] with {left:.17g} <= x0 < x1 <= {right} and {bottom:.17g} <= y0 < y1 <= {top}"
-            yield Issue((key, *others), f"region not in the {place}", str(list(s.region or space)), allowed)
+            yield Issue((key, *limits), f"region not in the {place}", str(list(s.region or space)), allowed)
         elif 2 * s.largest_radius > min(x1 - x0, y1 - y0):
-            keys = (("species", i, "radius"), key, *others)
+            keys = (("species", i, "radius"), key, *limits)
             where = "region" if s.region else place
             got, allowed = f"{s.largest_radius}", f"<= {min(x1 - x0, y1 - y0) / 2}"
             yield Issue(keys, f"discs wider than the {where}", got, allowed)
 
 
 def _discs_outside(scene: Document) -> Iterator[Issue]:
-    """Check given discs, at most MOST_OVERLAPS."""
+    """Check that given discs are in the space of the gas; at most MOST_OVERLAPS are reported."""
     box, space, discs = scene.box, scene.room, scene.given
-    others = _limits(scene)
+    limits = _limits(scene)
     place, widest = _name_of(box, space), min(space[2] - space[0], space[3] - space[1])
     slack = rounding(max(box.size), 2 * discs.radius) + scene.accepted_overlap
     inside = 2 * discs.radius <= widest
@@ -148,7 +148,7 @@ def _discs_outside(scene: Document) -> Iterator[Issue]:
         number, radius = int(discs.index[k]), float(discs.radius[k])
         which = label(scene, number)
         if 2 * radius > widest:
-            keys = (*disc_keys(scene, (number,), "radius"), *others)
+            keys = (*disc_keys(scene, (number,), "radius"), *limits)
             yield Issue(keys, f"{which or 'disc '}wider than the {place}", f"{radius}", f"<= {widest / 2}")
             continue
         allowed = " and ".join(
@@ -157,12 +157,12 @@ def _discs_outside(scene: Document) -> Iterator[Issue]:
             else f"{space[axis] + radius} <= {name} <= {space[axis + 2] - radius}"
             for axis, name in enumerate("xy")
         )
-        keys = (*disc_keys(scene, (number,), "position", "radius"), *others)
+        keys = (*disc_keys(scene, (number,), "position", "radius"), *limits)
         yield Issue(keys, f"{which or 'disc '}not in the {place}", str(discs.position[k].tolist()), allowed)
 
 
 def _limits(scene: Document) -> tuple[Key, ...]:
-    """Keys that say how much room the gas has."""
+    """Keys that determine the room of the gas."""
     return (("box", "size"), *(("piston", k, "position") for k in range(len(scene.piston))))
 
 
@@ -184,11 +184,11 @@ def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> I
         random = all(s.placement == "random" for _, s in here)
         if packing > (RANDOM_PACKING if random else CLOSE_PACKING):
             most = max(here, key=lambda item: _area(item[1]))[0]
-            others = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
+            keys = [("species", i, key) for i, _ in here for key in ("count", "radius", "region", "placement")]
             place = name if region == whole else "region"
             allowed = f"<= {CLOSE_PACKING:.4f} on a lattice, <= {RANDOM_PACKING} at random"
             yield Issue(
-                (("species", most, "count"), *others, *_limits(scene)),
+                (("species", most, "count"), *keys, *_limits(scene)),
                 f"too many discs for the {place}",
                 f"packing fraction {packing:.4g}",
                 allowed,
@@ -201,10 +201,10 @@ def _area(species: Species) -> float:
 
 
 def placement_issues(scene: Document) -> Iterator[Issue]:
-    """Check the boxes of compressed discs and of triangular lattices."""
+    """Check the box of compressed discs and of triangular lattices."""
     kinds = [(i, s) for i, s in scene.placed if s.count]
-    some = [(i, s) for i, s in kinds if s.placement in PERIODIC_ONLY]
-    for i, s in some:
+    special = [(i, s) for i, s in kinds if s.placement in PERIODIC_ONLY]
+    for i, s in special:
         keys: tuple[Key, ...] = (("species", i, "placement"),)
         if not all(scene.box.periodic):
             sides = tuple(("box", side) for side in ("left", "right", "bottom", "top"))
@@ -215,20 +215,20 @@ def placement_issues(scene: Document) -> Iterator[Issue]:
             )
         elif s.placement == "compressed":
             yield from _compressed(scene, kinds, i)
-    lattice = [(i, s) for i, s in some if s.placement == "triangular"]
+    lattice = [(i, s) for i, s in special if s.placement == "triangular"]
     if lattice and all(scene.box.periodic):
         yield from _on_lattice(scene.box.size, lattice)
 
 
 def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
-    """Check for compression in a narrow box, or next to discs and walls that are not compressed."""
+    """Check for compression in a box that is too narrow, or together with walls or discs that are not compressed."""
     key: Key = ("species", i, "placement")
-    others = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
-    others += ["[start]" if scene.start else "[[disc]]"] if len(scene.given) else []
-    others += ["[[wall]]"] if scene.walls else []
-    if others:
+    uncompressed = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
+    uncompressed += ["[start]" if scene.start else "[[disc]]"] if len(scene.given) else []
+    uncompressed += ["[[wall]]"] if scene.walls else []
+    if uncompressed:
         allowed = "compressed for all species, and no [[disc]], [start] or [[wall]]"
-        yield Issue((key,), "compressed beside what is not", ", ".join(others), allowed)
+        yield Issue((key,), "compressed beside what is not", ", ".join(uncompressed), allowed)
     least = NARROWEST * max(s.largest_radius for _, s in kinds)
     if min(scene.box.size) < least:
         got = f"a side of {min(scene.box.size)}"

@@ -1,4 +1,4 @@
-"""Checks of given discs for overlaps with one another, with the sides of the box and with walls."""
+"""Checks of given discs for overlaps with each other, with the sides of the box and with walls."""
 
 from __future__ import annotations
 
@@ -20,40 +20,40 @@ if TYPE_CHECKING:
     from idealgas.scene.tables import Box
 
 ROUNDINGS = 16
-"""Number of roundings of a coordinate at a contact: of two positions, two flights, and the time of the event."""
+"""Number of rounding errors in a coordinate at a contact: of two positions, two flights, and the time of the event."""
 
 MOST_OVERLAPS = 1_000
 """Largest number of overlaps that are reported."""
 
 _PAIRS = 2**20
-"""Number of pairs that are compared at a time."""
+"""Number of pairs that are compared at once."""
 
 NEIGHBOURS = np.array([(c, r) for c in (-1, 0, 1) for r in (-1, 0, 1)])
 
 
 def rounding(extent: float, reach: np.ndarray | float) -> np.ndarray | float:
-    """Largest overlap (length) that rounding explains; the engine takes such discs for discs in contact.
+    """Largest overlap (length) that can be due to rounding; for the engine such discs are in contact.
 
     extent: largest coordinate, length. reach: distance of the centres at contact, or the diameter of a disc at a wall,
-    length. The clock of an epoch adds the rounding of the path of its fastest disc.
+    length. The clock of an epoch adds a rounding error of the path of its fastest disc.
     """
     return ROUNDINGS * 2.0**-53 * (extent + MAX_DISPLACEMENT * reach)
 
 
 def disc_keys(scene: Document, numbers: tuple[int, ...], *names: str) -> tuple[Key, ...]:
-    """Keys of given discs with these numbers: in their tables, or the table from which the scene starts."""
+    """Keys of given discs with these numbers: keys in their tables [[disc]], or the table [start]."""
     if scene.start is not None:
         return (("start",),)
     return tuple(("disc", n, name) for name in names for n in numbers)
 
 
 def label(scene: Document, number: int) -> str:
-    """Name of a given disc at the start of a message, where its key does not name it."""
+    """Name of a given disc at the beginning of a message; empty if the key already names it."""
     return "" if scene.start is None else f"disc {number} "
 
 
 def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
-    """Report given discs that overlap, also through periodic sides, at most MOST_OVERLAPS pairs."""
+    """Report given discs that overlap, including overlaps through periodic sides; at most MOST_OVERLAPS pairs."""
     discs = scene.given
     for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
         low, high = int(discs.index[a]), int(discs.index[b])
@@ -64,22 +64,25 @@ def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
 
 
 def overlapping(discs: Discs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
-    """Pairs of discs that overlap beyond rounding and what is accepted, and their distance; at most MOST_OVERLAPS."""
+    """Yield pairs of discs that overlap by more than rounding and the accepted overlap, and their distance.
+
+    At most MOST_OVERLAPS pairs are returned. box: None if it is invalid. accepted: length.
+    """
     extent = max(box.size) if box else float(np.abs(discs.position).max(initial=0.0))
     owner, centre = images(discs.position, discs.radius, box)
-    found: dict[tuple[int, int], float] = {}
+    pairs: dict[tuple[int, int], float] = {}
     for a, b, distance in overlaps(centre, discs.radius[owner], extent, accepted):
         pair = int(min(owner[a], owner[b])), int(max(owner[a], owner[b]))
         if pair[0] != pair[1]:
-            found.setdefault(pair, distance)
-        if len(found) == MOST_OVERLAPS:
+            pairs.setdefault(pair, distance)
+        if len(pairs) == MOST_OVERLAPS:
             break
-    for (low, high), distance in sorted(found.items()):
+    for (low, high), distance in sorted(pairs.items()):
         yield low, high, distance
 
 
 def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[np.ndarray, np.ndarray]:
-    """Index of the disc (M,) and centre (M, 2) of every disc, and of its images that reach into a periodic box."""
+    """Index (M,) and centre (M, 2) of every disc, and of its images that protrude into a periodic box."""
     owner, centre = np.arange(len(radius)), position
     for axis in range(2):
         if box is not None and box.periodic[axis]:
@@ -94,14 +97,17 @@ def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[n
 def overlaps(
     centre: np.ndarray, radius: np.ndarray, extent: float, accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
-    """Indices of two discs that overlap, the lower one first, and their distance.
+    """Yield the indices of two discs that overlap, the lower index first, and their distance.
 
-    centre: (M, 2), length. radius: (M,), length. extent: largest coordinate, length, which decides what is rounding.
-    accepted: overlap that is accepted beyond it, length.
+    Discs with radii between two successive powers of two share a grid whose cells are no smaller than their diameters.
+    Each disc is compared with the discs in the nine cells around it in the grids of its size and of larger sizes, so
+    the time grows as N log N, unless very many discs overlap.
 
-    Discs of about one radius, from a power of two to the next, share a grid with cells no smaller than their diameter.
-    Each disc is compared with those of the nine cells around it in the grids of its own size and of larger ones, so
-    the time is that of N log N, unless very many discs overlap.
+    Args:
+        centre: (M, 2), length.
+        radius: (M,), length.
+        extent: largest coordinate, from which the rounding error follows, length.
+        accepted: overlap that is accepted in addition to the rounding error, length.
     """
     size = np.frexp(radius)[1]  # radius < 2^size
     levels = np.unique(size)
@@ -109,11 +115,11 @@ def overlaps(
         members = np.flatnonzero(size == level)
         cell, order = _sorted_cells(_cells(centre[members], level))
         members = members[order]
-        others = np.flatnonzero(size <= level)
+        candidates = np.flatnonzero(size <= level)
         for step in NEIGHBOURS:
-            wanted = _keys(_cells(centre[others], level) + step)
+            wanted = _keys(_cells(centre[candidates], level) + step)
             first, last = cell.searchsorted(wanted, "left"), cell.searchsorted(wanted, "right")
-            for i, k in _pairs(others, members, first, last):
+            for i, k in _pairs(candidates, members, first, last):
                 once = (k < i) | (size[i] < level)
                 i, k = i[once], k[once]
                 reach = radius[i] + radius[k]
@@ -125,12 +131,12 @@ def overlaps(
 
 
 def _cells(centre: np.ndarray, level: int) -> np.ndarray:
-    """Column and row (M, 2) of points in a grid of cells of the width 2 * 2^level."""
+    """Column and row (M, 2) of points in a grid whose cells have the width 2 * 2^level."""
     return np.floor(np.ldexp(centre, -level - 1))
 
 
 def _keys(cells: np.ndarray) -> np.ndarray:
-    """Cells (M, 2) as complex numbers, which are sorted by column and then by row."""
+    """Convert cells (M, 2) to complex numbers, which sort by column and then by row."""
     return cells[:, 0] + 1j * cells[:, 1]
 
 
@@ -141,25 +147,25 @@ def _sorted_cells(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _pairs(
-    others: np.ndarray, members: np.ndarray, first: np.ndarray, last: np.ndarray
+    candidates: np.ndarray, members: np.ndarray, first: np.ndarray, last: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Pairs of each of `others` with the members from `first` to `last`, some _PAIRS at a time."""
+    """Yield the pairs of each candidate with the members from `first` to before `last`, about _PAIRS at a time."""
     number = last - first
-    some = np.flatnonzero(number)
-    end = np.cumsum(number[some])
+    nonempty = np.flatnonzero(number)
+    end = np.cumsum(number[nonempty])
     start = 0
-    while start < len(some):
+    while start < len(nonempty):
         before = end[start - 1] if start else 0
         stop = max(int(end.searchsorted(before + _PAIRS, "right")), start + 1)
-        chosen = some[start:stop]
+        chosen = nonempty[start:stop]
         count = number[chosen]
         within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        yield np.repeat(others[chosen], count), members[np.repeat(first[chosen], count) + within]
+        yield np.repeat(candidates[chosen], count), members[np.repeat(first[chosen], count) + within]
         start = stop
 
 
 def deepest_overlap(discs: Discs, box: Box, walls: Sequence[Wall]) -> float:
-    """Deepest overlap beyond rounding of discs with one another, with sides and with walls, length; 0 without any."""
+    """Deepest overlap of discs with each other, with sides or with walls, length; 0 if all overlaps are rounding."""
     radius = discs.radius
     depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
     depths += [radius[k] - distance for k, _, distance in wall_overlaps(discs, box, dict(enumerate(walls)))]
@@ -172,7 +178,7 @@ def deepest_overlap(discs: Discs, box: Box, walls: Sequence[Wall]) -> float:
 def wall_overlaps(
     discs: Discs, box: Box, walls: Mapping[int, Wall], accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
-    """Index of a disc, number of a wall, and their distance where they overlap beyond rounding and what is accepted."""
+    """Yield the index of a disc, the number of a wall and their distance if they overlap by more than is accepted."""
     owner, centre = images(discs.position, discs.radius, box)
     slack = rounding(max(box.size), 2 * discs.radius) + accepted
     order = np.argsort(centre[:, 0], kind="stable")
@@ -190,15 +196,15 @@ def wall_overlaps(
 
 
 def discs_in_walls(scene: Document) -> Iterator[Issue]:
-    """Check given discs that overlap a wall present at the start, at most MOST_OVERLAPS."""
-    found: dict[tuple[int, int], float] = {}
+    """Check for given discs that overlap a wall present at the start; at most MOST_OVERLAPS are reported."""
+    pairs: dict[tuple[int, int], float] = {}
     box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_there(0.0)}
     walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
     for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
-        found[k, i] = min(distance, found.get((k, i), math.inf))
-        if len(found) == MOST_OVERLAPS:
+        pairs[k, i] = min(distance, pairs.get((k, i), math.inf))
+        if len(pairs) == MOST_OVERLAPS:
             break
-    for (k, i), distance in sorted(found.items()):
+    for (k, i), distance in sorted(pairs.items()):
         number, radius = int(scene.given.index[k]), scene.given.radius[k]
         place: Key = getattr(walls[i], "place", ("wall", i))
         keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
@@ -209,12 +215,12 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
 
 
 def _distance_to_ends(points: np.ndarray, wall: Wall) -> np.ndarray:
-    """Distances of discs that pass a wall, at points (M, 2), from its ends; infinite if they pass from both sides."""
+    """Distances of discs at points (M, 2) from the ends of a wall that they pass; infinite if they pass both ways."""
     if wall.permeable_from is None:
         return np.full(len(points), np.inf)
     return np.min([np.hypot(*(points - end).T) for end in (wall.start, wall.end)], axis=0)
 
 
 def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:
-    """Distances of points (M, 2) from a wall, from the rim of a fixed disc."""
+    """Distances of points (M, 2) from a wall, or from the rim of a fixed disc, length."""
     return np.asarray(np.hypot(*(points - nearest_points(points, wall.start, wall.end, wall.arc)).T) - wall.radius)

@@ -1,4 +1,4 @@
-"""Checks of pistons: their sides, positions and motion, walls in their range, and the room of the gases between."""
+"""Checks of pistons: their sides, positions and motion, walls in their range, and room for the gases between them."""
 
 from __future__ import annotations
 
@@ -33,25 +33,25 @@ def piston_names(pistons: Sequence[Piston]) -> list[str]:
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check the pistons of a scene whose tables are valid."""
+    """Check the pistons of a scene, if its tables are valid."""
     if invalid or not scene.piston:
         return
-    own = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)]
-    found = [*own, *_gravity_issues(scene)] or list(_row_issues(scene))
-    yield from found
-    if not found:
+    single = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)]
+    errors = [*single, *_gravity_issues(scene)] or list(_row_issues(scene))
+    yield from errors
+    if not errors:
         yield from _holes_between(scene)
         for k in range(len(scene.piston)):
             yield from _walls_in_the_way(scene, k)
 
 
 def closed_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check that the pistons leave room for the gas at the start."""
+    """Check whether the pistons leave room for the gas at the start."""
     left, bottom, right, top = scene.room
     if left < right and bottom < top:
         return
-    if found := list(issues(scene, invalid)):
-        yield from found
+    if errors := list(issues(scene, invalid)):
+        yield from errors
         return
     keys = tuple(("piston", k, "position") for k, piston in enumerate(scene.piston) if not piston.inner)
     got = " and ".join(f"{scene.piston[k].wall} at {scene.piston[k].start(scene.box.size):g}" for _, k, _ in keys)
@@ -59,7 +59,7 @@ def closed_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 
 
 def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check one piston by itself."""
+    """Check a single piston."""
     piston = scene.piston[k]
     if piston.inner and piston.side:
         got = f'side = "{piston.side}", inner = "{piston.inner}"'
@@ -77,14 +77,14 @@ def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
         keys = (("piston", k, "position"), ("box", "size"))
         yield Issue(keys, "piston not in the box", f"{start}", f"0 <= position <= {length}")
         return
-    found = list(_motion_issues(piston, k))
-    yield from found
-    if not found:
+    errors = list(_motion_issues(piston, k))
+    yield from errors
+    if not errors:
         yield from _forced_issues(scene, k) if piston.mass is None else _massive_issues(scene, k)
 
 
 def _gravity_issues(scene: Document) -> Iterator[Issue]:
-    """Check that pistons with a mass are under one gravity."""
+    """Check that gravity is constant if there are pistons with a mass."""
     masses: list[Key] = [("piston", k, "mass") for k, piston in enumerate(scene.piston) if piston.mass is not None]
     if masses and scene.properties.later_accelerations:
         keys: tuple[Key, ...] = (("gravity", "acceleration"), *masses)
@@ -92,12 +92,12 @@ def _gravity_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _place_key(scene: Document, k: int) -> Key:
-    """Key that says where a piston is among the sides of the box."""
+    """Key that determines at which side a piston is, or along which axis it moves."""
     return ("piston", k, "inner" if scene.piston[k].inner else "side")
 
 
 def _row_issues(scene: Document) -> Iterator[Issue]:
-    """Check that pistons move along one axis, and are in order along it, one at most at each side."""
+    """Check that all pistons move along the same axis and are in order along it, with at most one at each side."""
     for k in range(1, len(scene.piston)):
         before, piston = scene.piston[k - 1 : k + 1]
         starts = [table.start(scene.box.size) for table in (before, piston)]
@@ -139,24 +139,24 @@ def _motion_issues(piston: Piston, k: int) -> Iterator[Issue]:
 
 
 def _depth(scene: Document, piston: Piston, position: float) -> float:
-    """Length of the gas at a piston position."""
+    """Length of the gas at a position of the piston."""
     return position if piston.outward > 0 else scene.box.size[piston.axis] - position
 
 
 def least_depth(scene: Document, axis: int) -> float:
-    """Smallest distance of two sides, or of a piston and a side, with all discs in between."""
+    """Smallest distance between two sides, or a piston and a side, with all discs in between."""
     heights = sum(reach(scene.box.sides[side]) for side in sides_across(axis))
     return heights + max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - axis], 2 * scene.largest_radius)
 
 
 def _moving_keys(*numbers: int) -> tuple[Key, ...]:
-    """Keys by which pistons of given velocity come too far."""
-    own = ((("piston", k, "velocity"), ("piston", k, "position")) for k in numbers)
-    return (*(key for keys in own for key in keys), ("run", "until"), ("box", "size"))
+    """Keys that determine how far pistons of given velocity come."""
+    pairs = ((("piston", k, "velocity"), ("piston", k, "position")) for k in numbers)
+    return (*(key for keys in pairs for key in keys), ("run", "until"), ("box", "size"))
 
 
 def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check a piston of given velocity, which nothing stops; gases on both sides of one are not known yet."""
+    """Check a piston of given velocity, which nothing stops; `chamber_issues` checks the gases on both sides of it."""
     piston, keys = scene.piston[k], _moving_keys(k)
     velocities = [velocity for _, velocity in piston.velocity_steps if velocity]
     if not velocities:
@@ -178,25 +178,25 @@ def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def track(scene: Document, piston: Piston) -> list[tuple[float, float]]:
-    """Times and positions of a piston of given velocity: at the start, at changes of its velocity and at the end."""
+    """Pairs of time and position of a piston of given velocity, at the start, at velocity changes and at the end."""
     until, place = scene.run.until, piston.start(scene.box.size)
     if until is None:  # then it has no velocity
         return [(0.0, place)]
     steps = [(time, velocity) for time, velocity in piston.velocity_steps if time < until]
-    found = [(0.0, place)]
+    points = [(0.0, place)]
     for (time, velocity), later in zip(steps, [*(time for time, _ in steps[1:]), until], strict=True):
         place += velocity * (later - time)
-        found.append((later, place))
-    return found
+        points.append((later, place))
+    return points
 
 
 def _when(scene: Document, time: float) -> str:
-    """Words for a time of a track."""
+    """Describe a time of a track."""
     return "at the start" if not time else "at the end" if time == scene.run.until else f"at t = {time:g}"
 
 
 def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check that a piston with a mass is pressed on the gas, or not on a side if it is inner."""
+    """Check that a piston with a mass is pressed against the gas or, if it is inner, not against a side."""
     piston = scene.piston[k]
     if piston.inner:
         yield from _resting_issues(scene, k)
@@ -211,7 +211,7 @@ def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check that gravity does not press an inner piston at rest on a side of the box."""
+    """Check that gravity does not press an inner piston at rest against a side of the box."""
     piston, size = scene.piston[k], scene.box.size
     start, pull = piston.start(size), piston.acceleration(size, scene.properties.acceleration)
     if not piston.velocity and ((start == 0 and pull < 0) or (start == size[piston.axis] and pull > 0)):
@@ -220,7 +220,7 @@ def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
-    """Check walls that a piston may reach."""
+    """Check for walls that a piston may reach."""
     piston = scene.piston[k]
     if piston.inner or len(scene.piston) > 1:
         yield from _walls_in_range(scene, k)
@@ -241,13 +241,16 @@ def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _in_the_way(wall: Any, i: int, k: int) -> tuple[Key, ...]:
-    """Keys of wall i in the way of piston k."""
+    """Keys that involve wall i in the way of piston k."""
     place: Key = getattr(wall, "place", ("wall", i))
     return (place, ("piston", k, "position"), ("piston", k, "velocity"), ("run", "until"))
 
 
 def _range(scene: Document, k: int) -> tuple[float, float]:
-    """Where a piston may come, one with a mass up to others of given velocity, and what is beyond it at its side."""
+    """Range of positions of a piston along its axis, including the space between an outer piston and its side.
+
+    A piston with a mass may come as far as the sides, or as the neighbouring pistons of given velocity.
+    """
     piston, size = scene.piston[k], scene.box.size
     ways = [[place for _, place in track(scene, p)] if p.mass is None else [] for p in scene.piston]
     places = ways[k] or [
@@ -259,7 +262,7 @@ def _range(scene: Document, k: int) -> tuple[float, float]:
 
 
 def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
-    """Check walls in the range of a piston."""
+    """Check for walls in the range of a piston."""
     axis, (least, most) = scene.piston[k].axis, _range(scene, k)
     for i, wall in enumerate(scene.segments):
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
@@ -270,7 +273,7 @@ def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _holes_between(scene: Document) -> Iterator[Issue]:
-    """Check that no gas between two pistons, which cannot meet as long as it has a disc, escapes."""
+    """Check that gas between two pistons cannot escape, because pistons without a disc between them could meet."""
     axis, starts = scene.piston[0].axis, [piston.start(scene.box.size) for piston in scene.piston]
     for i, wall in enumerate(scene.wall):
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
@@ -281,9 +284,9 @@ def _holes_between(scene: Document) -> Iterator[Issue]:
 
 
 def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> Iterator[Issue]:
-    """One issue for each two pistons with no disc between them, and for each gas that has too little room some time.
+    """Yield issues of neighbouring pistons without a disc between them, and of gases with too little room at some time.
 
-    position: (N, 2), of all discs at the start, length. radii: (N,), length.
+    position: (N, 2) of all discs at the start, length. radii: (N,), length.
     """
     if not scene.piston:
         return
@@ -300,9 +303,9 @@ def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> 
 
 
 def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]:
-    """One issue for each two neighbours that do not give way, if they leave the gases in between too little room.
+    """Yield an issue for each pair of neighbouring obstacles that leave too little room for the gases between them.
 
-    gases: radii (n,) of the discs before, between and after the pistons.
+    gases: radii (n,) of the discs before, between and after the pistons, length. See `_given_places` for obstacles.
     """
     last, axis, across = len(scene.piston), scene.piston[0].axis, scene.box.size[1 - scene.piston[0].axis]
     sides = dict(zip((-1, last), sides_across(axis), strict=True))
@@ -316,25 +319,25 @@ def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]
         rooms = np.interp(times, *np.array(high).T) - np.interp(times, *np.array(low).T)
         room, time = min(zip(rooms.tolist(), times, strict=True))
         if room < least:
-            other = next(
+            neighbour = next(
                 (f"the {SIDES[sides[k]]} side" for k in (a, b) if k in sides), piston_names(scene.piston)[max(a, 0)]
             )
-            got = f"a distance of {room:.6g} from {other} {_when(scene, time)}"
+            got = f"a distance of {room:.6g} from {neighbour} {_when(scene, time)}"
             yield Issue(_moving_keys(*moving), "crushes the gas before the run ends", got, f">= {least:.6g}")
 
 
 def _given_places(scene: Document) -> list[tuple[int, list[tuple[float, float]]]]:
-    """Numbers and tracks of what does not give way: sides of the box, -1 and K, and pistons of given velocity.
+    """Numbers and tracks of the obstacles that never yield: sides of the box, -1 and K, and pistons of given velocity.
 
-    A piston of given velocity at a side replaces it.
+    A piston of given velocity at a side replaces the side.
     """
     tables, length = scene.piston, scene.box.size[scene.piston[0].axis]
-    found = [(k, track(scene, piston)) for k, piston in enumerate(tables) if piston.mass is None]
+    tracks = [(k, track(scene, piston)) for k, piston in enumerate(tables) if piston.mass is None]
     replaced = {piston.outward for piston in tables if piston.mass is None}
     low = [] if -1.0 in replaced else [(-1, [(0.0, 0.0)])]
-    return [*low, *found, *([] if 1.0 in replaced else [(len(tables), [(0.0, length)])])]
+    return [*low, *tracks, *([] if 1.0 in replaced else [(len(tables), [(0.0, length)])])]
 
 
 def _least_room(radius: np.ndarray, across: float) -> float:
-    """Smallest length of a room of some width for discs of these radii (n,)."""
+    """Smallest length of a chamber for discs of radii (n,), length; across: width of the chamber, length."""
     return max(math.pi * float(radius @ radius) / CLOSE_PACKING / across, 2 * float(radius.max()))

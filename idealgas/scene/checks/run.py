@@ -23,7 +23,7 @@ OWNERS = {
     "dt": (TIME_DRIVEN, "steps"),
     "precision": (BRUTE_FORCE, "choice of precision"),
 }
-"""Method to which each of these keys belongs, and what other methods lack."""
+"""Method to which each of these keys belongs, and the feature that other methods do not have."""
 
 PLAIN = "float64"
 """Precision of all methods by default."""
@@ -32,17 +32,17 @@ MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e10, 1e10
 """Largest numbers of snapshots, steps and trials of a run, which take hours even for a few discs."""
 
 MOST_EVENTS = 1e14
-"""Largest number of collisions that a bath or side may drive a run to, which takes more than a year."""
+"""Largest number of collisions in a run that is heated by a bath or side; they take more than a year."""
 
 MOST_HEATING = 2.0**40
-"""Largest temperature of a later step over the temperatures and energies before it: sums of energy have one unit."""
+"""Largest ratio of a later temperature to the temperatures and energies before it, as sums of energy have one unit."""
 
 LONGEST = 2.0**52
 """Number of mean free times after which a float cannot distinguish the times of two collisions."""
 
 
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check keys of other methods, and what the method needs and excludes."""
+    """Check for keys of other methods, and the requirements and limitations of the method."""
     run = scene.run
     for key, (owner, thing) in OWNERS.items():
         if run.method != owner and (value := getattr(run, key)) is not None:
@@ -69,7 +69,7 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _precision_issues(scene: Document) -> Iterator[Issue]:
-    """Check effects, which other precisions do not support, except for a reversal, which rounds to float64."""
+    """Check for effects, which other precisions do not support; float32 supports reversals, which round to float64."""
     for place in _keys(scene):
         if place == ("steering",) and scene.run.precision == "float32":
             continue
@@ -78,7 +78,7 @@ def _precision_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _pressure_issues(scene: Document) -> Iterator[Issue]:
-    """Check methods that do not record the flow of momentum."""
+    """Check for methods that do not record the momentum flow."""
     run = scene.run
     got = f'method = "{run.method}"' if run.precision in (None, PLAIN) else f'precision = "{run.precision}"'
     if run.method in (MONTE_CARLO, TIME_DRIVEN) or run.precision not in (None, PLAIN):
@@ -87,7 +87,7 @@ def _pressure_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
-    """Check heat flow without pressure, and in gases with other sources of heat."""
+    """Check for a heat flow without pressure, or in gases with other sources of heat."""
     key: Key = ("log", "heat_flow")
     if not scene.log.pressure:
         wrong = "recorded with the flow of momentum only"
@@ -101,7 +101,7 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check effects that need positions, and gases without collisions."""
+    """Check for effects that require positions, and for gases without collisions."""
     for place in _keys(scene, "allows_monte_carlo"):
         got = f'method = "{MONTE_CARLO}"'
         yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
@@ -115,7 +115,7 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
 
 
 def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
-    """Check for a v_ref that is too small, which the run might not detect before its end."""
+    """Check for a v_ref that is too small, because the run might not detect it before its end."""
     for i, s in enumerate(scene.species) if scene.draws_velocities else scene.placed:
         still = s.velocities or s.count <= 1
         least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.largest_radius / scene.largest_radius
@@ -127,7 +127,7 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
 
 
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check for runs too long for the clock, and for too many snapshots, steps or trials."""
+    """Check for runs that are too long for the clock, and for too many snapshots, steps or trials."""
     run, end = scene.run, scene.expected_end
     if run.until is not None and LONGEST * scene.mean_free_time < end:
         got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
@@ -151,7 +151,7 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 
 
 def _heated_issues(scene: Document) -> Iterator[Issue]:
-    """Check for sides and heat baths so hot that sums of energy lose their digits, or that the run would take years."""
+    """Check for sides and heat baths so hot that sums of energy would lose digits, or that the run would take years."""
     run, properties = scene.run, scene.properties
     keys: list[Key] = []
     for effect in scene.active_effects:
@@ -177,14 +177,14 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
-    """Keys of all effects, or of those that lack a property."""
+    """Yield the keys of all effects, or of the effects that lack a property."""
     for effect in scene.active_effects:
         if missing is None or not getattr(effect.properties, missing):
             yield from effect.keys
 
 
 def endless_issues(scene: Document) -> Iterator[Issue]:
-    """Check for runs without a stop rule, or with one that is never met."""
+    """Check for runs without a stop rule, or with stop rules that are never met."""
     run = scene.run
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
     if run.until is not None or run.trials is not None:

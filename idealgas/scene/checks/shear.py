@@ -1,4 +1,4 @@
-"""Checks of sheared sides: what goes together with them, and room for a disc beside its own image."""
+"""Checks of sheared sides: compatible effects, and room for a disc beside its image."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from idealgas.scene.document import Document
 
 TOGETHER = ("periodic sides", "sheared sides", "rotation", "restitution", "thermostat")
-"""Effects of a scene with sheared sides: none that depends on a position along y."""
+"""Effects that a scene with sheared sides may have; none of them depends on the position along y."""
 
 LEAST = 2.0
 """Smallest width and height of the box, in diameters of the largest disc."""

@@ -1,4 +1,4 @@
-"""Checks of solids: their curves are closed and do not cross, and no given disc is in them."""
+"""Checks of solids: their curves must be closed and must not cross, and no given disc may be inside."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def solid_issues(scene: Document) -> Iterator[Issue]:
-    """Errors of solids, and of fixed discs that reach into one or leave no area."""
+    """Yield issues of solids, and of fixed discs that protrude into a solid or leave no area."""
     made = {k: wall for k, wall in enumerate(scene.wall) if wall is not None and wall.solid}
     fixed = scene.segments[len(scene.wall) :]
     if not made and not fixed:
@@ -51,14 +51,17 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, Wall]) -> Iterator[Issue]:
-    """Check fixed discs that reach into a solid, at most MOST_OVERLAPS; solid: walls of solids by number."""
+    """Check for fixed discs that protrude into a solid; at most MOST_OVERLAPS are reported.
+
+    solid: walls of solids by number.
+    """
     position, radius = np.array([disc.start for disc in fixed]), np.array([disc.radius for disc in fixed])
-    found = scene.solids.contain(position)
+    reaches = scene.solids.contain(position)
     owner, centre = images(position, radius, scene.box)
     slack = rounding(max(scene.box.size), 2 * radius)
     for wall in solid.values():
-        found[owner[distance_to_wall(centre, wall) < (radius - slack)[owner]]] = True
-    for k in np.flatnonzero(found)[:MOST_OVERLAPS].tolist():
+        reaches[owner[distance_to_wall(centre, wall) < (radius - slack)[owner]]] = True
+    for k in np.flatnonzero(reaches)[:MOST_OVERLAPS].tolist():
         keys: tuple[Key, ...] = (
             *disc_keys(scene, (fixed[k].number,), "position", "radius"),
             ("wall", next(iter(solid)), "solid"),
@@ -67,7 +70,7 @@ def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, W
 
 
 def _crossing(scene: Document) -> tuple[int, int] | None:
-    """Numbers of two walls of solids that cross, as they are drawn; None without any."""
+    """Numbers of two walls of solids that cross in the form in which they are drawn; None if there are none."""
     parts = [
         (k, a, b)
         for k, wall in enumerate(scene.wall)
@@ -80,16 +83,16 @@ def _crossing(scene: Document) -> tuple[int, int] | None:
     left, right = np.minimum(start, end)[:, 0], np.maximum(start, end)[:, 0]
     for n in range(len(parts)):
         a, b = start[n], end[n]
-        later = slice(n + 1, int(left.searchsorted(right[n], "right")))  # those that begin before this one ends
+        later = slice(n + 1, int(left.searchsorted(right[n], "right")))  # parts that begin before part n ends
         apart = _side(a, b, start[later]) * _side(a, b, end[later])
         facing = _side(start[later], end[later], a) * _side(start[later], end[later], b)
-        if (found := np.flatnonzero((apart < 0) & (facing < 0))).size:
-            first, second = sorted((int(owner[n]), int(owner[n + 1 + found[0]])))
+        if (crossed := np.flatnonzero((apart < 0) & (facing < 0))).size:
+            first, second = sorted((int(owner[n]), int(owner[n + 1 + crossed[0]])))
             return first, second
     return None
 
 
 def _side(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """1 for points on the left of the lines from a to b, -1 on the right."""
+    """Return 1 for points on the left of the lines from a to b, -1 for points on the right."""
     along, away = b - a, point - a
     return np.sign(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])

@@ -1,4 +1,4 @@
-"""Checks of vibrating sides: room for the discs between them, and walls in their way."""
+"""Checks of vibrating sides: room for the discs between them, and walls too close to them."""
 
 from __future__ import annotations
 
