@@ -9,7 +9,7 @@ from idealgas.physics import arc as law
 from idealgas.physics.arc_geometry import Arc
 
 FLATTEST = 100.0
-"""Largest radius of an arc in units of the box's longer side; the digits of contacts decrease in this ratio."""
+"""Largest radius of an arc in units of the box's longer side; rounding errors of contacts grow in this ratio."""
 
 
 def _properties(tables: Tables) -> Properties | None:

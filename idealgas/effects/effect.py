@@ -110,8 +110,8 @@ class EffectSpec(Generic[State]):
             columns of events are also in event rows and snapshots.
         constants: returns the values per disc that the log stores once, at the start.
         values: returns the values that do not belong to a disc, at a local time, for checkpoints and samples.
-        restore: sets the state to these values of a checkpoint, by name; arrays with an entry per disc are restored
-            without it.
+        restore: sets the state to these values of a checkpoint, by name; arrays with an entry per disc are restored for
+            all effects alike.
         energy: part of the energy that the effect adds.
         gives_energy: whether walls give energy to discs, or take it.
         own_walls: numbers of walls whose energy is part of the energy account, so that they add none from outside.

@@ -133,7 +133,10 @@ class Piston(SteppedTable):
 
 @dataclass(frozen=True)
 class InnerPiston(LastingWall):
-    """An inner piston among the walls inside the box, at its position at the start; its left is the lower side."""
+    """An inner piston among the walls inside the box, at its position at the start.
+
+    Its left face is on the side of smaller coordinates.
+    """
 
     start: Point
     end: Point

@@ -36,7 +36,7 @@ def _check(tables: Tables) -> Iterator[Issue]:
 
 
 def _make(tables: Tables, start: Start) -> tuple[float, ...] | None:
-    """Return the times of the reversals; a tuple without times if only changes of gravity steer the discs."""
+    """Return the times of the reversals: an empty tuple if only gravity steers discs, None if nothing does."""
     if tables.own is None:
         return () if start.later_accelerations else None
     return as_times(tables.own.reversed_at)

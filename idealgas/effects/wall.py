@@ -21,7 +21,7 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Vector, Word
 
 SHORTEST = 1e-9
-"""Shortest wall in units of the box's longer side; the ends of a shorter wall cannot be distinguished in doubles."""
+"""Shortest wall in units of the box's longer side; the ends of a shorter wall are not distinct in double precision."""
 
 
 class Wall(SteppedTable):
@@ -34,8 +34,8 @@ class Wall(SteppedTable):
 
     Discs of the species `permeable_to` pass a wall as if it were absent. With `permeable_from` they pass from that side
     only: beyond the wall a disc bounces when it touches the wall or, as long as it still overlaps the wall, when its
-    centre comes back to the wall; the ends are solid. A wall that is `absorbing` removes the discs that it would
-    otherwise reflect from the gas.
+    centre comes back to the wall; the ends are solid. A wall that is `absorbing` removes discs from the gas where
+    another wall would reflect them.
     """
 
     in_steps = ("temperature",)

@@ -151,7 +151,7 @@ def sheared_range(shear, most, others):
 
 @inline
 def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
-    """Local time of a disc's next crossing of a periodic side along an axis, and whether it is in positive direction.
+    """Local time of a disc's next crossing of a periodic side along an axis, and whether its direction is positive.
 
     Under gravity the time is computed from the disc's state at the local time `now`, up to which crossings are counted.
     """

@@ -15,7 +15,7 @@ EVENTS_PER_DISC = 64  # largest number in an epoch; an epoch has at least half a
 EVENTS_OF_FEW = 1024  # largest number in an epoch of few discs; it has at least a quarter as many
 MOST_CROSSINGS = 8192  # crossings of periodic sides by the fastest disc: predictions store their number in 16 bits
 FEWEST_PER_DISC = 4  # events per disc, however long the paths: starting an epoch costs about one event per disc
-FEWEST_EVENTS = 512  # events of all discs, however few: starting an epoch costs at least several hundred events
+FEWEST_EVENTS = 512  # events in all, however few discs: starting an epoch costs at least several hundred events
 UNDECIDED = 1e-6  # distance from a power of two within which the speeds are summed exactly; NumPy errs far less
 
 

@@ -54,8 +54,8 @@ class Method(ABC):
     """A method that finds the events, with the state of one epoch.
 
     Attributes:
-        discs: records of the discs in the present epoch.
-        has_positions: whether the method moves discs; if not, the positions of the gas stay as they are.
+        discs: records of the discs in the current epoch.
+        has_positions: whether the method moves discs; if not, the positions of the gas remain unchanged.
         single_epoch: whether the run must be a single epoch, because digits would be lost between epochs.
     """
 

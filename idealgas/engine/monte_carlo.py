@@ -5,12 +5,12 @@ collision rate to the largest possible rate, so every pair collides exactly at i
 an epoch begins with a new waiting time and with its own random numbers, keyed by the seed and the start of the epoch.
 To continue a run, the velocities and a raised v_ref are therefore sufficient.
 
-The largest possible rate is the collision rate of a pair of the largest discs at the relative speed v_ref. A default
-v_ref is raised after any collision from which a disc emerges so fast that two such discs could exceed v_ref, before the
-next trial; no pair is then ever too fast, whether it is drawn or not. The time of the change depends only on the past,
-and from then on both the rate of trials and the accepted fraction follow the new v_ref, so every pair still collides at
-its rate (thinning with a bound that depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). It would be
-wrong to raise v_ref only when a pair that is too fast is drawn: until then the pair would have collided too rarely.
+The largest possible rate is the collision rate of a pair of the largest discs at the relative speed v_ref. If a disc
+emerges from a collision so fast that two such discs could exceed a default v_ref, v_ref is raised before the next
+trial; no pair is then ever too fast, whether it is drawn or not. The time of the change depends only on the past, and
+from then on both the rate of trials and the accepted fraction follow the new v_ref, so every pair still collides at its
+rate (thinning with a bound that depends on the past: Ogata, IEEE Trans. Inf. Theory 27, 23 (1981)). It would be wrong
+to raise v_ref only when a pair that is too fast is drawn: until then the pair would have collided too rarely.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The time-driven method: all discs move for a step; then those that overlap, or leave the box, and approach collide.
+"""The time-driven method: in each step all discs move, and then discs that overlap, or leave the box, collide.
 
 It serves for comparison with the event-driven method; its errors grow with the step. A contact is found late, by half a
 step on average, and with a rotated line of centres; a contact that begins and ends between two steps is missed. The
@@ -24,9 +24,9 @@ from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes
 from idealgas.state import Gas
 
 U = np.uintp
-NEAR = 3.0  # mean number of listed neighbours of a disc; the fastest choice in benchmarks
-LEAST_SKIN = 0.2  # in diameters
-CELLS_PER_DISC = 4  # at most
+NEAR = 3.0  # mean number of discs within the reach of a list; the fastest choice in benchmarks
+LEAST_SKIN = 0.2  # smallest skin, in diameters
+CELLS_PER_DISC = 4  # largest number of cells per disc
 
 STEP = np.dtype(
     [

@@ -23,7 +23,7 @@ import numpy as np
 from idealgas import system
 
 _FOLDERS, _SIGNATURES, _VERSIONS = 5, 500, 5
-"""Numbers of folders, of entry points with argument types, and of versions of each, that are kept however old."""
+"""Numbers of folders, of entry points with argument types, and of versions of each, that are kept at any age."""
 _LIFETIME = 24 * 3600  # seconds since the last use after which any other file or folder is removed
 
 

@@ -88,7 +88,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _written(result: Any, arguments: list[Any]) -> Any:
-    """Return a result with arguments replaced by their numbers; TypeError if it contains other than plain values."""
+    """Return a result with arguments replaced by their numbers; TypeError if it contains anything but plain values."""
     for number, argument in enumerate(arguments):
         if result is argument and isinstance(argument, _StandIn):
             return _Argument(number)

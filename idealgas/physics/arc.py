@@ -56,7 +56,7 @@ def toggles(x, y, along_x, along_y, arc):
 
 @inline
 def straight_exit_delay(x, y, vx, vy, reach, inside):
-    """Time until a point in straight flight leaves the circle of radius `reach` around the origin; NEVER if it rests.
+    """Time until a point in straight flight leaves the circle of radius `reach` around the origin, or NEVER.
 
     x, y, reach: length. vx, vy: length/time. The delay is 0 for a point on the circle, or beyond it, that moves
     outwards. inside: whether a point beyond the circle belongs inside and is there only because of rounding; such a

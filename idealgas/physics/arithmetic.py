@@ -99,7 +99,7 @@ def _declare_pair() -> None:
 
 
 def _operate(sign: Any, operation: Any) -> None:
-    """Define an operator for compiled code that combines two pairs to a pair."""
+    """Define an operator for compiled code that computes a pair from two pairs."""
 
     @overload(sign)
     def choose(a, b):

@@ -14,7 +14,7 @@ SPLITTER = 134217729.0  # 2^27 + 1
 
 @inline
 def two_sum(a, b):
-    """Rounded sum a + b of two floats, and its rounding error, exactly."""
+    """Rounded sum a + b of two floats, and its exact rounding error."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
@@ -22,7 +22,7 @@ def two_sum(a, b):
 
 @inline
 def quick_two_sum(a, b):
-    """Rounded sum of two floats with |a| >= |b|, and its rounding error; takes fewer operations than `two_sum`."""
+    """Rounded sum of two floats with |a| >= |b|, and its exact rounding error, with fewer operations than `two_sum`."""
     total = a + b
     return total, b - (total - a)
 
@@ -37,7 +37,7 @@ def split(a):
 
 @inline
 def two_product(a, b):
-    """Rounded product a * b of two floats, and its rounding error, exactly."""
+    """Rounded product a * b of two floats, and its exact rounding error."""
     product = a * b
     a_high, a_low = split(a)
     b_high, b_low = split(b)

@@ -74,7 +74,7 @@ def _sin(x, y, z, w):
 
 @inline
 def third_power(x):
-    """Return x ** (1.0 / 3.0) for a normal float x >= 0, 0 or infinity; the float 1.0 / 3.0 is ⅓ - 2^-54/3."""
+    """Return x ** (1.0 / 3.0) for a normal float x > 0, for 0 or for infinity; the float 1.0 / 3.0 is ⅓ - 2^-54/3."""
     if not 0.0 < x < np.inf:
         return x
     y = np.int64(np.float64(x).view(np.int64) // np.int64(3) + _THIRD_GUESS).view(np.float64)

@@ -34,7 +34,7 @@ def end_epoch(restitution: Restitution, length: float) -> None:
 
 @inline
 def restitution_factor(restitution, a_id, b_id, time):
-    """Return 1 + the coefficient of restitution of two discs that collide at a local time; 2 if they are elastic."""
+    """Return 1 + the coefficient of restitution, or 2 if elastic, for a collision of two discs at a local time."""
     if restitution is not None:
         last = max(restitution.last[np.uintp(a_id)], restitution.last[np.uintp(b_id)])
         return 2.0 if time - last < restitution.contact_duration else 1.0 + restitution.normal
@@ -43,7 +43,7 @@ def restitution_factor(restitution, a_id, b_id, time):
 
 @inline
 def wall_restitution_factor(restitution, own, time):
-    """Return 1 + the coefficient of restitution of a disc that hits a wall at a local time; 2 for an elastic hit."""
+    """Return 1 + the coefficient of restitution, or 2 if elastic, for a disc that hits a wall at a local time."""
     if restitution is not None:
         recent = time - restitution.last[np.uintp(own)] < restitution.contact_duration
         return 2.0 if recent else 1.0 + restitution.wall

@@ -69,7 +69,10 @@ def offset_at(shear, time):
 
 @inline
 def less_offset(x, vx, time, shear, images):
-    """Relative position and velocity along x at a local time, minus those of the image (x, y), in box lengths."""
+    """Subtract the displacement and velocity of an image from a relative position and velocity along x.
+
+    x: length. vx: length/time. time: local time. images: numbers of box lengths (x, y) to the image.
+    """
     if shear is not None:
         return x - offset_at(shear, time) * images[1], vx - shear.speed * images[1]
     return x, vx
@@ -77,7 +80,7 @@ def less_offset(x, vx, time, shear, images):
 
 @inline
 def less_offset_of_nearest(x, y, time, shear):
-    """Relative position (x, y), length, at a local time, minus the displacement of the nearest image along y."""
+    """Subtract the displacement of the nearest image along y from a relative position (x, y), length; time: local."""
     if shear is not None:
         rows = np.rint(y / shear.Ly)
         return x - offset_at(shear, time) * rows, y - shear.Ly * rows

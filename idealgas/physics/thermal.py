@@ -1,4 +1,4 @@
-"""Thermal walls: a disc leaves a wall with the velocity distribution of a gas that effuses at the wall's temperature.
+"""Thermal walls: discs leave with the velocity distribution of a gas that effuses from the wall at its temperature.
 
 The normal velocity v has the density (m v/T) exp(-m v²/2T); tangential velocity and spin are Gaussian. The random
 numbers are a pure function of the seed, the disc's id and the number of its emissions (SplitMix64: Steele, Lea & Flood,

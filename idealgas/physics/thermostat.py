@@ -1,9 +1,9 @@
-"""Andersen's thermostat: at random times a disc receives a velocity from a gas at the temperature of a heat bath.
+"""Andersen's thermostat: at random times a disc receives a random velocity at the temperature of a heat bath.
 
-The collisions of each disc with the bath are an independent Poisson process, so the gas becomes canonical at any rate:
-Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed, the disc's id and the
-number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend neither on the order of events
-nor on whether a run was resumed.
+The collisions of each disc with the bath are an independent Poisson process, so the gas approaches the canonical
+ensemble for any rate: Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed,
+the disc's id and the number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend neither on
+the order of events nor on whether a run was resumed.
 """
 
 import math

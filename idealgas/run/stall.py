@@ -112,7 +112,7 @@ class StallDetector:
         return disc if hits[disc] > STUCK * (1 + durations) else -1
 
     def busy(self) -> str:
-        """Notice, once per run, that a few discs have most events of an epoch with far too many events; or empty."""
+        """Notice, once per run, that a few discs have most events of an epoch with far too many; otherwise empty."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
         if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, EVENTS_OF_FEW):

@@ -11,7 +11,9 @@ UNSTRAINED = math.sqrt(3) / 2
 
 @dataclass(frozen=True)
 class TriangularLattice:
-    """Triangular lattice in a periodic box; every other row is shifted by half a spacing, so there is an even number.
+    """Triangular lattice in a periodic box.
+
+    Every other row is shifted by half a spacing, so the number of rows is even.
 
     Attributes:
         size: width and height of the box, length.

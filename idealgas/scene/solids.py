@@ -138,9 +138,8 @@ def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[li
     The discs must be in order of x and differ from each other.
     """
     indices = np.arange(len(r))
-    number = (
-        x.searchsorted(x + 2 * r.max(initial=0.0), "right") - indices - 1
-    )  # number of later discs that are near in x
+    # Number of later discs that are near along x.
+    number = x.searchsorted(x + 2 * r.max(initial=0.0), "right") - indices - 1
     low = np.repeat(indices, number)
     high = low + 1 + np.arange(len(low)) - np.repeat(np.cumsum(number) - number, number)
     disc, partner = np.concatenate((low, high)), np.concatenate((high, low))

@@ -68,11 +68,10 @@ def read_start(
     update: dict[str, Any] = {}
     if columns is None:
         path = (folder / (start.source or "")).absolute()
+        # Imported here, because a log has a scene, which imports this module.
         module = "idealgas.log.start" if start.log is not None else "idealgas.initial.files"
-        columns, file_overlap = import_module(module).read_state(
-            path, start.time
-        )  # a log has a scene, which imports this
-        update = {given[0]: str(path), "overlap": file_overlap if start.overlap is None else start.overlap}
+        columns, state_overlap = import_module(module).read_state(path, start.time)
+        update = {given[0]: str(path), "overlap": state_overlap if start.overlap is None else start.overlap}
     key = given[0] if given else "discs"
     box, shear = scene.box, scene.properties.shear
     start_discs = _checked(columns, key, {s.name: s for s in scene.species}).wrapped(box.size, box.periodic, shear)

@@ -187,7 +187,7 @@ class Origin:
     def report(self, issues: Sequence[Issue]) -> list[str]:
         """Return a line for each issue, in the order of the file; issues of overrides come last.
 
-        If there are more than MOST_LINES, the last line is the number of further issues.
+        If there are more than MOST_LINES, the last line gives the number of further issues.
         """
         lines: dict[str, tuple[bool, int]] = {}
         for issue in issues:

@@ -1,1 +1,1 @@
-"""The event-driven method: cells find the neighbours, a tournament tree finds the next event."""
+"""The event-driven method: cells find the neighbours, and a tournament tree finds the next event."""

@@ -19,7 +19,7 @@ LINK = np.dtype(
     align=True,
 )  # fmt: skip
 MARGIN = 1e-9  # relative excess of a cell's width over a diameter
-MOST_A_SIDE = 30_000  # largest number of columns or rows: those of a disc are stored in 16 bits
+MOST_A_SIDE = 30_000  # largest number of columns or rows: a disc's column and row are stored in 16 bits
 OTHER_WORK = 20.0  # number of discs that could be searched in the time that the rest of an event takes
 WORTH_SPLITTING = 0.5  # coarse cells are used if they reduce the time per event below this fraction
 
@@ -68,7 +68,7 @@ class CoarseCells(NamedTuple):
 
 
 def discs_per_cell(packing_fraction: float) -> float:
-    """Fastest mean number of discs per cell in benchmarks: 0.4 at packing fractions of 0.1 and above, 0.8 at 0.01."""
+    """Mean number of discs per cell at which the search is fastest: 0.4 at packing fractions >= 0.1, 0.8 at 0.01."""
     return min(max(0.4 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.4), 4.0)
 
 

@@ -72,7 +72,7 @@ def filter_colliding(record, state, count, has_images, i, gravity, periodic):
 
 @inline
 def comes_earlier(prediction, ids, own, rank, partner, time, images):
-    """Whether a contact of disc `own` (id) precedes its predicted contact, also by the rule for simultaneous events.
+    """Whether a contact of disc `own` (id) precedes its predicted contact; `precedes` orders simultaneous contacts.
 
     rank: id or wall rank of the partner. partner: the partner as it is stored in a prediction.
     """
@@ -85,7 +85,7 @@ def comes_earlier(prediction, ids, own, rank, partner, time, images):
 
 @noinline
 def predict_tied_contact(record, ids, state, count, has_images, i, effects):
-    """Store disc i's earliest contact with the candidates, also by the rule for simultaneous events.
+    """Store disc i's earliest contact with the candidates, applying the rule for simultaneous events.
 
     Collisions that would not change a digit of a velocity are left out.
     """
@@ -119,14 +119,14 @@ def predict_segment_contact(record, ids, state, i, effects):
     link = cells.link[U(i)]
     cell = U(np.int64(link.row) * cells.columns + np.int64(link.column))
     first, last = walls.start[cell], walls.start[cell + U(1)]
-    if first < last:  # rarely: calling a function for every disc would take a third of the time
+    if first < last:  # rare; calling the function for every disc would take a third of the time
         disc_id, prediction = np.int64(ids[U(i)]), state.prediction[U(i)]
         predict_entry_contacts(disc, ids, prediction, disc_id, walls, first, last, effects.periodic, effects)
 
 
 @noinline
 def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, periodic, effects):
-    """Store a disc's contact with a wall segment of a range of entries if it is the disc's earliest contact."""
+    """Store a disc's earliest contact with the segments of a range of entries if it precedes the predicted contact."""
     for entry in range(first, last):
         k = walls.item[U(entry)]
         images = images_to_item(walls, U(entry), disc, periodic)

@@ -1,4 +1,4 @@
-"""Discs that a disc may meet: the discs in the cells around it and, if discs are far larger, in coarse cells."""
+"""Discs that a disc may meet: those in the cells around it and, if either disc is far larger, in coarse cells."""
 
 import math
 
@@ -65,7 +65,7 @@ def append_sheared_row(cells, candidates, images, count, column, along_y, image_
     start, end = shear.offset[0] / cells.width, shear.offset[1] / cells.width
     low, high = (-end, -start) if image_y > 0 else (start, end)
     row = 1 if image_y > 0 else cells.rows - 2
-    for seen in range(np.int64(math.floor(first - 1 + low)) - 1, np.int64(math.floor(last + high)) + 2):  # from 0
+    for seen in range(np.int64(math.floor(first - 1 + low)) - 1, np.int64(math.floor(last + high)) + 2):  # 0 is first
         image_x = seen // across
         j = cells.head[U(row * cells.columns + seen - image_x * across + 1)]
         candidates[U(count)] = j

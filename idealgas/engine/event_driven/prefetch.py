@@ -109,7 +109,7 @@ def prefetch_next(pipeline, record, state, i):
     """Fetch memory for the new first disc of the part from which disc i was removed, and for the previous two discs."""
     if pipeline is not None:
         third, second = pipeline[0], pipeline[1]
-        first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # a piston is no disc
+        first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # it may be a piston's leaf
         pipeline[0], pipeline[1] = second, first
         fetch_disc(state.tree, record, state, first)
         fetch_cells(state.cells, second)

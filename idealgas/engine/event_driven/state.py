@@ -29,7 +29,7 @@ class EventDrivenState(NamedTuple):
         walls: wall segments of each cell; None without segments.
         coarse_walls: wall segments of each coarse cell; None without segments or without coarse cells.
         pipeline: (3,) i8, see `make_pipeline`; None for a gas that fits into the caches.
-        unpredicted: (1,) bool, whether the predictions of the epoch have still to be made.
+        unpredicted: (1,) bool, whether an epoch begins whose events have not been predicted yet.
     """
 
     cells: Cells

@@ -1,1 +1,1 @@
-"""Simulation of one gas by several threads: domain decomposition into slabs, with the same log for any number."""
+"""Domain decomposition: several threads simulate slabs of one gas, with the same log for any number of threads."""

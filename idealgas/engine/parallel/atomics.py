@@ -37,7 +37,7 @@ def load(typingctx, array, index):
 
 @intrinsic
 def store(typingctx, array, index, value):
-    """Set array[index] to a value of the array's own type."""
+    """Set array[index] to a value of the array's type."""
     from numba import types
 
     def code(context, builder, signature, arguments):

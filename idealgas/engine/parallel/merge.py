@@ -106,7 +106,7 @@ def gather_rows(rows, order, epoch_start, batch):
 
 
 class PendingRows:
-    """Rows that have still to be delivered."""
+    """Rows that have not been delivered yet."""
 
     def __init__(self, rows: EventBatch, order: np.ndarray, epoch_start: float) -> None:
         """Begin with rows with local times and their order; epoch_start: time."""

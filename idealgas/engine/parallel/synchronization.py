@@ -219,7 +219,7 @@ def is_in_order(ids, state, i, time, where, sub):
 
 @inline
 def clock_advances(time, sub):
-    """Whether this thread's clock advances, or stands still for less than MAX_SIMULTANEOUS events; notes the event."""
+    """Whether this thread's clock advances, or stands still for fewer than MAX_SIMULTANEOUS events; notes the event."""
     private = sub.private[0]
     if time <= private.last:
         private.simultaneous += 1
