@@ -1,1 +1,1 @@
-"""Films of a log, frame by frame."""
+"""Films and pictures of a log."""

@@ -1,4 +1,4 @@
-"""Film of a log: times of the frames, and how painted frames become a file."""
+"""Make a film of a log: choose the times of the frames, and encode the painted frames."""
 
 import os
 import shutil
@@ -25,13 +25,13 @@ from idealgas.movie.piston_track import piston_tracks
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
 MOST_FRAMES = 1_000_000
-HISTORY = 200  # states before a single frame that its trails and curves go through
+HISTORY = 200  # number of earlier states that trails and curves in a single frame pass through
 CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
 
 
 @dataclass(frozen=True)
 class Film:
-    """A film that was made: path, number of frames, frames per second, and start and end in simulated time."""
+    """A finished film: path, number of frames, frames per second, and start and end in simulated time."""
 
     path: Path
     frames: int
@@ -41,13 +41,13 @@ class Film:
 
 
 def ffmpeg() -> str:
-    """Path of the program ffmpeg: that of the system, or of the package imageio-ffmpeg.
+    """Return the path of the program ffmpeg, from the system or from the package imageio-ffmpeg.
 
     Raises:
-        UserError: without either.
+        UserError: if neither is installed.
     """
-    if found := shutil.which("ffmpeg"):
-        return found
+    if path := shutil.which("ffmpeg"):
+        return path
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError:
@@ -72,18 +72,18 @@ def animate(
 
     Args:
         log: the log to show, or its path.
-        output: path of the film, an .mp4 or .gif.
+        output: path of the film, with the ending .mp4 or .gif.
         start: start in simulated time; None for the start of the log.
         end: end in simulated time; None for LONGEST seconds of film.
         fps: frames per second of film.
-        speed: simulated time per second of film; None for a disc of typical speed to cross the box in CROSSING seconds.
+        speed: simulated time per second of film; if None, a disc of typical speed crosses the box in CROSSING seconds.
         force: whether to replace an existing film.
-        on_frame: called with the number of painted frames and the number of all frames.
-        look: see `Look`.
+        on_frame: function that is called with the number of painted frames and the number of all frames.
+        look: appearance of the film, see `Look`.
 
     Raises:
-        UserError: for another ending, an MP4 without ffmpeg, a log without positions or events, an empty window, order
-            beside a piston, or the trail of a disc that does not exist.
+        UserError: if the ending is unknown, ffmpeg is missing for an MP4, the log has no positions or events, the
+            window is empty, order is requested beside a piston, or a disc with a trail does not exist.
         OutputError: if the film cannot be written.
     """
     path = Path(output)
@@ -95,12 +95,12 @@ def animate(
     writer = gif_writer if gif else partial(mp4_writer, ffmpeg())
     check_shown(log, look.get("colouring"))
     first, latest = span(log, start, end)
-    states = _some_states(log, first, latest)
+    states = _sample_states(log, first, latest)
     typical, thermal = speeds(log, states)
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     if gif:
-        fps = 100 / max(round(100 / fps), 2)  # delays are in hundredths of a second; viewers ignore a delay of 1
+        fps = 100 / max(round(100 / fps), 2)  # delays are multiples of 10 ms, and viewers ignore a delay of 10 ms
     number = round((last - first) * fps / speed) + 1
     if number > MOST_FRAMES:
         raise UserError(
@@ -118,7 +118,7 @@ def animate(
 
 
 def _painter(log: Log, thermal: float, times: tuple[float, float], states: Sequence[LogState], look: Look) -> Painter:
-    """Painter of the states of a log. thermal: as `rms_speed` of `Painter`."""
+    """Return the painter of the states of a log. thermal: the argument `rms_speed` of `Painter`."""
     pistons, maxwell = piston_tracks(log, *times), tends_to_equilibrium(log)
     return Painter(log.scene, log.discs, pistons, thermal, times, states, maxwell, **look)
 
@@ -126,12 +126,22 @@ def _painter(log: Log, thermal: float, times: tuple[float, float], states: Seque
 def paint_frame(
     log: Log, output: str | os.PathLike[str], time: float, *, force: bool = False, **look: Unpack[Look]
 ) -> Path:
-    """Paint the state of a log at one time as a picture, a .png, and return its path; arguments as for `animate`.
+    """Paint the state of a log at one time as a PNG picture.
 
-    Trails and curves are those since the start of the log.
+    Trails and curves begin at the start of the log.
+
+    Args:
+        log: the log to show.
+        output: path of the picture, with the ending .png.
+        time: time of the state.
+        force: whether to replace an existing picture.
+        look: appearance of the picture, see `Look`.
+
+    Returns:
+        Path of the picture.
 
     Raises:
-        UserError: for another ending, or a log that has no such state or no positions or events, as for `animate`.
+        UserError: if the ending is unknown or the log does not cover the time, and as for `animate`.
         OutputError: if the picture cannot be written.
     """
     path = Path(output)
@@ -144,7 +154,7 @@ def paint_frame(
             f"{log.path}: no state at t = {time:g}: the log covers t = {log.start_time:g} to {log.end_time:g}"
         )
     times = log.start_time, log.end_time
-    states = _some_states(log, *times)
+    states = _sample_states(log, *times)
     _, thermal = speeds(log, states)
     painter = _painter(log, thermal, times, states, look)
     grows = look.get("trails") or look.get("panel") == "left-right"
@@ -156,10 +166,11 @@ def paint_frame(
 
 
 def check_shown(log: Log, colouring: Colouring | None) -> None:
-    """Refuse a log without positions or without events, as nothing moves in its pictures, and order beside a piston.
+    """Check that a log can be shown.
 
     Raises:
-        UserError: in these cases.
+        UserError: if the log has no positions or no events, as nothing would move, or if colours by order are requested
+            for a gas with a piston or with discs that escape.
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
         raise UserError(f"{log.path}: has a piston, and neighbours are only found in a box with fixed sides")
@@ -170,12 +181,12 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
     log.require_events()
 
 
-def _some_states(log: Log, first: float, last: float) -> list[LogState]:
+def _sample_states(log: Log, first: float, last: float) -> list[LogState]:
     return list(log.frames(np.linspace(first, last, 5)))
 
 
 def speeds(log: Log, states: Sequence[LogState]) -> tuple[float, float]:
-    """Largest root-mean-square speed of states, and the same relative to a conserved motion of the whole gas."""
+    """Return the largest rms speed of states, and the same relative to a conserved motion of the whole gas."""
     typical, thermal = (
         max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in states)
         for u in (0.0, centre_of_mass_velocity(log))
@@ -188,7 +199,7 @@ Write = Callable[[np.ndarray], object]
 
 @contextmanager
 def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
-    """Yield the function write(frame) of a GIF for frames of shape (height, width, 4) and type uint8."""
+    """Yield a function write(frame) that appends frames (height, width, 4) uint8 to a GIF."""
     with path.open("wb") as file:
         gif = GifWriter(file, width, height, round(100 / fps))
         yield gif.write
@@ -197,7 +208,7 @@ def gif_writer(path: Path, width: int, height: int, fps: float) -> Iterator[Writ
 
 @contextmanager
 def mp4_writer(program: str, path: Path, width: int, height: int, fps: float) -> Iterator[Write]:
-    """Yield the function write(frame) of an H.264 video, which the program ffmpeg makes from the frames."""
+    """Yield a function write(frame) that sends frames to ffmpeg, which encodes them as an H.264 video."""
     raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", "-r", str(fps), "-i", "-")
     command = [program, "-y", "-loglevel", "error", *raw, "-an", *CODEC, "-f", "mp4", str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
@@ -205,15 +216,15 @@ def mp4_writer(program: str, path: Path, width: int, height: int, fps: float) ->
         try:
             yield lambda frame: pipe.write(frame.data)
         except BrokenPipeError:
-            pass  # its error message says why
+            pass  # the error message of ffmpeg, which is read below, gives the reason
         except BaseException:
             encoder.kill()
             raise
         finally:
             _close(pipe)
-        said = messages.read().decode(errors="replace").strip().splitlines()
+        lines = messages.read().decode(errors="replace").strip().splitlines()
         if encoder.wait() != 0:
-            raise OutputError(f"ffmpeg: {said[-1] if said else 'failed'}", exit_code=1)
+            raise OutputError(f"ffmpeg: {lines[-1] if lines else 'failed'}", exit_code=1)
 
 
 def _streams(process: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:

@@ -1,4 +1,4 @@
-"""GIF writer that works frame by frame in bounded memory; Pillow's writer keeps all frames until the last one."""
+"""A GIF writer that works frame by frame in bounded memory; Pillow's own writer would keep all frames until the end."""
 
 from typing import IO
 
@@ -11,14 +11,14 @@ from idealgas.analysis.core.style import COLOURS, GREY
 
 COLOUR_MAP = "cividis"
 SAME = 255
-"""Palette index of pixels that are the same as in the frame before; long runs of it compress well."""
+"""Palette index of pixels that have not changed since the previous frame; long runs of it compress well."""
 
 
 class GifWriter:
-    """Writer of a GIF whose frames have one size and one palette, the colours of the project's pictures."""
+    """Writer of a GIF whose frames share one size and one palette, the colours of the project's figures."""
 
     def __init__(self, file: IO[bytes], width: int, height: int, delay: int) -> None:
-        """Start a GIF of width and height in pixels; delay: time between frames, hundredths of a second."""
+        """Start a GIF. width, height: size in pixels; delay: time between frames in hundredths of a second."""
         self._file, self._delay = file, delay
         self._palette = make_palette()
         self._nearest = nearest_colours(self._palette)
@@ -49,7 +49,10 @@ class GifWriter:
 
 
 def make_palette() -> np.ndarray:
-    """Palette (256, 3) uint8: greys, the colour map and the project's colours, with lighter shades for smooth edges."""
+    """Return the palette (256, 3) uint8: greys, the colour map and the project's colours.
+
+    Lighter shades are included for smooth edges.
+    """
     greys = np.linspace(0, 1, 40)[:, None] * np.ones(3)
     shades = colormaps[COLOUR_MAP](np.linspace(0, 1, 32))[:, :3]
     kinds = np.array([to_rgb(colour) for colour in (*COLOURS, GREY)])
@@ -66,7 +69,7 @@ def make_palette() -> np.ndarray:
 
 
 def nearest_colours(palette: np.ndarray) -> np.ndarray:
-    """Palette indices (32768,) uint8 of the nearest colours to all colours with five bits of red, green and blue."""
+    """Return the index (32768,) uint8 of the nearest palette colour for each colour with 5 bits per channel."""
     levels = np.arange(32) * 8 + 4.0
     colours = np.stack(np.meshgrid(levels, levels, levels, indexing="ij"), axis=-1).reshape(-1, 1, 3)
     used = palette[:SAME].astype(float)

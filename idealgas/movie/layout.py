@@ -1,4 +1,4 @@
-"""Layout of a frame: its size, and where the box and the panel beside it are."""
+"""Layout of a frame: its size, and the positions of the box and of the panel beside it."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,14 +6,14 @@ from typing import NamedTuple
 from idealgas.movie.piston_track import PistonTrack
 
 BEYOND = 1.25
-"""Length of the shown room along the way of a piston, relative to the largest one of the gas."""
+"""Length that is shown along the axis of a piston, relative to the largest length of the gas."""
 
-LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins, and a letter of a name, pixels of the usual size
+LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins, and width of a letter, in pixels of the usual size
 PANEL = 0.3
-"""Smallest share of a frame for the panel beside or below the box."""
+"""Smallest fraction of a frame for the panel beside or below the box."""
 
 SIZES = ((960, 540), (720, 720), (540, 960))
-"""Sizes of a frame, pixels."""
+"""Default sizes of a frame, pixels."""
 
 Rectangle = tuple[float, float, float, float]
 
@@ -27,7 +27,13 @@ class Layout(NamedTuple):
 
 
 def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = True) -> Layout:
-    """Layout with a panel beside the box, or below it if the box is larger then."""
+    """Return the layout of a frame, with the panel beside the box, or below it if this makes the box larger.
+
+    Args:
+        size: width and height of the frame, pixels.
+        box: width and height of the shown part of the box, length.
+        panel: whether there is a panel.
+    """
     width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
     if not panel:
         scale = min(width / box[0], height / box[1])
@@ -39,14 +45,17 @@ def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = Tr
     scale = max(beside, above)
     w, h = scale * box[0], scale * box[1]
     if beside >= above:
-        other = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
-        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), other, scale)
-    other = (LEFT, BOTTOM, width, height - BOTTOM - h)
-    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), other, scale)
+        place = (2 * LEFT + w, BOTTOM, width - LEFT - w, height)
+        return Layout((LEFT, BOTTOM + (height - h) / 2, w, h), place, scale)
+    place = (LEFT, BOTTOM, width, height - BOTTOM - h)
+    return Layout((LEFT + (width - w) / 2, size[1] - TOP - h, w, h), place, scale)
 
 
 def view(box: tuple[float, float], pistons: Sequence[PistonTrack]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Shown part of a box along x and y, length: the box, but of the room beyond a piston only BEYOND the gas."""
+    """Return the ranges of x and y that are shown, length.
+
+    The whole box is shown, except for most of the empty space beyond a piston (see BEYOND).
+    """
     shown = [(0.0, box[0]), (0.0, box[1])]
     for piston in pistons:
         low, high = shown[piston.axis]
@@ -59,11 +68,11 @@ def view(box: tuple[float, float], pistons: Sequence[PistonTrack]) -> tuple[tupl
 
 
 def lengths(shown: tuple[tuple[float, float], tuple[float, float]]) -> tuple[float, float]:
-    """Lengths of the shown part of a box along x and y."""
+    """Return the lengths of the shown part of a box along x and y."""
     (left, right), (low, high) = shown
     return right - left, high - low
 
 
 def frame_size(shown: tuple[tuple[float, float], tuple[float, float]], panel: bool) -> tuple[int, int]:
-    """Size of a frame, of SIZES: the first one, unless the shown part of a box is much larger in another."""
+    """Return the size of a frame: the first of SIZES, unless the box is drawn much larger with another size."""
     return max(SIZES, key=lambda size: layout(size, lengths(shown), panel).scale * (1.2 if size == SIZES[0] else 1.0))

@@ -1,17 +1,17 @@
-"""Colours of discs by the order ψ₆ of their neighbours: the hue is its angle, and discs without order are grey."""
+"""Colours of discs by their local order ψ₆: the hue shows its angle, and discs without order are grey."""
 
 import numpy as np
 from matplotlib import colormaps
 
 HUES = "hsv"
-"""A colour map that ends where it begins, as angles do."""
+"""A cyclic colour map, as required for angles."""
 
 GREY = 0.72
 """Brightness of discs without order."""
 
 
 def order_colours(order: np.ndarray) -> np.ndarray:
-    """Colours (N, 4) of discs of a complex local order (N,): grey at size 0, the full hue of its angle at size 1."""
+    """Return the colours (N, 4) of discs with complex local order (N,), from grey at |ψ₆| = 0 to the full hue at 1."""
     hue = colormaps[HUES](np.angle(order) / (2 * np.pi) % 1)
     share = np.minimum(np.abs(order), 1)[:, None]
     colours = share * hue + (1 - share) * GREY

@@ -1,6 +1,7 @@
-"""Frames of a film: the discs in their box, and beside them a panel, such as the distribution of their speeds.
+"""Paint the frames of a film: the discs in their box, and a panel beside it, such as the distribution of their speeds.
 
-What never changes is drawn once; a frame restores it and draws only discs, walls, panel and title over it.
+The background, which never changes, is drawn once. Each frame restores it and draws only the discs, walls, panel and
+title on top.
 """
 
 import math
@@ -40,15 +41,15 @@ COLOUR_MAP = "cividis"
 
 DPI = 100
 USUAL, NARROWEST, LEAST_ZOOM = (960, 540), 400, 0.5
-"""Frame size in pixels at which text and margins have their usual size, width or height below which they are smaller,
-and smallest factor of that size."""
+"""Frame size in pixels at which text and margins have their usual size; width or height in pixels below which they are
+reduced; smallest factor by which they are reduced."""
 
 SHADES = 64
 PALEST, DARKEST = 0.93, 0.3
-"""Parts of the colour map that are used: up to the first on white, from the second on on black."""
+"""End of the part of the colour map that is used on a white background, and start of the part used on a dark one."""
 
 EDGE, EDGED = 0.55, 8.0
-"""Brightness of the edge of a disc on white, relative to the disc, and diameter in pixels above which it has one."""
+"""Brightness of the edge of a disc on white, relative to the disc, and diameter above which it is drawn, pixels."""
 
 PAPER, INK = "#14161a", "#e6e6e6"
 DARK: dict[Any, Any] = {
@@ -57,28 +58,29 @@ DARK: dict[Any, Any] = {
     "grid.color": "#363b43",
     **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), INK),
 }
-"""Settings of matplotlib for pictures on a dark background."""
+"""Matplotlib settings for pictures on a dark background."""
 
 SMALLEST = 4.0
-"""Smallest diameter in pixels with which a disc is drawn."""
+"""Smallest diameter with which a disc is drawn, pixels."""
 
 CROSSING = 5.0
-"""Default seconds of film in which a disc of typical speed crosses the box."""
+"""Time in which a disc of typical speed crosses the box by default, seconds of film."""
 
 Colouring = Literal["speed", "species", "order"]
-"""What the colour of a disc shows: its speed, its species, or the order ψ₆ of its neighbours."""
+"""Property that the colour of a disc shows: its speed, its species, or its local order ψ₆."""
 
 Shown = Literal["speeds", "density", "left-right", "none"]
-"""What the panel beside the discs shows."""
+"""Content of the panel beside the discs."""
 
 
 class Look(TypedDict, total=False):
-    """How a film looks.
+    """Appearance of a film.
 
     Attributes:
-        size: width and height of a frame in pixels, made even; by default one of SIZES, by the shape of the box.
-        colouring: what the colours of discs show.
-        panel: what the panel beside the discs shows.
+        size: width and height of a frame in pixels, rounded down to even numbers in films; by default the most suitable
+            of SIZES for the shape of the box.
+        colouring: property that the colours of the discs show.
+        panel: content of the panel beside the discs.
         trails: ids of discs whose paths are drawn.
         dark: whether the background is dark.
     """
@@ -91,7 +93,7 @@ class Look(TypedDict, total=False):
 
 
 class Painter:
-    """Painter of the states of one gas."""
+    """Painter of the states of a gas."""
 
     def __init__(
         self,
@@ -111,12 +113,23 @@ class Painter:
     ) -> None:
         """Prepare what is the same in all frames.
 
-        rms_speed: approximate largest root-mean-square speed of the film, length/time; speeds are those relative to a
-        conserved motion of the whole gas. times: start and end of the film. some: some of its states. maxwell:
-        whether speeds are compared with the Maxwell-Boltzmann distribution. The others are described in `Look`.
+        Args:
+            scene: the scene.
+            gas: the discs at the start.
+            pistons: tracks of the pistons.
+            rms_speed: approximate largest root-mean-square speed in the film, length/time. Speeds are relative to a
+                conserved motion of the whole gas.
+            times: start and end of the film.
+            some: sample of its states, from which the range of the density panel is determined.
+            maxwell: whether to compare the speeds with the Maxwell-Boltzmann distribution.
+            size: see `Look`.
+            colouring: see `Look`.
+            panel: see `Look`.
+            trails: see `Look`.
+            dark: see `Look`.
 
         Raises:
-            UserError: if there is no disc for a trail.
+            UserError: if a disc with a trail does not exist.
         """
         if unknown := [disc for disc in trails if not 0 <= disc < len(gas)]:
             raise UserError(f"trail: no disc {unknown[0]} (allowed 0 to {len(gas) - 1})")
@@ -136,8 +149,8 @@ class Painter:
         with rc_context(DARK if dark else {"grid.color": GRID}):
             self._draw_still(rms_speed, times, some)
 
-    def _draw_still(self, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:
-        """Draw what is the same in all frames, and prepare the parts that are drawn over it."""
+    def _draw_still(self, rms_speed: float, times: tuple[float, float], states: Sequence[LogState]) -> None:
+        """Draw what is the same in all frames, and prepare the parts that are drawn on top."""
         size = self.size
         usual = math.sqrt(size[0] * size[1] / math.prod(USUAL)), min(size) / NARROWEST
         zoom = max(min(usual), LEAST_ZOOM)
@@ -152,13 +165,13 @@ class Painter:
         self._title = self._figure.text(LEFT / page[0], 1 - 0.85 * TOP / page[1], "", animated=True)
         self._draw_box(self._add_axes(place.box, page))
         if place.panel is not None:
-            self._draw_panel(self._add_axes(place.panel, page), rms_speed, times, some)
+            self._draw_panel(self._add_axes(place.panel, page), rms_speed, times, states)
         disable_mathtext(self._figure)
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
     def paint(self, state: LogState) -> np.ndarray:
-        """Paint a state: frame (height, width, 4) uint8, valid until the next call."""
+        """Paint a state, and return the frame (height, width, 4) uint8, which is valid until the next call."""
         speed = np.hypot(*(state.velocity - self._flow).T)
         self._place(state, speed, np.flatnonzero(state.inside))
         beside = () if self._panel is None else self._panel.update(state, speed)
@@ -210,7 +223,7 @@ class Painter:
             self._piston_lines.append((line, self._name(axes, piston.name, (farthest, self._view[1][1]))))
 
     def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
-        """Name of a wall beside a place of it, on the side with more room, legible on discs."""
+        """Write the name of a wall beside a point on it, on the side with more space, legible on top of discs."""
         beyond = (self._figure.bbox.width - axes.transData.transform(place)[0]) * DPI / self._figure.dpi
         crossed = any(piston.axis == 0 for piston in self._pistons)
         right = place[0] < sum(self._view[0]) / 2 or (crossed and beyond > LETTER * len(name))
@@ -220,11 +233,11 @@ class Painter:
             va="top", fontsize="small", path_effects=halo, animated=True, annotation_clip=False,
         )  # fmt: skip
 
-    def _draw_panel(self, axes: Axes, rms_speed: float, times: tuple[float, float], some: Sequence[LogState]) -> None:
-        """Draw what stays the same of the panel beside the discs."""
+    def _draw_panel(self, axes: Axes, rms_speed: float, times: tuple[float, float], states: Sequence[LogState]) -> None:
+        """Draw the part of the panel that is the same in all frames."""
         gas, line = self._gas, self._line
         if self._shows == "density":
-            self._panel = DensityPanel(axes, self._scene, gas, line, some)
+            self._panel = DensityPanel(axes, self._scene, gas, line, states)
         elif self._shows == "left-right":
             self._panel = SidesPanel(axes, self._scene, gas, line, times)
         else:
@@ -238,7 +251,7 @@ class Painter:
         axes.legend(handles=[*self._panel.handles, *kinds], frameon=False, loc="upper right")
 
     def _key(self) -> list[tuple[str, Any]]:
-        """Meaning of the colours, where the axis of speeds does not show it."""
+        """Return the meaning of the colours, unless the axis of speeds shows it."""
         if self._colouring == "species":
             return list(zip(self._gas.species_names, np.resize(COLOURS, len(self._gas.species_names)), strict=True))
         if self._colouring == "order":
@@ -247,7 +260,7 @@ class Painter:
         return []
 
     def _colours(self, position: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Colours (N, 4) of the discs."""
+        """Return the colours (N, 4) of the discs."""
         if self._colouring == "species":
             return to_rgba_array(self._kinds)
         if self._colouring == "order":
@@ -255,10 +268,10 @@ class Painter:
         return self._shades[np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)]
 
     def _place(self, state: LogState, speed: np.ndarray, which: np.ndarray) -> None:
-        """Draw the discs `which` (n,) at their positions, and their periodic images at periodic sides."""
+        """Draw the discs `which` (n,) at their positions, and their images at periodic sides."""
         colours = self._colours(state.position, np.nan_to_num(speed))
         radius, box, position = self._gas.radius, np.array(self._gas.box), state.position[which]
-        ahead = self._scene.properties.shear * box[1] * state.time  # of the images above sheared sides
+        ahead = self._scene.properties.shear * box[1] * state.time  # shift of the images above sheared sides
         for axis in np.flatnonzero(self._periodic)[::-1]:
             for side in (-1, 1):
                 reach = (
@@ -276,7 +289,7 @@ class Painter:
         self._discs.set(facecolors=colours[which], edgecolors=edges)
 
     def _trails_to(self, position: np.ndarray) -> list[Line2D]:
-        """Paths of the chosen discs up to now, with gaps where they cross periodic sides."""
+        """Return the paths of the chosen discs up to now, with gaps where they cross periodic sides."""
         for (disc, path), line in zip(self._paths.items(), self._trails, strict=True):
             if path and (np.abs(position[disc] - path[-1]) > np.array(self._gas.box) / 2).any():
                 path.append(np.full(2, np.nan))
@@ -285,7 +298,7 @@ class Painter:
         return self._trails
 
     def _walls_at(self, time: float) -> list[Artist]:
-        """Draw the walls that are present at a time, as gates may be open, and the pistons."""
+        """Return the walls that are present at a time, as gates may be open, and the pistons at their positions."""
         drawn = list(compress((*self._walls, *self._names), [wall.is_there(time) for wall in self._inside] * 2))
         for piston, (line, name) in zip(self._pistons, self._piston_lines, strict=True):
             place = piston.at(time)

@@ -1,4 +1,4 @@
-"""Panels beside the discs of a film: their speeds, their density, or how many are on the right."""
+"""Panels beside the discs of a film: their speeds, their density, or the fraction of discs on the right."""
 
 from collections.abc import Iterable, Sequence
 from typing import Protocol
@@ -26,21 +26,26 @@ STRIP = 9  # pixels, height of the strip with the colours
 
 
 class Panel(Protocol):
-    """Panel of a film. handles: what its legend shows."""
+    """Panel of a film. handles: entries of its legend."""
 
     handles: list[Line2D]
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """What to draw of a state; speed: (N,), of the discs."""
+        """Return what has to be drawn for a state. speed: (N,), speeds of the discs."""
 
 
 class SpeedPanel:
-    """Distribution of the speeds, next to the Maxwell-Boltzmann distribution if they tend to it."""
+    """Distribution of the speeds, with the Maxwell-Boltzmann distribution if the gas approaches it."""
 
     def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str | None, shades: np.ndarray | None) -> None:
         """Draw the axes.
 
-        line: colour of the curve, None for no curve. shades: (n, 4), colours of the discs along the axis of speeds.
+        Args:
+            axes: axes of the panel.
+            gas: the discs.
+            rms_speed: largest root-mean-square speed, length/time.
+            line: colour of the Maxwell-Boltzmann curve; None for no curve.
+            shades: (n, 4), colours of the discs along the axis of speeds; None if colours do not show speeds.
         """
         self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0
@@ -60,7 +65,7 @@ class SpeedPanel:
             axes.tick_params(axis="x", pad=12, length=0)
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """Bars of the speeds, and the curve at their temperature."""
+        """Update the bars, and the curve to the temperature of the state."""
         here = speed[state.inside]
         self._bars.set_data(np.histogram(here, self._edges)[0] / (max(len(here), 1) * self._edges[1]))
         for curve in self._curves:
@@ -68,7 +73,7 @@ class SpeedPanel:
         return self._bars, *self._curves
 
     def _density(self, temperature: float) -> np.ndarray:
-        """Probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
+        """Return the probability density of the speeds of all discs in equilibrium at a temperature, time/length."""
         if not temperature > 0:
             return np.zeros_like(self._speeds)
         shares = self._classes.number / self._classes.number.sum()
@@ -77,10 +82,10 @@ class SpeedPanel:
 
 
 class DensityPanel:
-    """Number density in strips along the axis of gravity, or else the longer one of the box."""
+    """Number density in strips along the direction of gravity or, without gravity, along the longer side of the box."""
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, some: Sequence[LogState]) -> None:
-        """Draw the axes. line: colour of the mean density. some: states of the film, which decide how high they are."""
+        """Draw the axes. line: colour of the mean density; some: states that determine the range of the density."""
         falls = np.array(scene.properties.strongest_pull) != 0
         self._axis = int(falls[1] if falls.any() else gas.box[1] > gas.box[0])
         length = gas.box[self._axis]
@@ -96,7 +101,7 @@ class DensityPanel:
         self.handles = [Line2D([], [], ls="--", color=line, label="mean")]
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """Bars of the density."""
+        """Update the bars."""
         self._bars.set_data(self._density(state.position[state.inside]))
         return (self._bars,)
 
@@ -105,7 +110,7 @@ class DensityPanel:
 
 
 class SidesPanel:
-    """Fraction of the discs right of the first gate or permeable wall, or of the middle, in time."""
+    """Fraction of the discs to the right of the first gate or permeable wall, or of the middle, against time."""
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, times: tuple[float, float]) -> None:
         """Draw the axes. line: colour of the fraction at equal density. times: start and end of the film."""
@@ -120,7 +125,7 @@ class SidesPanel:
         self.handles = [Line2D([], [], ls="--", color=line, label="equal density")]
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """Curve up to this state."""
+        """Extend the curve to this state."""
         self._points.append((state.time, state.mean(state.position[:, 0] > self._middle)))
         self._curve.set_data(*zip(*self._points, strict=True))
         self._now.set_data(*zip(self._points[-1], strict=True))

@@ -1,4 +1,4 @@
-"""Position of a piston in time: known at hits and samples, in between it moves on a parabola."""
+"""The position of a piston in time, which is known at hits and samples and follows a parabola in between."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,16 @@ from idealgas.scene import Scene
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """axis: 0 for x, 1 for y. time, place: (K,), where it is known to be. pull: (K,), length/time². limits: of its way.
+    """The motion of a piston.
 
-    outward: +1 if the gas is below it on this axis, -1 if above, 0 if on both sides. name: in pictures.
+    Attributes:
+        axis: 0 for x, 1 for y.
+        time: (K,), times at which its position is known.
+        place: (K,), position at these times, length.
+        pull: (K,), acceleration after these times, length/time².
+        limits: smallest and largest position, length.
+        outward: +1 if the gas is below the piston on this axis, -1 if it is above, 0 if it is on both sides.
+        name: name in pictures.
     """
 
     axis: int
@@ -26,7 +33,7 @@ class PistonTrack:
     name: str
 
     def at(self, time: float) -> float:
-        """Coordinate of the piston at a time, on the parabola through the known positions before and after it."""
+        """Return the position at a time, on the parabola through the known positions before and after it."""
         k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
         before, after = time - self.time[k], time - self.time[k + 1]
         step = self.time[k + 1] - self.time[k]
@@ -35,13 +42,13 @@ class PistonTrack:
 
 
 def piston_tracks(log: Log, start: float, end: float) -> list[PistonTrack]:
-    """Tracks between two times of the pistons whose positions are known."""
+    """Return the tracks, between two times, of the pistons whose positions are known."""
     tracks = (_track(log, k, start, end) for k in range(len(log.scene.piston)))
     return [track for track in tracks if track is not None]
 
 
 def pistons_at_start(scene: Scene) -> list[PistonTrack]:
-    """Tracks of the pistons of a scene, each at rest where it is at time 0."""
+    """Return tracks of the pistons of a scene, each at rest at its initial position."""
     always = np.array([0.0, 1.0])
     return [
         PistonTrack(
@@ -58,18 +65,18 @@ def pistons_at_start(scene: Scene) -> list[PistonTrack]:
 
 
 def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
-    """Track of piston k, from its samples and from the positions of discs that hit it; None if it is not known."""
-    piston, own = log.scene.piston[k], [wall.name for wall in log.walls].index(log.scene.piston[k].wall)
+    """Return the track of piston k, from samples and from the positions of discs that hit it; None if unknown."""
+    piston, wall_id = log.scene.piston[k], [wall.name for wall in log.walls].index(log.scene.piston[k].wall)
     sampled, places = log.observables["piston_position"]
     if not len(sampled):
         return None
     first = max(int(sampled.searchsorted(start, "right")) - 1, 0)
-    some = slice(first, int(sampled.searchsorted(end)) + 1)
-    times, knots = [sampled[some]], [places[some, k]]
+    window = slice(first, int(sampled.searchsorted(end)) + 1)
+    times, knots = [sampled[window]], [places[window, k]]
     outward = piston.outward_from(log.discs.position, log.box)
-    names, last = ("time", "disc", "kind", "partner", "position"), max(end, float(sampled[some][-1]))
+    names, last = ("time", "disc", "kind", "partner", "position"), max(end, float(sampled[window][-1]))
     for rows in log.chunks(names, log.row_at(sampled[first]), log.row_at(last, "right")):
-        hits = (rows.kind == Kind.PISTON) & (rows.partner == -1 - own)
+        hits = (rows.kind == Kind.PISTON) & (rows.partner == -1 - wall_id)
         times.append(rows.time[hits])
         knots.append(rows.position[hits, piston.axis] + (outward * log.discs.radius)[rows.disc[hits]])
     time, unique = np.unique(np.concatenate(times), return_index=True)

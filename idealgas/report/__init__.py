@@ -1,1 +1,1 @@
-"""A log as one page with every analysis that applies."""
+"""The report of a log: a single HTML page with every applicable analysis and a player of the motion."""

@@ -1,4 +1,4 @@
-// ── the curves of the page: the player's time in them, and the player at the time of a click ──
+// ── the curves of the page: they show the time of the player, and a click on a curve moves the player to that time ──
 
 class Curve {
   constructor(svg, axes) {
@@ -23,7 +23,7 @@ class Curve {
     return bottom + (top - bottom) * Math.min(Math.max((v - low) / (high - low), 0), 1);
   }
 
-  // Time below a pointer, within the limits of the axis.
+  // The time at the position of a pointer, within the limits of the axis.
   timeAt(event) {
     const { place: [left, right], x: [low, high] } = this.axes, box = this.svg.getBoundingClientRect();
     const at = (event.clientX - box.left) / box.width * this.svg.viewBox.baseVal.width;
@@ -40,17 +40,17 @@ class Curve {
     for (const [name, value] of [["x1", at], ["x2", at], ["y1", bottom], ["y2", top]]) line.setAttribute(name, value);
   }
 
-  // Density of every species at this instant, as steps.
+  // The density of every species at this instant, as a step curve.
   drawStrips(gas) {
     const { axis, first, last, number, area } = this.axes.strips, place = axis === 0 ? gas.x : gas.y;
     const counts = [];
     for (let i = 0; i < gas.number; i++) {
       const strip = Math.floor((place[i] - first) / (last - first) * number);
-      const own = counts[gas.species[i]] ??= new Array(number).fill(0);
-      own[Math.min(Math.max(strip, 0), number - 1)]++;
+      const ofSpecies = counts[gas.species[i]] ??= new Array(number).fill(0);
+      ofSpecies[Math.min(Math.max(strip, 0), number - 1)]++;
     }
-    counts.forEach((own, k) => {
-      const steps = own.map((count, strip) => {
+    counts.forEach((ofSpecies, k) => {
+      const steps = ofSpecies.map((count, strip) => {
         const [from, to] = [strip, strip + 1].map(edge => this.x(first + (last - first) * edge / number));
         return `${strip ? "L" : "M"}${from} ${this.y(count / area)}H${to}`;
       });
@@ -76,7 +76,7 @@ function makeCurves(seek) {
   return curves;
 }
 
-// Rows of tables that are wider than the page become lists, each number below its heading.
+// If a table is wider than the page, its rows become lists, with each number below its heading.
 function wrapTables() {
   for (const frame of document.querySelectorAll(".wide")) {
     const table = frame.firstElementChild;

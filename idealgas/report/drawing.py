@@ -1,7 +1,7 @@
-"""Panels of lines, markers, error bars, bands and steps as SVG, from what matplotlib holds of them.
+"""Draw panels of lines, markers, error bars, bands and steps as SVG, from the objects of a matplotlib figure.
 
-matplotlib finds limits, ticks and their labels. Its own drawing, which makes every tick an object and measures every
-text several times, would take most of the time of a report.
+matplotlib determines the limits, the ticks and their labels. It does not draw, because it creates an object for every
+tick and measures every text several times, which would take most of the time of a report.
 """
 
 import re
@@ -26,38 +26,38 @@ from idealgas.analysis.core.tables import escape
 from idealgas.errors import plain
 
 POINT = 72
-"""Units of an SVG on an inch."""
+"""Units of an SVG per inch."""
 
 NAMES = {colour.lower(): f"--c{k}" for k, colour in enumerate(COLOURS)} | {
     BLACK: "--ink",
     GREY.lower(): "--soft",
     GRID: "--line",
 }
-"""Variables of the page's style for the colours of pictures."""
+"""Variables in the style sheet of the page for the colours of figures."""
 
 SIZE, LEGEND_SIZE, LINE = 10.0, 9.0, 13.0
-"""Sizes of texts and distance of lines of text, points."""
+"""Font sizes of texts and of the legend, and distance between lines of text, points."""
 
 CHARACTER = 0.62
-"""Width of a character relative to its size: somewhat more than that of most."""
+"""Assumed width of a character relative to the font size, slightly more than the width of most characters."""
 
 LEAST_HEIGHT = 100.0
-"""Least height between the axes, however long the legend, points."""
+"""Smallest height between the axes, even with a long legend, points."""
 
 SWATCH = 20.0
 """Length of the lines of a legend, points."""
 
 DASHES: dict[Any, tuple[float, ...]] = {"--": (3.7, 1.6), "-.": (6.4, 1.6, 1, 1.6), ":": (1, 1.65)}
-"""Dashes and gaps of lines in units of their widths, as matplotlib has them."""
+"""Dashes and gaps of lines in units of their widths, as in matplotlib."""
 
 COMMANDS: dict[Any, str] = {1: "M", 2: "L", 3: "Q", 4: "C"}
-"""Commands of SVG by the codes of paths of matplotlib; the others close a path."""
+"""SVG commands by the codes of matplotlib paths; any other code closes a path."""
 
 SUPERSCRIPTS = str.maketrans("0123456789-−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
 
 
 class Frame(NamedTuple):
-    """Size of a picture, and edges of the rectangle between its axes, points from the upper left corner."""
+    """Size of a picture, and edges of the rectangle between its axes, in points from the upper left corner."""
 
     width: float
     height: float
@@ -68,21 +68,24 @@ class Frame(NamedTuple):
 
 
 def is_drawable(figure: Figure) -> bool:
-    """Whether this module can draw everything in a figure."""
-    others = (part for ax in figure.axes for part in (*ax.texts, *ax.images, *ax.tables, *ax.artists, *ax.child_axes))
+    """Return whether this module can draw everything in a figure."""
+    extras = [part for ax in figure.axes for part in (*ax.texts, *ax.images, *ax.tables, *ax.artists, *ax.child_axes)]
     collections = (part for ax in figure.axes for part in ax.collections)
-    known = all(isinstance(part, LineCollection | PolyCollection) for part in collections)
-    return known and not any(True for _ in others) and all(isinstance(ax, Panel) for ax in figure.axes)
+    supported = all(isinstance(part, LineCollection | PolyCollection) for part in collections)
+    return supported and not extras and all(isinstance(ax, Panel) for ax in figure.axes)
 
 
 def draw(figure: Figure, panel: Panel, size: tuple[float, float], key: str) -> tuple[str, Frame]:
-    """SVG of a panel that is drawable, without its outermost element, and where its axes are.
+    """Draw a panel of a drawable figure.
 
     Args:
-        figure: its figure, which takes the size of the picture.
+        figure: the figure; it is given the size of the picture.
         panel: the panel.
-        size: width and height of the picture, points; a long legend makes it higher.
-        key: a name of its own on the page.
+        size: width and height of the picture, points; the height is increased for a long legend.
+        key: name of the panel, which has to be unique on the page.
+
+    Returns:
+        The content of the SVG element of the panel, and the position of its axes.
     """
     entries = list(_legend(figure, panel))
     frame = _frame(figure, panel, size, sum(row for *_, row in entries))
@@ -98,13 +101,20 @@ def draw(figure: Figure, panel: Panel, size: tuple[float, float], key: str) -> t
 
 
 def _frame(figure: Figure, panel: Panel, size: tuple[float, float], legend: float) -> Frame:
-    """Place a panel in its figure: the texts of its vertical axis and the legend below it take what they need."""
+    """Place a panel in its figure, with space for the texts of the vertical axis and for the legend below.
+
+    Args:
+        figure: the figure, whose size is set.
+        panel: the panel.
+        size: width and smallest height of the figure, points.
+        legend: height of the legend, points.
+    """
     width, top, below = size[0], 1.8 * LINE, 2.8 * LINE + legend
     height = max(size[1], top + LEAST_HEIGHT + below)
     figure.set_dpi(POINT)
     figure.set_size_inches(width / POINT, height / POINT)
     left = LINE
-    for _ in range(2):  # the number of ticks depends on the height only
+    for _ in range(2):  # twice is enough, as the number of ticks depends only on the height
         frame = Frame(width, height, left, width - 1.2 * LINE, height - below, top)
         place = frame.left, below, frame.right - frame.left, frame.bottom - frame.top
         panel.set_position((place[0] / width, place[1] / height, place[2] / width, place[3] / height))
@@ -117,7 +127,7 @@ def _frame(figure: Figure, panel: Panel, size: tuple[float, float], legend: floa
 
 
 def _ticks(axis: Axis) -> list[tuple[float, str]]:
-    """Places of ticks within the limits of an axis and their labels; those of minor ticks are mostly empty."""
+    """Return the ticks within the limits of an axis as pairs of position and label; minor ticks rarely have labels."""
     low, high = sorted(axis.get_view_interval())
     margin = 1e-9 * (high - low)
     ticks = []
@@ -131,13 +141,13 @@ def _ticks(axis: Axis) -> list[tuple[float, str]]:
 
 
 def _label(text: str) -> str:
-    """Label of a tick with powers as superscripts, in place of matplotlib's markup."""
+    """Return the label of a tick with powers as superscripts instead of matplotlib's markup."""
     text = re.sub(r"\^\{(.*?)\}", lambda power: power[1].translate(SUPERSCRIPTS), text)
     return re.sub(r"\\mathdefault\{(.*?)\}|[$]", r"\1", text).replace(r"\times", "×").replace(r"\cdot", "·")
 
 
 def _axes(panel: Panel, frame: Frame, down: Transform) -> str:
-    """Axes of a panel with ticks, grid and labels."""
+    """Return the SVG of the axes of a panel, with ticks, grid and labels."""
     left, right, bottom, top = frame[2:]
     grid, ticks, texts = "", f"M{_number(left)} {_number(top)}V{_number(bottom)}H{_number(right)}", []
     major = set(panel.xaxis.get_majorticklocs()), set(panel.yaxis.get_majorticklocs())
@@ -166,16 +176,16 @@ def _axes(panel: Panel, frame: Frame, down: Transform) -> str:
 
 
 def _text(x: float, y: float, anchor: str, text: str, size: float = SIZE) -> str:
-    """A line of text that ends, has its middle or starts at a place."""
+    """Return a line of text whose start, middle or end is at (x, y), as given by `anchor`."""
     place = f'x="{_number(x)}" y="{_number(y)}" font-size="{size:g}" text-anchor="{anchor}"'
     return f"<text {place}>{escape(plain(text))}</text>"
 
 
-# ── what the axes hold ──
+# ── between the axes ──
 
 
 def _drawn(part: Any, down: Transform, frame: Frame) -> Iterator[str]:
-    """SVG of a line, a patch or a collection."""
+    """Yield the SVG elements of a line, a patch or a collection."""
     transform = part.get_transform() + down
     if isinstance(part, Line2D):
         if part.get_linestyle() != "None":
@@ -190,7 +200,7 @@ def _drawn(part: Any, down: Transform, frame: Frame) -> Iterator[str]:
 
 
 def _commands(path: Path, transform: Transform, clip: tuple[float, float, float, float] | None = None) -> str:
-    """Path in SVG's commands."""
+    """Return a path as SVG commands."""
     return "".join(
         f"{COMMANDS[code]}{' '.join(map(_number, vertices))}" if code in COMMANDS else "Z"
         for vertices, code in transform.transform_path(path).iter_segments(clip=clip)
@@ -202,12 +212,12 @@ def _path(commands: str, style: str) -> str:
 
 
 def _number(value: float) -> str:
-    """A number of points with one decimal, which is half a pixel on most screens."""
+    """Return a length in points with one decimal, so that rounding is invisible on most screens."""
     return f"{value:.1f}".removesuffix(".0")
 
 
 def _stroke(line: Line2D) -> str:
-    """Style of a line."""
+    """Return the style of a line."""
     width = line.get_linewidth()
     dashes = " ".join(f"{width * dash:.3g}" for dash in DASHES.get(line.get_linestyle(), ()))
     pattern = f";stroke-dasharray:{dashes}" if dashes else ""
@@ -215,8 +225,9 @@ def _stroke(line: Line2D) -> str:
 
 
 def _fill(part: Any) -> str:
-    """Style of a patch or collection."""
-    faces, edges, widths = (np.atleast_2d(of()) for of in (part.get_facecolor, part.get_edgecolor, part.get_linewidth))
+    """Return the style of a patch or a collection."""
+    getters = part.get_facecolor, part.get_edgecolor, part.get_linewidth
+    faces, edges, widths = (np.atleast_2d(get()) for get in getters)
     filled = faces.size and not (isinstance(part, Patch) and not part.get_fill())
     style = _paint("fill", faces[0]) if filled else "fill:none"
     if edges.size and widths[0, 0]:
@@ -225,7 +236,7 @@ def _fill(part: Any) -> str:
 
 
 def _paint(what: str, colour: Any, alpha: float | None = None) -> str:
-    """Style with the variable of a colour, and with its opacity."""
+    """Return a style that sets a colour, by its variable if it has one, and its opacity."""
     opacity, colour = to_rgba(colour, alpha)[3], to_hex(colour)
     if not opacity:
         return f"{what}:none"
@@ -234,7 +245,10 @@ def _paint(what: str, colour: Any, alpha: float | None = None) -> str:
 
 
 def _markers(line: Line2D, places: np.ndarray) -> str:
-    """Markers of a line at places (n, 2), all in one path; filled circles are ends of lines without a length."""
+    """Return the markers of a line at places (n, 2) as a single path.
+
+    Filled circles are drawn as the round caps of lines of zero length.
+    """
     marker, edge = MarkerStyle(line.get_marker(), line.get_fillstyle()), line.get_markeredgewidth()
     size, face, border = line.get_markersize(), line.get_markerfacecolor(), line.get_markeredgecolor()
     if marker.get_marker() in ("o", ".") and to_hex(face) == to_hex(border) and to_rgba(face)[3]:
@@ -252,7 +266,12 @@ def _markers(line: Line2D, places: np.ndarray) -> str:
 
 
 def _legend(figure: Figure, panel: Panel) -> Iterator[tuple[float, float, Any, Sequence[str], float]]:
-    """Yield place, handle, lines of text, and height that it adds to the legend, of each entry of a panel."""
+    """Yield the entries of the legend of a panel.
+
+    Yields:
+        Horizontal position as a fraction of the width, vertical position in points, handle, lines of text, and height
+        that the entry adds to the legend in points.
+    """
     if panel.get_legend() is None and not figure.legends:
         return
     entries, columns = panel.entries()
@@ -265,7 +284,7 @@ def _legend(figure: Figure, panel: Panel) -> Iterator[tuple[float, float, Any, S
 
 
 def _drawn_legend(entries: Sequence[tuple[float, float, Any, Sequence[str], float]], frame: Frame) -> Iterator[str]:
-    """SVG of each entry of a legend, below the axis."""
+    """Yield the SVG elements of the entries of a legend, below the axis."""
     for share, below, handle, lines, _ in entries:
         x, y = LINE / 2 + share * (frame.width - LINE), frame.bottom + 3.2 * LINE + below
         middle = y - 0.35 * LEGEND_SIZE

@@ -1,8 +1,8 @@
 "use strict";
 
-// ── the gas: which event each disc had last, and its free flight since ──
+// ── the gas: the last event of each disc, and its free flight since then ──
 
-let stored = name => document.getElementById("data-" + name)?.textContent; // numbers as base64
+let stored = name => document.getElementById("data-" + name)?.textContent; // numbers as base64 text
 
 function unpack(name, Type) {
   const text = atob((stored(name) ?? "").trim());
@@ -11,7 +11,7 @@ function unpack(name, Type) {
   return new Type(bytes.buffer);
 }
 
-// Times of events in ticks from the steps between them; for the longest number of 16 bits there is the next leap.
+// Times of events in ticks, from the steps between them. The largest 16-bit number stands for the next leap.
 function addSteps(steps, leaps) {
   const ticks = new Uint32Array(steps.length);
   let now = 0, leap = 0;
@@ -25,26 +25,26 @@ class Gas {
     this.radius = unpack("radius", Float32Array);
     this.mass = unpack("mass", Float32Array);
     this.species = unpack("species", Uint16Array);
-    this.order = unpack("order", Uint8Array); // shades of all discs at one instant, then at the next
+    this.order = unpack("order", Uint8Array); // shades of all discs, instant after instant
     this.start = { position: unpack("position", Float32Array), velocity: unpack("velocity", Float32Array) };
     this.number = this.radius.length;
     this.tick = addSteps(unpack("event_step", Uint16Array), unpack("event_leap", Uint32Array));
     this.disc = unpack("event_disc", this.number > 65536 ? Uint32Array : Uint16Array);
     this.event = { velocity: unpack("event_velocity", Float32Array) };
     this.known = { row: unpack("place_row", Uint32Array), place: unpack("place", Float32Array) };
-    this.pistons = head.pistons.map((piston, k) => ({ // with when it is known where it is
+    this.pistons = head.pistons.map((piston, k) => ({ // with the times at which its position is known
       ...piston, knots: unpack("piston_tick_" + k, Uint32Array), places: unpack("piston_place_" + k, Float32Array),
     }));
-    this.row = 0; // events that have happened
-    this.used = 0; // places of `known` before that row
+    this.row = 0; // number of events that have happened
+    this.used = 0; // number of places in `known` before that row
     this.last = new Int32Array(this.number).fill(-1);
-    this.from = Float64Array.from(this.start.position); // where each disc had its last event, x and y
+    this.from = Float64Array.from(this.start.position); // x and y of each disc at its last event
     this.x = new Float64Array(this.number);
     this.y = new Float64Array(this.number);
     this.vx = new Float64Array(this.number);
     this.vy = new Float64Array(this.number);
     this.step = Math.max(this.number, 4096);
-    this.marks = [this.mark()]; // at every step-th row, to go back to
+    this.marks = [this.mark()]; // the state at every step-th row, from which earlier times are computed
     while (this.row < this.tick.length) {
       this.follow(Math.min(this.row + this.step, this.tick.length));
       if (this.row % this.step === 0) this.marks.push(this.mark());
@@ -54,7 +54,7 @@ class Gas {
 
   mark() { return { used: this.used, last: this.last.slice(), from: this.from.slice() }; }
 
-  // Each disc flies to its next event; where that does not lead to its place in the log, the place is known.
+  // Move each disc to its next events. Where free flight does not lead to its position in the log, `known` has it.
   follow(row) {
     for (; this.row < row; this.row++) {
       const i = this.disc[this.row], isKnown = this.known.row[this.used] === this.row;
@@ -66,13 +66,13 @@ class Gas {
     }
   }
 
-  // When the flight of a disc began, and its velocity then.
+  // The time at which the present flight of a disc began, and its velocity at that time.
   begun(i) {
     const event = this.last[i], { velocity } = event < 0 ? this.start : this.event, k = 2 * (event < 0 ? i : event);
     return [event < 0 ? this.head.start : this.timeOf(this.tick[event]), velocity[k], velocity[k + 1]];
   }
 
-  // Where a disc is in its flight at a time, inside the box.
+  // The position of a disc in its flight at a time, inside the box.
   placeAt(i, time) {
     const [since, vx, vy] = this.begun(i), dt = time - since, [gx, gy] = this.head.gravity;
     const [width, height] = this.head.box, [wrapsX, wrapsY] = this.head.wraps;
@@ -111,7 +111,7 @@ class Gas {
     }
   }
 
-  // The flight of a disc since its last event in the player: when it began, and places at `steps` + 1 times till now.
+  // The flight of a disc since its last event in the player: its start, and the positions at `steps` + 1 times until now.
   flight(i, steps) {
     const [since, vx, vy] = this.begun(i), [gx, gy] = this.head.gravity;
     const places = Array.from({ length: steps + 1 }, (_, step) => {
@@ -121,7 +121,7 @@ class Gas {
     return { since, places };
   }
 
-  // The disc nearest to a place.
+  // The disc nearest to a point.
   nearest(x, y) {
     let best = 0, least = Infinity;
     for (let i = 0; i < this.number; i++) {
@@ -131,20 +131,20 @@ class Gas {
     return best;
   }
 
-  // Shades of the discs by the order of their neighbours, at the nearest of the instants for which it is known.
+  // Shades of the discs by their local order, at the nearest instant at which it is known.
   orders() {
     const instants = this.order.length / this.number, { start, end } = this.head;
     const k = Math.round((this.time - start) / (end - start) * (instants - 1)) || 0;
     return this.order.subarray(k * this.number, (k + 1) * this.number);
   }
 
-  // Speed relative to a conserved motion of the whole gas; NaN of a disc that has left.
+  // Speed relative to a conserved motion of the whole gas; NaN for a disc that has left.
   speed(i) {
     const [x, y] = this.head.flow;
     return Math.hypot(this.vx[i] - x, this.vy[i] - y);
   }
 
-  // Where a piston is: on a parabola between the times at which that is known.
+  // The position of a piston, on a parabola between the times at which it is known.
   placeOf({ pull, limits, knots, places }) {
     const knot = k => ({ time: this.timeOf(knots[k]), place: places[k] });
     const last = knots.length - 1, next = Math.min(firstAfter(last, k => knot(k).time, this.time), last);
@@ -156,7 +156,7 @@ class Gas {
   }
 }
 
-// The first of `number` places with a key, which do not fall from place to place, above a value.
+// The index of the first of `number` keys in non-decreasing order that is above a value.
 function firstAfter(number, key, value) {
   let low = 0, high = number;
   while (low < high) {

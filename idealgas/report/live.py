@@ -1,4 +1,4 @@
-"""Page that shows a log in the browser, also while it is written, and its server, which only this machine can reach."""
+"""The page that shows a log in the browser, even during the run, and its server, which only this machine can reach."""
 
 import json
 import math
@@ -37,35 +37,35 @@ ROWS = 2**16
 """Largest number of event rows in a part of the motion."""
 
 SECONDS = 2.0
-"""Played time of the newest part of a run, s."""
+"""Playing time of the newest part of a run, s."""
 
 POINTS = 128
-"""Smallest number of points of the curves in a long log."""
+"""Smallest number of points in the curves of a long log."""
 
 POINT_ROWS = 2**14
 """Number of event rows around a point over which the pressure is averaged."""
 
 PATIENCE = 10.0
-"""Time for which a connection may be silent, in which its request must arrive, and its answer be taken, s."""
+"""Time limit for silence of a connection, for the arrival of its request, and for the transmission of the answer, s."""
 
 MEASURING = 0.2
-"""Time for new points in an answer, s."""
+"""Time that may be spent on measuring new points for an answer, s."""
 
 
 class Live:
-    """Parts of the motion in a log that may still be written, and curves of temperature and pressure."""
+    """Parts of the motion in a log, and curves of its temperature and pressure; the log may still be being written."""
 
     def __init__(self, log: Log) -> None:
         """Prepare the log.
 
         Raises:
-            UserError: if the log has no events, or too many discs.
+            UserError: if the log has no events or too many discs.
         """
         log.require_events()
         if len(log.discs) > MOST_DISCS:
             raise UserError(f"{log.path}: has {len(log.discs):,} discs (allowed up to {MOST_DISCS:,} to be shown)")
         self._log, self._lock, self._second = log, Lock(), crossing(log.box, log.discs.velocity)
-        self._points: dict[float, tuple[float, dict[str, Estimate]]] = {}  # temperature and pressures by time
+        self._points: dict[float, tuple[float, dict[str, Estimate]]] = {}  # temperature and pressures, by time
 
     @property
     def running(self) -> bool:
@@ -73,7 +73,7 @@ class Live:
         return self._log.live
 
     def page(self) -> str:
-        """HTML of the page, which asks for everything that changes."""
+        """Return the HTML of the page, which then requests all data that change."""
         log, scene = self._log, self._log.scene.scene
         heading = "The discs" if log.has_positions else "The speeds"
         shown = "After each part of the motion comes the newest one, or with the mark removed the next one."
@@ -91,9 +91,11 @@ class Live:
         )
 
     def part(self, after: float, newest: bool) -> dict[str, Any]:
-        """Part of the motion, plain values for JSON.
+        """Return a part of the motion as plain values for JSON.
 
-        after: time at which it begins. newest: whether it may begin later, to show the newest SECONDS of the run.
+        Args:
+            after: time at which the part begins.
+            newest: whether it may begin later, to show the newest SECONDS of the run.
         """
         with self._refreshed() as log:
             first = max(after, self._newest()) if newest else after
@@ -106,7 +108,11 @@ class Live:
             return {"running": self.running, "motion": motion}
 
     def curves(self, points: int) -> dict[str, Any]:
-        """Curves with some more points, if there are more than a number of them, and the state of the run."""
+        """Measure more points, and return the curves and the state of the run as plain values for JSON.
+
+        Args:
+            points: number of points that the page already shows; without new points, the curves are omitted.
+        """
         with self._refreshed() as log:
             self._measure()
             return {
@@ -118,24 +124,24 @@ class Live:
 
     @contextmanager
     def _refreshed(self) -> Iterator[Log]:
-        """Yield the log as it is now, to one request at a time."""
+        """Yield the log in its present state, to one request at a time."""
         with self._lock:
             if not self._log.complete:
                 self._log.refresh()
             yield self._log
 
     def _newest(self) -> float:
-        """Start of the newest part of the motion."""
+        """Return the start of the newest part of the motion."""
         log = self._log
         row = max(len(log) - ROWS, 0)
         return max(self._time_of(row) if row else log.start_time, log.end_time - SECONDS * self._second)
 
     def _time_of(self, row: int) -> float:
-        (found,) = self._log.chunks(("time",), row, row + 1)
-        return float(found.time[0])
+        (block,) = self._log.chunks(("time",), row, row + 1)
+        return float(block.time[0])
 
     def _measure(self) -> None:
-        """Measure points in the middle of the longest times without one."""
+        """Measure points in the middle of the longest intervals between points, for MEASURING seconds."""
         log, done = self._log, time.monotonic() + MEASURING
         while log.end_time > log.start_time and time.monotonic() < done:
             edges = np.array([log.start_time, *sorted(self._points), log.end_time])
@@ -146,43 +152,43 @@ class Live:
             self._points[middle] = _temperature(log, middle), self._pressures(middle)
 
     def _pressures(self, middle: float) -> dict[str, Estimate]:
-        """Pressure of the gas around a time, or on each wall of a gas without an equation of state, by name."""
+        """Return the pressure around a time, by name: of the gas, or on each wall if it has no equation of state."""
         log = self._log
         row = min(max(log.row_at(middle) - POINT_ROWS // 2, 0), max(len(log) - 1 - POINT_ROWS, 0))
         try:
-            found = pressure(log, self._time_of(row), self._time_of(min(row + POINT_ROWS, len(log) - 1)))
+            result = pressure(log, self._time_of(row), self._time_of(min(row + POINT_ROWS, len(log) - 1)))
         except DamageError:
             raise
         except UserError:
             return {}
-        if found.mechanical:
-            return {f"on {wall.name}": wall.pressure for wall in found.mechanical.walls}
-        pairs = next((route.pressure for route in found.routes if route.name == PAIRS), None)
+        if result.mechanical:
+            return {f"on {wall.name}": wall.pressure for wall in result.mechanical.walls}
+        pairs = next((route.pressure for route in result.routes if route.name == PAIRS), None)
         return {} if pairs is None else {"of the gas": pairs}
 
     def _curves(self) -> str:
-        """Pictures of temperature and pressure in time, as HTML."""
+        """Return figures of temperature and pressure against time, as HTML."""
         times = np.array(sorted(self._points))
         temperatures, pressures = zip(*(self._points[t] for t in times), strict=True)
-        names = list(dict.fromkeys(name for found in pressures for name in found))
+        names = list(dict.fromkeys(name for estimates in pressures for name in estimates))
         figure, axes = panels(2 if names else 1)
         axes[0].plot(times, temperatures, "o", ms=3, color=COLOURS[0], label="kinetic energy per disc")
         if law := expected_law(self._log, times):
             axes[0].plot(times, law.temperature, "--", color=BLACK, label=law.text)
         low, high = min(temperatures), max(temperatures)
-        if high - low < 1e-6 * high:  # changes only by rounding
+        if high - low < 1e-6 * high:  # the temperature changes only by rounding
             axes[0].set_ylim(0.9 * low, 1.1 * high)
         axes[0].set_ylabel("temperature (energy, k_B = 1)")
         for k, name in enumerate(names):
             colour, _, marker = curve_style(k)
-            own = [(t, found[name]) for t, found in zip(times, pressures, strict=True) if name in found]
-            at, values = zip(*own, strict=True)
+            points = [(t, estimates[name]) for t, estimates in zip(times, pressures, strict=True) if name in estimates]
+            at, values = zip(*points, strict=True)
             axes[1].errorbar(
-                at, [one.value for one in values], [one.standard_error for one in values],
+                at, [estimate.value for estimate in values], [estimate.standard_error for estimate in values],
                 fmt=marker, ms=3, elinewidth=0.8, color=colour, label=f"P {name}",
             )  # fmt: skip
             if values[0].theory is not None:
-                axes[1].plot(at, [one.theory for one in values], "--", color=BLACK, label="theory")
+                axes[1].plot(at, [estimate.theory for estimate in values], "--", color=BLACK, label="theory")
             axes[1].set_ylabel("pressure (energy/length²)")
         for ax in axes:
             ax.time_axis()
@@ -192,7 +198,7 @@ class Live:
 
 
 def _temperature(log: Log, at: float) -> float:
-    """Kinetic energy per disc, without a conserved motion of the whole gas."""
+    """Return the kinetic energy per disc at a time, excluding a conserved motion of the whole gas."""
     state = log.state_at(at)
     velocity = state.velocity - centre_of_mass_velocity(log)
     return state.mean(log.discs.mass * (velocity**2).sum(axis=1)) / 2
@@ -202,7 +208,7 @@ def _temperature(log: Log, at: float) -> float:
 
 
 class _Server(ThreadingTCPServer):
-    """Server of the page of one log."""
+    """Server of the page of a log."""
 
     allow_reuse_address = True
     daemon_threads = True
@@ -214,20 +220,20 @@ class _Server(ThreadingTCPServer):
         self.name = f"{HOST}:{self.server_address[1]}"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Print errors of the program only: browsers end connections at any moment."""
+        """Print only errors of the program, as browsers may end a connection at any time."""
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """Answers to a browser: the page, and parts of the motion."""
+    """Handler of the requests of a browser for the page, parts of the motion and curves."""
 
     server: _Server
     server_version, sys_version = "idealgas", ""
-    timeout = PATIENCE  # of each wait for bytes, and of sending an answer
+    timeout = PATIENCE  # limit of each wait for bytes, and for sending an answer
 
     def setup(self) -> None:
-        """Begin a connection, which ends unless its request is complete in time, however steadily its bytes arrive."""
+        """Begin a connection; it ends if its request is not complete in time, even while bytes are still arriving."""
         super().setup()
         self._timer = Timer(self.timeout, self._hang_up)
         self._timer.daemon = True
@@ -240,11 +246,11 @@ class _Handler(BaseHTTPRequestHandler):
         return complete
 
     def _hang_up(self) -> None:
-        with suppress(OSError):  # it has ended
+        with suppress(OSError):  # the connection has already ended
             self.connection.shutdown(SHUT_RDWR)
 
     def do_GET(self) -> None:
-        """Answer a request; other sites whose name leads here get nothing."""
+        """Answer a request, unless it is for the name of another site that resolves to this machine."""
         try:
             url = urlsplit(self.path)
         except ValueError:
@@ -262,19 +268,19 @@ class _Handler(BaseHTTPRequestHandler):
     def _data(self, path: str, query: dict[str, str]) -> None:
         live = self.server.live
         try:
-            ask: Callable[[], dict[str, Any]]
+            make_data: Callable[[], dict[str, Any]]
             if path == "/part":
-                ask = partial(live.part, _finite(query["after"]), query["newest"] == "1")
+                make_data = partial(live.part, _finite(query["after"]), query["newest"] == "1")
             else:
-                ask = partial(live.curves, int(query["points"]))
+                make_data = partial(live.curves, int(query["points"]))
         except (LookupError, ValueError):
             self._answer(400, "text/plain", "wrong query")
             return
         try:
-            found = ask()
-        except UserError as error:  # of a log that changes while it is read, only now
-            found = {"running": live.running, "state": str(error), "motion": None, "points": 0}
-        self._answer(200, "application/json", json.dumps(found, allow_nan=False))
+            values = make_data()
+        except UserError as error:  # temporary, if the log changes while it is read
+            values = {"running": live.running, "state": str(error), "motion": None, "points": 0}
+        self._answer(200, "application/json", json.dumps(values, allow_nan=False))
 
     def _answer(self, status: int, kind: str, text: str) -> None:
         body = text.encode()
@@ -287,27 +293,30 @@ class _Handler(BaseHTTPRequestHandler):
             self.end_headers()
             self.wfile.write(body)
         except ConnectionError:
-            pass  # the tab was closed
+            pass  # the tab of the browser was closed
 
     def log_message(self, format: str, *args: Any) -> None:
         """Print nothing."""
 
 
 def _finite(text: str) -> float:
-    """The finite number in a text. Raises ValueError if it has none."""
+    """Return the finite number that a text represents. Raises ValueError if it is anything else."""
     if not math.isfinite(value := float(text)):
         raise ValueError("not a finite number")
     return value
 
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'"
-"""What the page may load: nothing from elsewhere."""
+"""Policy that prevents the page from loading anything from another server."""
 
 
 def serve(log: Log, port: int = 0, ready: Callable[[str], None] = lambda address: None) -> None:
-    """Serve the page of a log to browsers of this machine until KeyboardInterrupt.
+    """Serve the page of a log to browsers on this machine until KeyboardInterrupt.
 
-    port: number of the port, 0 for a free one. ready: called with the address of the page.
+    Args:
+        log: the log to show.
+        port: number of the port; 0 for any free port.
+        ready: function that is called with the address of the page.
 
     Raises:
         UserError: if the log has nothing to show, or if the port is in use or not allowed.

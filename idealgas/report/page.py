@@ -1,4 +1,4 @@
-"""Report of a log as one HTML page without other files: the run, all analyses that apply to it, and a player."""
+"""Write the report of a log: a self-contained HTML page with the run, all applicable analyses and a player."""
 
 import json
 import os
@@ -20,15 +20,15 @@ from idealgas.report.player import MOST_DISCS, Player, player
 from idealgas.report.sections import Section, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
-"""The program of the page, in order."""
+"""Files of the program of the page, in order."""
 
 
 CODE = re.compile("`([^`]+)`")
-"""Commands and keys in a description, between backticks."""
+"""Pattern of commands and keys in a description, which stand between backticks."""
 
 
 def text_of(name: str) -> str:
-    """Text of a file of the page."""
+    """Return the text of a file from which the page is made."""
     return resources.files("idealgas.report").joinpath(name).read_text(encoding="utf-8")
 
 
@@ -64,17 +64,20 @@ def write_report(
     force: bool = False,
     on_step: Callable[[int, int], None] = lambda done, total: None,
 ) -> Path:
-    """Write the report page of a log and return its path.
+    """Write the report page of a log.
 
     Args:
         log: the log to show, or its path.
         output: path of the page, with the ending .html or .htm.
         start: first time in the player; None for the start of the log.
         force: whether to replace an existing report.
-        on_step: called with the number of finished sections and the number of all sections.
+        on_step: function that is called with the number of finished sections and the number of all sections.
+
+    Returns:
+        Path of the page.
 
     Raises:
-        UserError: for another ending, or if the log does not cover `start`.
+        UserError: if the path has another ending, or if the log does not cover `start`.
         OutputError: if the page cannot be written.
     """
     path = Path(output)
@@ -90,33 +93,33 @@ def write_report(
 
 
 def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
-    found = info(log)
-    file = found["file"]
+    facts = info(log)
+    file = facts["file"]
     applicable = [section for section in sections if section.left_out is None]
     first = {section.analysis: section for section in reversed(applicable)}  # the first section of each analysis
     main = [first[name] for name in registry.shown(log.scene) if name in first] or applicable
-    more = [section for section in applicable if all(section is not one for one in main)]
+    more = [section for section in applicable if all(section is not shown for shown in main)]
     parts = [(section.title, _section(section, f"p{k}")) for k, section in enumerate((*main, *more))]
-    parts.insert(len(main), ("The run", _run(log, found)))
+    parts.insert(len(main), ("The run", _run(log, facts)))
     if left_out := [(section.title, section.left_out) for section in sections if section.left_out is not None]:
-        rows = "".join(f"<li>{escape(title)}: {escape(why)}</li>" for title, why in left_out)
+        rows = "".join(f"<li>{escape(title)}: {escape(reason)}</li>" for title, reason in left_out)
         parts.append(("What does not apply", f"<ul>{rows}</ul>"))
     title = log.scene.scene.title or Path(log.path).name
     names = ["The discs" if log.has_positions else "The speeds", "What it shows", *(name for name, _ in parts)]
     contents = "".join(f'<li><a href="#s{k}">{escape(name)}</a></li>' for k, name in enumerate(names))
-    said = [*(section.words for section in main if section.words), _summary(log, found)]
+    sentences = [*(section.words for section in main if section.words), _summary(log, facts)]
     html = [f'<section id="s{k}"><h2>{escape(name)}</h2>{body}</section>' for k, (name, body) in enumerate(parts, 2)]
     folded = len(main) + 1
     lead, description = first_sentence(log.scene.scene.description)
     return Template(text_of("report.html")).substitute(
         title=escape(title),
-        lead=escape(lead or said.pop(0)),
+        lead=escape(lead or sentences.pop(0)),
         style=text_of("report.css"),
         script="\n".join(map(text_of, SCRIPTS)),
         contents=f"<ul>{contents}</ul>",
         player=_player(log, played, names[0]),
         description=description_html(description),
-        words="".join(f"<li>{escape(sentence)}</li>" for sentence in said),
+        words="".join(f"<li>{escape(sentence)}</li>" for sentence in sentences),
         sections="\n".join(html[:folded]),
         more="\n".join(html[folded:]),
         data="" if played is None else _data(played),
@@ -125,7 +128,10 @@ def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
 
 
 def description_html(description: str) -> str:
-    """HTML of the description of a scene: its paragraphs; indented ones, tables and commands, keep their lines."""
+    """Return the paragraphs of the description of a scene as HTML.
+
+    Indented paragraphs, which are tables and commands, keep their lines.
+    """
     html = ""
     for text in filter(None, description.strip("\n").split("\n\n")):
         lines = text.splitlines()
@@ -137,9 +143,9 @@ def description_html(description: str) -> str:
     return html
 
 
-def _summary(log: Log, found: dict) -> str:
-    """Sentence on the gas and its run; the packing fraction is that of the area that the gas has at the start."""
-    gas, run, effects = found["gas"], found["run"], ", ".join(log.scene.effects)
+def _summary(log: Log, facts: dict) -> str:
+    """Return a sentence about the gas, with its packing fraction at the start, and about its run."""
+    gas, run, effects = facts["gas"], facts["run"], ", ".join(log.scene.effects)
     kind = f" with {effects}" if effects else ""
     discs = "disc" if gas["number"] == 1 else "discs"
     return (
@@ -150,10 +156,10 @@ def _summary(log: Log, found: dict) -> str:
 
 
 def _player(log: Log, played: Player | None, heading: str) -> str:
-    """HTML of the player, with a note on the time that it shows."""
+    """Return the HTML of the player, with a note about the time that it shows."""
     if played is None:
-        why = "no events are recorded" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
-        return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {why}.</p></section>'
+        reason = "no events are recorded" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
+        return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {reason}.</p></section>'
     if log.has_positions:
         width, height = log.box
         shown = (
@@ -172,7 +178,7 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
 
 
 def player_html(log: Log, heading: str, shown: str) -> str:
-    """HTML of the player under a heading, with a note on what it shows."""
+    """Return the HTML of the player below a heading, with a note about what it shows."""
     return PLAYER.substitute(hidden="" if log.has_positions else " hidden", heading=heading, shown=shown)
 
 
@@ -182,15 +188,15 @@ def _data(played: Player) -> str:
     return "\n".join([f'<script type="application/json" id="data-head">{head}</script>', *arrays])
 
 
-def _run(log: Log, found: dict) -> str:
-    """HTML of the section on the run: discs, state and summary of the run, and the scene."""
+def _run(log: Log, facts: dict) -> str:
+    """Return the HTML of the section about the run: discs, state and summary of the run, and the scene."""
     species = [
-        (s["name"], Number(s["number"], ","), Number(s["radius"]), Number(s["mass"])) for s in found["gas"]["species"]
+        (s["name"], Number(s["number"], ","), Number(s["radius"]), Number(s["mass"])) for s in facts["gas"]["species"]
     ]
     summary = [(label, _shown(log.summary[name])) for name, label in SUMMARY.items() if name in log.summary]
     if "trial" not in log.columns:
         summary = [row for row in summary if row[0] != SUMMARY["trials"]]
-    state = [(name, found["file"][name]) for name in ("state", "created") if name in found["file"]] + summary
+    state = [(name, facts["file"][name]) for name in ("state", "created") if name in facts["file"]] + summary
     tables = (
         Table("Discs", ("species", "N", "radius (length)", "mass (mass)"), species),
         Table("Run", ("", ""), state),

@@ -1,4 +1,4 @@
-"""Pictures of a report as SVG in the page: each panel apart, in the colours of the page, with what its axes show."""
+"""Put figures into a report as SVG: each panel separately, in the colours of the page, with the scales of its axes."""
 
 import html
 import io
@@ -19,7 +19,13 @@ MARGIN = 0.06
 
 
 def html_pictures(figure: Figure, caption: str, key: str) -> str:
-    """A figure as HTML: an SVG for each panel and the caption below; key: a name of its own on the page."""
+    """Return a figure as HTML: an SVG for each panel, and the caption below.
+
+    Args:
+        figure: the figure.
+        caption: text of the caption.
+        key: name of the figure, which has to be unique on the page.
+    """
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
     with rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
         drawn = _drawn(figure, panels, key) if is_drawable(figure) else _drawn_by_matplotlib(figure, panels, key)
@@ -28,7 +34,10 @@ def html_pictures(figure: Figure, caption: str, key: str) -> str:
 
 
 def _svg(panel: Panel, drawing: str, frame: Frame) -> str:
-    """SVG of one panel, with what its axes show: their place and limits, and what an instant shows there."""
+    """Return the SVG of a panel, with the data that the page requires to mark the instant shown by the player.
+
+    These are the position and the limits of the axes, and whether the panel shows time or strips of the box.
+    """
     axes = {
         "place": frame[2:],
         "x": list(map(float, panel.get_xlim())),
@@ -44,7 +53,7 @@ def _svg(panel: Panel, drawing: str, frame: Frame) -> str:
 
 
 def _drawn(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
-    """Drawing of each panel of a figure, and where its axes are."""
+    """Return the drawing of each panel of a figure, and the position of its axes."""
     width, height = POINT * figure.get_size_inches()
     figure.set_layout_engine(None)
     grids = [spec.get_gridspec() for panel in panels if (spec := panel.get_subplotspec())]
@@ -54,34 +63,34 @@ def _drawn(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Fra
     ]
 
 
-# ── pictures that matplotlib draws itself ──
+# ── figures drawn by matplotlib ──
 
 
 def _drawn_by_matplotlib(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
-    """Drawing of each panel of a figure with images or texts of its own, and where its axes are."""
+    """Return the drawing of each panel of a figure with images or texts, and the position of its axes."""
     disable_mathtext(figure)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
-    figure.set_layout_engine(None)  # "none" leaves one in its place, for which every picture is drawn twice
+    figure.set_layout_engine(None)  # "none" would leave a placeholder engine, with which every figure is drawn twice
     return [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
 
 
 def _picture(figure: Figure, panel: Panel, panels: list[Panel], key: str) -> tuple[str, Frame]:
-    """Drawing of one panel of a figure; its ids are its own, and its numbers are the same for the same log."""
+    """Return the drawing of a panel, with unique ids and the same numbers for the same log, and its axes' position."""
     part = _part(figure, panel, panels)
-    for other in panels:
-        other.set_visible(other is panel)
+    for each in panels:
+        each.set_visible(each is panel)
     file = io.StringIO()
     with rc_context({"svg.hashsalt": key, "svg.fonttype": "none"}):
         figure.savefig(file, format="svg", metadata={"Date": None}, bbox_inches=part, transparent=True)
-    for other in panels:
-        other.set_visible(True)
+    for each in panels:
+        each.set_visible(True)
     _, _, drawing = file.getvalue().partition("</metadata>")
     drawing = re.sub(r"<style.*?</style>", "", drawing, flags=re.DOTALL)
     drawing = re.sub(r"<!--.*?-->\n?", "", drawing, flags=re.DOTALL)
     drawing = re.sub(r'<g id="[^"]*"', "<g", drawing).replace("xlink:href", "href")
     drawing = re.sub(r" ?font-family: [^;\"]*;?", "", drawing)
-    drawing = re.sub(r"#[0-9a-f]{6}\b", lambda found: _colour(found[0]), drawing)
+    drawing = re.sub(r"#[0-9a-f]{6}\b", lambda match: _colour(match[0]), drawing)
     drawing = re.sub(r"\n\s*", "\n", drawing).rpartition("</svg>")[0]
     box = panel.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
     left, right = (POINT * (x - part.x0) for x in (box.x0, box.x1))
@@ -94,13 +103,17 @@ def _colour(colour: str) -> str:
 
 
 def _part(figure: Figure, panel: Panel, panels: list[Panel]) -> Bbox:
-    """Part of a figure that a panel takes, inches: all of it, or the width of its column and its own height."""
+    """Return the part of a figure that belongs to a panel, inches.
+
+    It is the whole figure if there is only one panel, and otherwise the width of its column and the height of the panel
+    with its texts.
+    """
     width, height = figure.get_size_inches()
     spec = panel.get_subplotspec()
     if len(panels) == 1 or spec is None:
         return Bbox.from_extents(0, 0, width, height)
     columns = spec.get_gridspec().ncols
-    own = panel.get_tightbbox()
-    assert own is not None
-    low, high = own.y0 / figure.dpi - MARGIN, own.y1 / figure.dpi + MARGIN
+    extent = panel.get_tightbbox()
+    assert extent is not None
+    low, high = extent.y0 / figure.dpi - MARGIN, extent.y1 / figure.dpi + MARGIN
     return Bbox.from_extents(spec.colspan.start / columns * width, low, spec.colspan.stop / columns * width, high)

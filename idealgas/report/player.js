@@ -1,6 +1,6 @@
 // ── the player ──
 
-const WHOLE = 20; // seconds in which a page with a run plays it, unless another rate is chosen
+const WHOLE = 20; // seconds in which a page plays a whole run, unless another rate is chosen
 
 class Player {
   constructor(gas) {
@@ -24,7 +24,7 @@ class Player {
     this.draw();
   }
 
-  // Show the discs, and on wish the flight of one; colours that would all be one are not offered.
+  // Show the discs and, if one is chosen, its flight. A colouring in which all discs would look the same is not offered.
   showDiscs(canvas) {
     const view = new DiscView(canvas, this.gas), field = document.getElementById("chosen");
     const colours = document.getElementById("colour");
@@ -47,7 +47,7 @@ class Player {
     canvas.addEventListener("click", event => choose(field.value = String(view.discAt(event))));
   }
 
-  // Offer the rate at which everything that the page has is played in WHOLE seconds, in its place among the others.
+  // Add the rate at which the whole motion is played in WHOLE seconds to the list of rates, in order.
   offerWhole() {
     const { start, end, speed } = this.gas.head, value = (end - start) / speed / WHOLE;
     const faster = Array.from(this.rates.options).find(option => +option.value > value) ?? null;
@@ -99,7 +99,7 @@ class Player {
     let before = null;
     const frame = now => {
       if (!this.playing) return;
-      const seconds = Math.min((now - (before ?? now)) / 1000, 0.25); // a hidden page has no frames: no leap after it
+      const seconds = Math.min((now - (before ?? now)) / 1000, 0.25); // limited, as a hidden page has no frames
       this.seek(this.time + seconds * this.rate * this.gas.head.speed);
       before = now;
       this.played();
@@ -110,7 +110,7 @@ class Player {
 
   restart() { this.seek(this.gas.head.start); }
 
-  // After each frame of playing.
+  // Called after each frame while playing.
   played() {
     if (this.time >= this.gas.head.end) this.pause();
   }
@@ -122,7 +122,7 @@ class Player {
 
   key(event) {
     if (["rate", "colour", "chosen"].includes(event.target.id) || event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.target === this.button && event.key === " ") return; // it is a click already
+    if (event.target === this.button && event.key === " ") return; // the browser makes this a click
     const second = this.rate * this.gas.head.speed, small = event.shiftKey ? second : second / 25;
     const act = {
       " ": () => this.toggle(),

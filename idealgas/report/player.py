@@ -1,8 +1,8 @@
 """Data of the player in a report page: a state of the gas and the events after it, as compact arrays.
 
-Velocities have the 24 bits of a 32-bit float. The page computes the flight of each disc from event to event; where that
-would be off by more than ACCURACY, it has the position of the log, so that positions at any time are nearly as accurate
-as if each of them were a 32-bit float.
+Velocities are 32-bit floats with 24 significant bits. The page computes the flight of each disc from event to
+event; where the computed position would be off by more than ACCURACY, the data contain the position from the log.
+Therefore positions at any time are nearly as accurate as if each of them were stored as a 32-bit float.
 """
 
 import base64
@@ -27,29 +27,34 @@ from idealgas.movie.piston_track import piston_tracks
 from idealgas.scene.walls import NumberedWall, walls_inside
 
 MOST_ROWS = 600_000
-"""Largest number of event rows in a page, about 10 MB."""
+"""Largest number of event rows in a page, which take about 10 MB."""
 
 MOST_DISCS = 100_000
 SHADES = 16
 MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
-"""Limits of the number of instants at which the page has the order of discs, and of discs times instants (but for the
-fewest instants); with more discs it has none, as finding their neighbours would take longer than all the rest."""
+"""Limits for the local order of discs in a page: largest and smallest number of instants, and largest product of discs
+and instants. The order is omitted if there are more discs than this product, as finding their neighbours would take
+longer than the rest of the page."""
 
 TICKS = 2.0**32 - 1
-"""Number of steps in the time of the player; times of events are whole numbers of these steps."""
+"""Number of ticks in the time of the player; times of events are multiples of a tick."""
 
 LEAP = 2**16 - 1
-"""Number of steps to the next event from which on it is stored apart, with 32 bits instead of 16."""
+"""Number of ticks between events from which on it is stored separately, with 32 bits instead of 16."""
 
 ACCURACY = 2.0**-24
-"""Largest deviation of a position from that of the log, relative to the longer side of the box."""
+"""Largest deviation of a position from the position in the log, relative to the longer side of the box."""
 
 
 @dataclass(frozen=True)
 class Player:
     """Data of the player.
 
-    head: plain values for JSON. arrays: little-endian numbers as base64 text, by name. start, end: played time.
+    Attributes:
+        head: plain values for JSON.
+        arrays: little-endian numbers as base64 text, by name.
+        start: start of the time that can be played.
+        end: end of this time.
     """
 
     head: dict[str, Any]
@@ -59,10 +64,13 @@ class Player:
 
 
 def player(log: Log, start: float | None = None, rows: int | None = None, order: bool = True) -> Player | None:
-    """Data of the player from time `start`, by default the start of the log, for some event rows.
+    """Return the data of the player; None if the log has no events or too many discs, or if gravity changes in time.
 
-    rows: their largest number, by default MOST_ROWS. order: whether the page has the order ψ₆ of discs. None if the
-    log has no events or more than MOST_DISCS discs.
+    Args:
+        log: the log.
+        start: start of the time to play; by default the start of the log.
+        rows: largest number of event rows; by default MOST_ROWS.
+        order: whether to include the local order ψ₆ of the discs.
     """
     gas = log.discs
     if not log.has_events or len(gas) > MOST_DISCS or log.scene.properties.later_accelerations:
@@ -125,22 +133,22 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
 
 
 def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
-    """Time that a second of playing takes, in which a typical disc crosses a part of the box."""
+    """Return the simulated time per second of playing, in which a typical disc crosses a part of the box."""
     return max(box) / CROSSING / _rms_speed(velocity)
 
 
 def _rms_speed(velocity: np.ndarray) -> float:
-    """Root-mean-square speed of velocities (N, 2), 1 if nothing moves."""
+    """Return the root-mean-square speed of discs with velocities (N, 2); 1 if they are at rest."""
     return float(np.sqrt((velocity**2).sum() / max(len(velocity), 1))) or 1.0
 
 
 def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
-    """Times from and until which a wall is absent, finite ones."""
+    """Return the times at which a wall opens and closes as finite numbers."""
     return [[opens, min(closes, 2 * last + 1)] for opens, closes in wall.absences]
 
 
 def _pistons(log: Log, first: float, last: float) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Axis, acceleration, limits and name of each piston, and the known times and positions between two times."""
+    """Return axis, acceleration, limits and name of each piston, and its known times and positions, for an interval."""
     heads: list[dict[str, Any]] = []
     knots: dict[str, np.ndarray] = {}
     for k, track in enumerate(piston_tracks(log, first, last)):
@@ -153,12 +161,20 @@ def _pistons(log: Log, first: float, last: float) -> tuple[list[dict[str, Any]],
 
 
 def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
-    """Times between two times as whole numbers up to TICKS."""
+    """Return times between `first` and `last` as integers from 0 to TICKS."""
     return np.round((time - first) / (last - first) * TICKS).astype("<u4")
 
 
 def _events(log: Log, first: float, last: float, start: int, state: LogState) -> dict[str, np.ndarray]:
-    """Columns of the events between two times; state: of all discs at the first one."""
+    """Return the columns of the events in an interval.
+
+    Args:
+        log: the log.
+        first: start of the interval.
+        last: end of the interval.
+        start: number of the first event row.
+        state: state of all discs at the start.
+    """
     names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks((*names, *(("kind",) if log.escapes else ())), start, log.row_at(last, "right")))
     empty = {"velocity": np.empty((0, 2)), "position": np.empty((0, 2))}
@@ -187,60 +203,59 @@ def _events(log: Log, first: float, last: float, start: int, state: LogState) ->
 def _unreached(
     log: Log, state: LogState, time: np.ndarray, disc: np.ndarray, velocity: np.ndarray, position: np.ndarray
 ) -> np.ndarray:
-    """Return the events, in order, at which the page needs the position of the disc.
+    """Return the events, in order, at which the page requires the position of the disc.
 
-    The deviations of all flights of a disc are added up, and the sums divided into cells as wide as the accuracy. The
-    page has a position where a sum comes into another cell, so that the deviation since then is less than the width.
+    The deviations of all flights of a disc are summed, and the range of the sum is divided into cells as wide as the
+    accuracy. Whenever the sum enters another cell, the position is stored, so that the deviation since the last stored
+    position is less than the width of a cell.
 
     Args:
         log: the log.
-        state: of all discs at the start of the player.
-        time: (n,), time of each event since then, as the page computes it.
-        disc: (n,), its disc.
-        velocity: (n, 2), of the disc after it.
-        position: (n, 2), of the disc.
+        state: state of all discs at the start of the player.
+        time: (n,), time of each event since the start, as the page computes it.
+        disc: (n,), disc of each event.
+        velocity: (n, 2), velocity of the disc after the event.
+        position: (n, 2), position of the disc.
     """
-    every = np.arange(len(log.discs))
-    order = np.argsort(np.concatenate((every, disc)), kind="stable")  # of starts and events
+    ids = np.arange(len(log.discs))
+    order = np.argsort(np.concatenate((ids, disc)), kind="stable")  # the start of each disc, followed by its events
     place = np.concatenate((state.position, position))[order]
     speed = np.concatenate((state.velocity, velocity))[order].astype("<f4").astype(float)
-    delay = np.diff(np.concatenate((np.zeros(len(every)), time))[order])[:, None]
+    delay = np.diff(np.concatenate((np.zeros(len(ids)), time))[order])[:, None]
     off = np.diff(place, axis=0) - (speed[:-1] + np.array(log.gravity) * delay / 2) * delay
     off -= np.where(log.wrapped_axes, log.box, 0.0) * np.round(off / log.box)
-    off[order[1:] < len(every)] = 0.0  # the next disc starts
+    off[order[1:] < len(ids)] = 0.0  # between the last event of a disc and the start of the next disc
     cell = np.floor(off.cumsum(axis=0) / (ACCURACY * max(log.box)))
-    return np.sort(order[1:][np.diff(cell, axis=0, prepend=0.0).any(axis=1)] - len(every))
+    return np.sort(order[1:][np.diff(cell, axis=0, prepend=0.0).any(axis=1)] - len(ids))
 
 
 def _order_shades() -> np.ndarray:
-    """Colours of order: none, then that of each angle at half and at full size."""
+    """Return the colours of order: no order, then each angle of ψ₆ at half and at full magnitude."""
     turn = np.exp(2j * np.pi * np.arange(SHADES) / SHADES)
     return order_colours(np.concatenate(([0], 0.5 * turn, turn)))
 
 
 def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
-    """Numbers (F, N) of the shades of all discs of a dense gas at F instants, evenly spaced.
+    """Return the shades (F, N) of all discs at F evenly spaced instants, as numbers.
 
-    Nothing in a dilute one, and where neighbours are not told.
+    The array is omitted for a dilute gas, and if the neighbours of discs cannot be determined or are too many.
     """
     dilute = log.discs.packing_fraction < DENSE
     if dilute or not log.scene.properties.fixed_walls or log.escapes or len(log.discs) > MOST_NEIGHBOURHOODS:
         return {}
     number = min(max(MOST_NEIGHBOURHOODS // len(log.discs), FEWEST_INSTANTS), MOST_INSTANTS)
     try:
-        found = [
-            bond_order(s.position, log.box, log.periodic).value for s in log.frames(np.linspace(first, last, number))
-        ]
-    except UserError:  # discs at one place
+        times = np.linspace(first, last, number)
+        order = np.array([bond_order(s.position, log.box, log.periodic).value for s in log.frames(times)])
+    except UserError:  # several discs are at the same position
         return {}
-    order = np.array(found)
     hue = np.round(np.angle(order) / (2 * np.pi) * SHADES).astype(int) % SHADES
     level = np.digitize(np.abs(order), (1 / 3, 2 / 3))
     return {"order": np.where(level == 0, 0, 1 + SHADES * (level - 1) + hue).astype(np.uint8)}
 
 
 def _packed(array: np.ndarray) -> str:
-    """Array as base64 text, floats with 32 bits."""
+    """Return an array as base64 text, with floats of 32 bits."""
     narrow = array.astype("<f4") if array.dtype.kind == "f" else array
     return base64.b64encode(np.ascontiguousarray(narrow).tobytes()).decode()
 

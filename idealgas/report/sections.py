@@ -1,4 +1,4 @@
-"""Sections of a report: tables and picture of each analysis, or the reason why it does not apply to the log."""
+"""Sections of a report: tables and figure of each analysis, or the reason why it does not apply to the log."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,9 +15,14 @@ from idealgas.log import DamageError, Log
 class Section:
     """A section of the report page.
 
-    analysis: name of the analysis. title: heading. picture: figure of the analysis. caption: text below the picture,
-    also read aloud to blind readers. tables: tables of the analysis. words: headline, what it found. left_out: reason
-    why the analysis does not apply; None if it does.
+    Attributes:
+        analysis: name of the analysis.
+        title: heading of the section.
+        picture: figure of the analysis.
+        caption: text below the figure, which screen readers read aloud.
+        tables: tables of the analysis.
+        words: headline with the main result.
+        left_out: reason why the analysis does not apply; None if it does.
     """
 
     analysis: str
@@ -30,8 +35,8 @@ class Section:
 
 
 def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, total: None) -> list[Section]:
-    """Make the sections of all analyses in order; on_step(done, total) is called after each section."""
-    found = []
+    """Return the sections of all analyses in order; on_step(done, total) is called after each section."""
+    made = []
     parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
     for k, (analysis, section) in enumerate(parts):
         try:
@@ -40,10 +45,10 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
             figure, words = analysis.figure(result), analysis.summary(result)
-            found.append(Section(analysis.key, section.title, figure, section.caption, tables, words))
+            made.append(Section(analysis.key, section.title, figure, section.caption, tables, words))
         except DamageError:
             raise
         except UserError as error:
-            found.append(Section(analysis.key, section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
+            made.append(Section(analysis.key, section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
         on_step(k + 1, len(parts))
-    return found
+    return made

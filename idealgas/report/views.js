@@ -8,7 +8,7 @@ function themed() {
   return { dark, ink: colour("--ink"), panel: colour("--panel"), soft: printing ? "#5f5f5f" : colour("--soft") };
 }
 
-// A canvas as wide as the page and `ratio` as high, within limits; inset: what is left free on both sides.
+// Prepare a canvas that is as wide as the page, with height/width = `ratio` within limits. inset: free width on each side.
 function prepare(canvas, ratio, lowest, tallest) {
   const width = canvas.clientWidth || 600;
   const scale = window.devicePixelRatio || 1;
@@ -25,7 +25,7 @@ function prepare(canvas, ratio, lowest, tallest) {
   return { pen, width, height, inset };
 }
 
-const SMALLEST = 1.25; // radius in pixels that any disc is drawn with
+const SMALLEST = 1.25; // smallest radius with which a disc is drawn, pixels
 
 class DiscView {
   constructor(canvas, gas) {
@@ -33,7 +33,7 @@ class DiscView {
     this.gas = gas;
     this.shade = new Uint8Array(gas.number);
     this.colouring = "speed"; // or "species", "order"
-    this.chosen = null; // number of the disc whose flight is shown
+    this.chosen = null; // id of the disc whose flight is shown
   }
 
   show(gas) { this.gas = gas; }
@@ -45,7 +45,7 @@ class DiscView {
       (box.height - event.clientY + box.top) / this.scale);
   }
 
-  // Colours, and which of them each disc has.
+  // The list of colours; `shade` is set to the index of the colour of each disc.
   shades(theme) {
     const { gas, shade } = this, { head } = gas;
     if (this.colouring === "order") shade.set(gas.orders());
@@ -114,7 +114,7 @@ class DiscView {
     if (head.gravity.some(g => g !== 0)) this.arrow(pen, theme, head.gravity, width - inset - 28, 28);
   }
 
-  // A word beside a place, inside the picture, legible on discs.
+  // Write a word beside a point, inside the picture and legible on top of discs.
   label(pen, theme, text, x, y) {
     pen.font = "12px system-ui, sans-serif";
     const wide = pen.measureText(text).width, right = this.canvas.clientWidth - this.inset;
@@ -141,7 +141,7 @@ class DiscView {
     pen.lineWidth = 1;
   }
 
-  // The flight of the chosen disc since its last event, across periodic sides as in an unfolded box.
+  // Draw the flight of the chosen disc since its last event, unwrapped across periodic sides.
   drawFlight(pen, theme, inset, height, scale) {
     const { gas } = this, i = this.chosen, { places } = gas.flight(i, 32), [x, y] = places[32];
     [pen.lineWidth, pen.strokeStyle] = [1.5, theme.ink];
@@ -206,8 +206,8 @@ class SpeedView {
     const { gas } = this;
     let energy = 0, number = 0;
     for (let i = 0; i < gas.number; i++) {
-      const own = gas.mass[i] * gas.speed(i) ** 2 / 2;
-      if (own >= 0) [energy, number] = [energy + own, number + 1];
+      const kinetic = gas.mass[i] * gas.speed(i) ** 2 / 2;
+      if (kinetic >= 0) [energy, number] = [energy + kinetic, number + 1]; // NaN for a disc that has left
     }
     return energy / (number || 1);
   }
