@@ -1,1 +1,1 @@
-"""CPU time and errors of the methods, by time step and by precision."""
+"""Compare the CPU time and the errors of the methods, for several time steps and precisions."""

@@ -1,4 +1,4 @@
-"""Cases whose accuracy is compared: methods, time steps and precisions, and how to run a gas in one of them."""
+"""The cases whose accuracy is compared, which are methods, time steps and precisions, and how to run a gas in each."""
 
 import copy
 import time
@@ -17,17 +17,20 @@ from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
 
-FIRST_STEP = 0.5  # diameters that a disc of root-mean-square speed moves in the longest step
-STEPS = 8  # number of time steps, each half as long as the one before
+FIRST_STEP = 0.5  # distance that a disc of root-mean-square speed moves in the longest step, diameters
+STEPS = 8  # number of time steps, each half as long as the previous one
 PRECISIONS = ("float32", "float64", "double-double")
-EQUILIBRATION = 10.0  # collisions per disc after which a gas counts as equilibrated
+EQUILIBRATION = 10.0  # collisions per disc after which a gas is considered equilibrated
 
 
 @dataclass(frozen=True)
 class Case:
-    """One case of the methods compared: a way to run a scene.
+    """A case of the comparison, that is a way to run a scene.
 
-    method: name of the method. dt: time step of the time-driven method, time. precision: arithmetic of brute force.
+    Attributes:
+        method: name of the method.
+        dt: time step of the time-driven method, time.
+        precision: arithmetic of brute force.
     """
 
     method: str
@@ -36,17 +39,17 @@ class Case:
 
     @property
     def name(self) -> str:
-        """Name of the case in tables and pictures."""
+        """Name of the case in tables and figures."""
         return f"dt = {self.dt:.3g}" if self.dt is not None else self.precision or "event-driven"
 
     def make(self) -> Method:
-        """Make a new method object of this case."""
+        """Return a new method object of this case."""
         if self.dt is not None:
             return TimeDriven(self.dt)
         return PreciseBruteForce(self.precision) if self.precision else EventDriven()
 
     def scene(self, scene: Scene, until: float) -> Scene:
-        """Scene that is run in this case until a time, without other stop rules.
+        """Return the scene that is run in this case until a given time, without other stop conditions.
 
         Raises:
             SceneError: if the scene cannot be run with this method.
@@ -62,18 +65,23 @@ class Case:
 
 @dataclass(frozen=True)
 class Start:
-    """Equilibrated gas with its effects, from which all cases start."""
+    """An equilibrated gas with its effects, from which all cases start."""
 
     gas: Gas
     effects: Effects
 
     def simulation(self, method: Method) -> Simulation:
-        """Simulation from this start with a method and a copy of the effects."""
+        """Return a simulation from this start with a method and a copy of the effects."""
         return Simulation(self.gas, method, copy.deepcopy(self.effects))
 
 
 def compared_cases(gas: Gas, precise: bool) -> list[Case]:
-    """Cases for a gas: event-driven, time steps from long to short, with `precise` brute force in all precisions."""
+    """Return the cases for a gas: event-driven, time steps from long to short, and brute force in all precisions.
+
+    Args:
+        gas: the gas.
+        precise: whether to include brute force.
+    """
     speed = float(np.sqrt((gas.velocity**2).sum(axis=1).mean()))
     first = FIRST_STEP * 2 * float(gas.radius.min()) / speed
     steps = [Case("time_driven", dt=float(f"{first / 2**k:.3g}")) for k in range(STEPS)]
@@ -85,7 +93,7 @@ def compared_cases(gas: Gas, precise: bool) -> list[Case]:
 
 
 def equilibrated(scene: Scene) -> Start:
-    """Gas of a scene after EQUILIBRATION collisions per disc, event-driven."""
+    """Return the gas of a scene after EQUILIBRATION collisions per disc, simulated event-driven."""
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
     stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
@@ -95,7 +103,7 @@ def equilibrated(scene: Scene) -> Start:
 
 
 def cpu_seconds(simulation: Simulation, until: float) -> float:
-    """CPU time in seconds that a simulation needs until a time; only the thread of the kernel counts."""
+    """Run a simulation until a time, and return the CPU time of this thread, s."""
     started = time.thread_time()
     simulation.run(pause=until)
     return time.thread_time() - started

@@ -1,4 +1,4 @@
-"""Figures of accuracy: its cost in CPU time, all errors in detail, and the lifetime of an orbit."""
+"""Figures of accuracy: errors against CPU time, all errors in detail, and the lifetime of an orbit."""
 
 from typing import Any
 
@@ -23,13 +23,13 @@ AVERAGES = {
 
 MARKERS = "osD^vP*X"
 PATHS = (0.5, 1.0, 2.0)  # collisions per disc at which errors of trajectories are shown against CPU time
-LEAST = 1e-17  # error in diameters below which nothing is drawn
-ROUNDING = 1e-9  # size of an error of averages below which it is due to rounding
-SHOWN_STEPS = 4  # time steps, evenly chosen, whose length is written at their points
+LEAST = 1e-17  # smallest error that is drawn, diameters
+ROUNDING = 1e-9  # magnitude below which an error of an average is due to rounding
+SHOWN_STEPS = 4  # number of evenly spaced points that are labelled with their time step
 
 
 def accuracy_figure(found: Accuracy) -> Figure:
-    """Figure of the error of an average against CPU time, and of the trajectories in each precision."""
+    """Return a figure of the error of an average against CPU time, and of the trajectories in each precision."""
     figure, axes = panels(1 + bool(len(found.collisions)))
     _cost(axes[0], found)
     if len(axes) > 1:
@@ -38,7 +38,7 @@ def accuracy_figure(found: Accuracy) -> Figure:
 
 
 def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.ndarray:
-    """Time step, CPU time, size and standard error (n, 4) of one error, for the rows in which it exceeds `least`."""
+    """Return (n, 4) time step, CPU time, magnitude and standard error of an error, where it exceeds `least`."""
     points = [
         (row["dt"] or 0.0, row["cpu_s_per_time"], abs(row[name]), row.get(f"{name}_error") or 0.0)
         for row in rows
@@ -47,22 +47,22 @@ def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.nda
     return np.array([point for point in points if max(point[2:]) > least]).reshape(-1, 4)
 
 
-def _cost(ax: Panel, found: Accuracy) -> None:
-    """Draw the error of the first average that was measured against CPU time: one curve of time steps, and one point.
+def _cost(ax: Panel, study: Accuracy) -> None:
+    """Draw the error of the first average that was measured against CPU time: a curve of time steps, and a point.
 
-    Errors below the statistical error cannot be seen and are drawn at it.
+    An error below its statistical error cannot be resolved and is drawn at the statistical error.
     """
-    own = flat_row(found.event_driven, found)
-    rows = [flat_row(row, found) for row in found.steps]
+    exact = flat_row(study.event_driven, study)
+    rows = [flat_row(row, study) for row in study.steps]
     label, name = next(entry for entry in AVERAGES.items() if len(_points(rows, entry[1], ROUNDING)))
     steps, cost, error, spread = _points(rows, name, ROUNDING).T
-    cost /= own["cpu_s_per_time"]
+    cost /= exact["cpu_s_per_time"]
     error = np.maximum(error, spread)
     ax.errorbar(cost, error, np.minimum(spread, 0.9 * error), fmt="o-", ms=5, color=COLOURS[1])
     for k in np.unique(np.linspace(0, len(steps) - 1, SHOWN_STEPS).round().astype(int)):
         text = f"{'time step ' if k == 0 else ''}{steps[k]:.2g}"
         ax.annotate(text, (cost[k], error[k]), (7, 5), textcoords="offset points", color=COLOURS[1])
-    best = _points([own], name, ROUNDING)[:, 2:].max(initial=0.0) or 0.5 * float(error.min())
+    best = _points([exact], name, ROUNDING)[:, 2:].max(initial=0.0) or 0.5 * float(error.min())
     ax.plot(1, best, "*", ms=18, color=COLOURS[0])
     ax.annotate("event-driven", (1, best), (12, -4), textcoords="offset points", color=COLOURS[0], weight="bold")
     ax.set(xscale="log", yscale="log", xlim=(0.75, 2 * cost.max()), ylim=(0.5 * min(*error, best), 2 * error.max()))
@@ -71,24 +71,24 @@ def _cost(ax: Panel, found: Accuracy) -> None:
     ax.set(xlabel="CPU time relative to the event-driven run (no unit)", ylabel=f"error of the {label}")
 
 
-def _digits(ax: Panel, found: Accuracy) -> None:
-    """Draw the distance from the true paths against collisions: of both precisions, and of the shortest time step."""
-    finest = found.steps[-1]
+def _digits(ax: Panel, study: Accuracy) -> None:
+    """Draw the distance from the true paths against collisions, for two precisions and the shortest time step."""
+    finest = study.steps[-1]
     rows = {
-        "7 digits": (found.precisions[0], COLOURS[2]),
-        "16 digits: event-driven": (found.event_driven, COLOURS[0]),
+        "7 digits": (study.precisions[0], COLOURS[2]),
+        "16 digits: event-driven": (study.event_driven, COLOURS[0]),
         f"time step {finest.case.dt:.2g}": (finest, COLOURS[1]),
     }
     for name, (row, colour) in rows.items():
         assert row.trajectory is not None
-        ax.plot(found.collisions, np.maximum(row.trajectory, LEAST), "o-", ms=4, color=colour, label=name)
+        ax.plot(study.collisions, np.maximum(row.trajectory, LEAST), "o-", ms=4, color=colour, label=name)
     ax.set(yscale="log", ylim=(LEAST, 100))
     ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the true paths (diameters)")
     ax.legend()
 
 
 def details_figure(found: Accuracy) -> Figure:
-    """Figure of all errors of averages and of the motion against CPU time, and of all trajectories."""
+    """Return a figure of all errors of averages and of the motion against CPU time, and of all trajectories."""
     motion = bool(len(found.collisions))
     figure, axes = panels(3 if motion else 1)
     _errors_against_time(axes[0], found, AVERAGES, ROUNDING)
@@ -105,21 +105,21 @@ def details_figure(found: Accuracy) -> Figure:
     return add_title(figure, f"{found.title}: every error")
 
 
-def _errors_against_time(ax: Panel, found: Accuracy, errors: dict[str, str], least: float = 0.0) -> None:
-    """Draw one curve over the time steps for each error; the event-driven run and the precisions are points."""
-    missing = np.full(len(found.collisions), None)
+def _errors_against_time(ax: Panel, study: Accuracy, errors: dict[str, str], least: float = 0.0) -> None:
+    """Draw a curve over the time steps for each error; the event-driven run and the precisions are points."""
+    missing = np.full(len(study.collisions), None)
     rows: list[dict[str, Any]] = []
-    for case in found.rows:
+    for case in study.rows:
         path = missing if case.trajectory is None else case.trajectory
-        rows.append(flat_row(case, found) | {f"trajectory {k}": error for k, error in enumerate(path)})
+        rows.append(flat_row(case, study) | {f"trajectory {k}": error for k, error in enumerate(path)})
     steps = [row for row in rows if row["dt"] is not None]
     precisions = [row for row in rows if row["precision"] is not None]
     for (label, name), colour, marker in zip(errors.items(), COLOURS, MARKERS, strict=False):
         _, time, value, spread = _points(steps, name, least).T
         if len(time):
             ax.errorbar(time, value, np.minimum(spread, 0.9 * value), fmt=f"-{marker}", ms=4, color=colour, label=label)
-        for others, fill in ((rows[:1], colour), (precisions, "none")):
-            _, time, value, _ = _points(others, name, least).T
+        for marked, fill in ((rows[:1], colour), (precisions, "none")):
+            _, time, value, _ = _points(marked, name, least).T
             ax.plot(time, value, marker, ms=9, mfc=fill, mec=colour)
     ax.axvline(rows[0]["cpu_s_per_time"], color=GREY, linestyle="--", linewidth=0.8, label="event-driven (filled)")
     for k, row in enumerate(precisions):
@@ -133,9 +133,9 @@ def _errors_against_time(ax: Panel, found: Accuracy, errors: dict[str, str], lea
     ax.legend()
 
 
-def _trajectories(ax: Panel, found: Accuracy) -> None:
+def _trajectories(ax: Panel, study: Accuracy) -> None:
     """Draw the rms distance from the double-double motion against collisions per disc."""
-    rows = [row for row in found.rows if row.case.precision != "float64"]
+    rows = [row for row in study.rows if row.case.precision != "float64"]
     for k, row in enumerate(rows):
         if row.trajectory is None:
             continue
@@ -143,14 +143,14 @@ def _trajectories(ax: Panel, found: Accuracy) -> None:
         colour = COLOURS[1] if steps else COLOURS[0] if row.case.precision is None else COLOURS[2]
         shade = 0.3 + 0.7 * k / len(rows) if steps else 1.0
         path = np.maximum(row.trajectory, LEAST)
-        ax.plot(found.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
+        ax.plot(study.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
     ax.set_yscale("log")
     ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the truth (diameters)")
     ax.legend()
 
 
 def orbit_figure(found: OrbitStudy) -> Figure:
-    """Figure of the lifetime of the orbit against digits: all boxes, the medians, and a line through them."""
+    """Return a figure of the lifetime of the orbit against digits: all boxes, the medians, and a line through them."""
     figure, (ax,) = panels(1)
     for k, survival in enumerate(found.survivals):
         x = survival.digits + np.linspace(-0.5, 0.5, len(survival.times))

@@ -1,4 +1,4 @@
-"""Errors of the motion in a case: missed collisions, trajectories, and return after reversal of the velocities."""
+"""Measure errors of the motion: missed collisions, trajectories, and the return after reversal of the velocities."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,20 +16,20 @@ from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 
 STARTS = 200  # largest number of starts from which collisions are compared
-ENOUGH = 5_000  # number of compared collisions that is enough
+ENOUGH = 5_000  # number of compared collisions that is sufficient
 BETWEEN = 2.0  # collisions per disc between two starts
 
 
 @dataclass(frozen=True)
 class Missed:
-    """Numbers of first collisions after a common start that were compared, and of those that were missed."""
+    """Number of first collisions after common starts that were compared, and number of these that were missed."""
 
     compared: int
     missed: int
 
     @property
     def share(self) -> Estimate:
-        """Fraction of missed collisions; if none was missed, with the error of a single one."""
+        """Fraction of missed collisions; if none was missed, the error is that of a single one."""
         number = self.compared or math.nan
         return Estimate(self.missed / number, math.sqrt(max(self.missed, 1)) / number, self.compared)
 
@@ -37,9 +37,14 @@ class Missed:
 def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
     """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
 
-    Only collisions of two discs without an earlier collision with other discs are compared. A collision is missed if,
-    in the case, neither disc has collided by the end of the next time step. rate: collisions per disc and time.
-    progress: called with the fraction done.
+    Only collisions of two discs that have not yet collided with other discs are compared. A collision is missed if, in
+    the case, neither disc has collided by the end of the next time step.
+
+    Args:
+        start: the equilibrated gas.
+        cases: the cases.
+        rate: number of collisions per disc and time.
+        progress: function that is called with the fraction done.
     """
     reference = start.simulation(EventDriven())
     compared, missed = np.zeros((2, len(cases)), int)
@@ -47,10 +52,10 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
     while number < STARTS and compared.max(initial=0) < ENOUGH:
         gas, effects = reference.state()
         here = Start(gas, effects)
-        found = first_collisions(here, Case("event_driven"), 1 / rate)
+        truth = first_collisions(here, Case("event_driven"), 1 / rate)
         for k, case in enumerate(cases):
-            own = first_collisions(here, case, 1 / rate + (case.dt or 0.0))
-            pairs, through = flown_through(found, own, case.dt or 0.0)
+            collisions = first_collisions(here, case, 1 / rate + (case.dt or 0.0))
+            pairs, through = flown_through(truth, collisions, case.dt or 0.0)
             compared[k] += pairs
             missed[k] += through
         number += 1
@@ -60,7 +65,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
 
 
 def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (N,) of the first collision of each disc, infinite if there is none, and partners (N,), or -1."""
+    """Return the times (N,) and partners (N,) of the first collision of each disc; infinity and -1 if there is none."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())
@@ -78,9 +83,12 @@ def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndar
 def flown_through(
     truth: tuple[np.ndarray, np.ndarray], found: tuple[np.ndarray, np.ndarray], dt: float
 ) -> tuple[int, int]:
-    """Numbers of compared and of missed collisions of pairs whose first collision is with each other.
+    """Return the number of compared and of missed collisions of pairs whose first collision is with each other.
 
-    truth, found: times and partners of first collisions in the event-driven run and in the case. dt: time step.
+    Args:
+        truth: times and partners of the first collisions in the event-driven run.
+        found: the same in the case.
+        dt: time step of the case.
     """
     time, partner = truth
     i = np.flatnonzero(partner >= 0)
@@ -92,21 +100,24 @@ def flown_through(
 
 
 def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
-    """Positions (T, N, 2) of the discs at T times, length."""
-    found = []
+    """Return the positions (T, N, 2) of the discs at T times, length."""
+    frames = []
     for time in times:
         simulation.run(pause=time)
-        found.append(simulation.state()[0].position)
-    return np.array(found)
+        frames.append(simulation.state()[0].position)
+    return np.array(frames)
 
 
 def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
-    """Root-mean-square distance over the discs between positions a and b (..., N, 2), in mean diameters."""
+    """Return the root-mean-square distance between positions a and b (..., N, 2) of the discs, in mean diameters."""
     return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
 def error_on_return(start: Start, case: Case, duration: float) -> float:
-    """Run, reverse all velocities and run as long again: rms distance from the start, in mean diameters."""
+    """Return the rms distance from the start after a run, reversal of all velocities and an equally long run.
+
+    It is in mean diameters.
+    """
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())
@@ -118,7 +129,7 @@ def error_on_return(start: Start, case: Case, duration: float) -> float:
 
 
 def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:
-    """Rms distance from the start after reversal, in mean diameters, with all digits of a precision."""
+    """Return the same as `error_on_return`, computed with all digits of a precision."""
     columns = origin = make_columns(start.gas, precision)
     for _ in range(2):
         method = PreciseBruteForce(precision, columns)
@@ -130,6 +141,6 @@ def _error_on_precise_return(start: Start, precision: str, duration: float) -> f
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Difference of two columns of nearly equal numbers, as float64."""
+    """Return the difference of two columns of nearly equal numbers, as float64."""
     rest = a.astype(float) - b
     return rest if rest.ndim == 1 else rest.sum(axis=1)

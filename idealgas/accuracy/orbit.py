@@ -1,9 +1,9 @@
-"""Lifetime of an unstable periodic orbit of three discs, by the number of digits of the arithmetic.
+"""The lifetime of an unstable periodic orbit of three discs, for several precisions of the arithmetic.
 
 Two discs that collide with the line of centres at 45° to their motion are both deflected by 90°. The middle disc
-collides in turn with the disc on its right and with the disc on its left: after the collision one moves down and one
-up, the sides reflect them, and they collide again. Box sides, radius and speed are free; all other lengths follow from
-the condition that the discs arrive at the same time.
+collides alternately with the disc on its right and the disc on its left. After each collision one disc moves down and
+the other up, the sides reflect them, and they collide again. The sides of the box, the radius and the speed are free;
+all other lengths follow from the condition that the discs arrive at the same time.
 """
 
 import math
@@ -20,23 +20,27 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.state import Gas
 
 DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-double": 106 * math.log10(2)}
-"""Decimal digits of a number in each precision."""
+"""Number of decimal digits in each precision."""
 
 PLACEMENTS = 25
-SPREAD = 0.25  # relative variation of box sides and radii
-LEAST_ROOM = 0.1  # radii: shortest flights between collisions and before a wall
-MOST_PERIODS = 200  # length of a run; an orbit that is not broken by then never breaks
+SPREAD = 0.25  # relative variation of the sides of the box and of the radius
+LEAST_ROOM = 0.1  # smallest length of a flight between collisions or before a wall, radii
+MOST_PERIODS = 200  # length of a run; an orbit that has not broken by then never breaks
 AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
 PARTNERS = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
-"""Partners (discs or sides) that each disc meets in one period, in order."""
+"""Partners (discs or sides) that each disc meets during a period, in order."""
 
 
 class Orbit(NamedTuple):
-    """Start of an orbit at speed 1, with 50 digits; the middle disc moves right, the others left.
+    """Start of an orbit at speed 1, with 50 digits; the middle disc moves to the right, the other two to the left.
 
-    x, y: coordinates of the discs, length. period: time. room: shortest flight, length.
+    Attributes:
+        x: x coordinates of the discs, length.
+        y: y coordinates of the discs, length.
+        period: period of the orbit, time.
+        room: length of the shortest flight, length.
     """
 
     x: tuple[Decimal, ...]
@@ -46,10 +50,10 @@ class Orbit(NamedTuple):
 
 
 def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
-    """Orbit in a box of width and height `box` at speed 1; it exists if the room for its flights is positive.
+    """Return the orbit at speed 1 in a box of width and height `box`; it exists if its `room` is positive.
 
-    In the code, d is the distance along x and along y of two discs in contact, drop the path of a disc below or above,
-    and flight the path of the middle disc from one partner to the other.
+    In the code, d is the distance of two discs in contact along x and along y, `drop` is the path of a disc to a side
+    and back, and `flight` is the path of the middle disc from one partner to the other.
     """
     with localcontext() as context:
         context.prec = 50
@@ -64,7 +68,7 @@ def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
 
 
 def is_on_orbit(gas: Gas) -> bool:
-    """Whether positions and velocities of a gas are, within rounding, those of the orbit in its box."""
+    """Return whether the positions and velocities of a gas are, within rounding, the start of the orbit in its box."""
     if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
         return False
     orbit = three_disc_orbit(gas.box, float(gas.radius[0]))
@@ -76,11 +80,15 @@ def is_on_orbit(gas: Gas) -> bool:
 
 @dataclass(frozen=True)
 class Survival:
-    """Lifetime of the orbit in one precision: time at speed 1 until the first collision that the exact motion lacks.
+    """Lifetime of the orbit in a precision: time at speed 1 until the first collision that the exact motion lacks.
 
-    precision: name of the arithmetic. digits: its decimal digits. scene: lifetime in the box of the scene; None if the
-    orbit never broke. times: lifetimes in other boxes, for orbits that broke. unbroken: number of orbits in other boxes
-    that did not break in MOST_PERIODS periods. median: of all lifetimes, with MOST_PERIODS periods for unbroken orbits.
+    Attributes:
+        precision: name of the arithmetic.
+        digits: number of decimal digits.
+        scene: lifetime in the box of the scene; None if the orbit never broke.
+        times: lifetimes in the other boxes, for orbits that broke.
+        unbroken: number of orbits in the other boxes that did not break within MOST_PERIODS periods.
+        median: median of the lifetimes in the other boxes, counting unbroken orbits with MOST_PERIODS periods.
     """
 
     precision: str
@@ -95,8 +103,11 @@ class Survival:
 class OrbitStudy:
     """Lifetime of the orbit in every precision.
 
-    period: of the orbit in the scene, time at speed 1. placements: number of other boxes and radii. time_per_digit:
-    slope of a line through the medians, time per decimal digit.
+    Attributes:
+        period: period of the orbit in the scene, time at speed 1.
+        placements: number of other boxes and radii.
+        survivals: lifetimes in each precision.
+        time_per_digit: slope of a line through the medians, time per decimal digit.
     """
 
     period: float
@@ -105,28 +116,27 @@ class OrbitStudy:
     time_per_digit: float
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, with the results in sentences, ready for JSON."""
+        """Return plain values by name, with the results in sentences, ready for JSON."""
         return asdict(self) | {"sentences": self.sentences()}
 
     def sentences(self) -> list[str]:
-        """Results in sentences."""
-        found = self.survivals
-        medians = ", ".join(f"{s.median:.3g} in {s.precision} ({s.digits:.1f} digits)" for s in found)
-        unbroken = sum(s.unbroken for s in found)
-        spread = [max(s.times, default=math.inf) / s.median for s in found]
+        """Return the results in sentences."""
+        medians = ", ".join(f"{s.median:.3g} in {s.precision} ({s.digits:.1f} digits)" for s in self.survivals)
+        unbroken, trials = sum(s.unbroken for s in self.survivals), len(self.survivals) * self.placements
+        spread = [max(s.times, default=math.inf) / s.median for s in self.survivals]
         return [
             f"In exact arithmetic the orbit would last indefinitely. Median over {self.placements} boxes and radii, in "
             f"time units at speed 1: {medians}.",
             f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation "
             "grows tenfold. More digits, not a better method, make the orbit last longer.",
-            f"{unbroken} of {len(found) * self.placements} trials never broke; the luckiest of those that did lasted "
+            f"{unbroken} of {trials} trials never broke; the luckiest of those that did lasted "
             f"{max(spread):.2g} times the median. Where roundings happen to cancel, the rounded motion can even be "
             "exactly periodic: a single placement proves nothing, hence the median.",
         ]
 
 
 def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
-    """Start of an orbit with all digits of a precision; gas: the same discs in float64."""
+    """Return the start of an orbit with all digits of a precision. gas: the same discs in float64."""
 
     def column(values: tuple[Decimal, ...]) -> np.ndarray:
         high = np.array([float(value) for value in values])
@@ -142,7 +152,7 @@ def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
 
 
 def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
-    """Gas of the discs of an orbit, rounded to float64."""
+    """Return a gas of the discs of an orbit, rounded to float64."""
     return Gas(
         box=box,
         position=np.array([orbit.x, orbit.y], float).T.copy(),
@@ -155,7 +165,7 @@ def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
 
 
 def survival(box: tuple[float, float], radius: float, precision: str) -> float:
-    """Time until the first collision that the exact motion lacks; infinite if there is none in MOST_PERIODS periods."""
+    """Return the time of the first collision that the exact motion lacks; infinity if none occurs in MOST_PERIODS."""
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
@@ -164,24 +174,24 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
     rows = batch.rows(0, simulation.advance(Stop(time=MOST_PERIODS * float(orbit.period)), batch))
     first = math.inf
     for disc, partners in enumerate(PARTNERS):
-        own = rows.disc == disc
-        partner = rows.partner[own]
-        strange = np.flatnonzero(partner != np.resize(partners, len(partner)))
-        if len(strange):
-            first = min(first, float(rows.time[own][strange[0]]))
+        chosen = rows.disc == disc
+        partner = rows.partner[chosen]
+        wrong = np.flatnonzero(partner != np.resize(partners, len(partner)))
+        if len(wrong):
+            first = min(first, float(rows.time[chosen][wrong[0]]))
     return first
 
 
 def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Random boxes and radii near those of a gas for which the orbit exists."""
+    """Return random boxes and radii, close to those of a gas, for which the orbit exists."""
     random = np.random.default_rng(seed)
-    found: list[tuple[tuple[float, float], float]] = []
-    while len(found) < number:
+    boxes: list[tuple[tuple[float, float], float]] = []
+    while len(boxes) < number:
         sizes = np.array([*gas.box, gas.radius[0]]) * random.uniform(1 - SPREAD, 1 + SPREAD, 3)
         width, height, radius = sizes.tolist()
         if three_disc_orbit((width, height), radius).room > LEAST_ROOM * radius:
-            found.append(((width, height), radius))
-    return found
+            boxes.append(((width, height), radius))
+    return boxes
 
 
 def study_orbit(
@@ -189,19 +199,22 @@ def study_orbit(
 ) -> OrbitStudy:
     """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
 
-    gas: start on the orbit (`is_on_orbit`). seed: of the random boxes. progress: called with the name of the current
-    work and the fraction of it that is done.
+    Args:
+        gas: gas at the start of the orbit (`is_on_orbit`).
+        number: number of other boxes.
+        seed: seed of the random boxes.
+        progress: function that is called with the name of the current work and the fraction of it that is done.
     """
     boxes = placements(gas, number, seed)
     period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)
-    found = []
+    survivals = []
     for k, (precision, digits) in enumerate(DIGITS.items()):
-        own, *times = (survival(box, radius, precision) for box, radius in [(gas.box, float(gas.radius[0])), *boxes])
+        first, *times = (survival(box, radius, precision) for box, radius in [(gas.box, float(gas.radius[0])), *boxes])
         broken = tuple(t for t in times if t < math.inf)
         unbroken = number - len(broken)
-        here = own if own < math.inf else None
+        here = first if first < math.inf else None
         median = float(np.median(np.minimum(times, MOST_PERIODS * period)))
-        found.append(Survival(precision, digits, here, broken, unbroken, median))
+        survivals.append(Survival(precision, digits, here, broken, unbroken, median))
         progress(f"orbit in {precision}", (k + 1) / len(DIGITS))
-    slope = float(np.polyfit([s.digits for s in found], [s.median for s in found], 1)[0])
-    return OrbitStudy(period, number, tuple(found), slope)
+    slope = float(np.polyfit([s.digits for s in survivals], [s.median for s in survivals], 1)[0])
+    return OrbitStudy(period, number, tuple(survivals), slope)

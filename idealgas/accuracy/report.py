@@ -1,4 +1,4 @@
-"""Results of a study of accuracy: rows for tables and files, and sentences made from the numbers."""
+"""Results of a study of accuracy as rows for tables and files, and as sentences."""
 
 import csv
 import json
@@ -17,12 +17,12 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.style import save
 from idealgas.files import check_output, storage_error, written
 
-TARGET = 0.01  # relative error in the sentences on its cost
-LOST = 0.1  # rms distance in diameters beyond which a trajectory is lost
+TARGET = 0.01  # relative error whose cost is given in a sentence
+LOST = 0.1  # rms distance beyond which a trajectory is considered lost, diameters
 
 
 def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
-    """Row of the CSV file for one case; None where a number was not measured."""
+    """Return the row of the CSV file for a case; numbers that were not measured are None."""
     averages, at = row.averages, nearest(found.collisions, 1.0)
     return {
         "case": row.case.name,
@@ -50,24 +50,24 @@ def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
 
 
 def with_error(name: str, estimate: Estimate | None) -> dict[str, float | None]:
-    """Columns of an estimate: value and standard error."""
+    """Return the columns of an estimate: value and standard error."""
     if estimate is None:
         return {name: None, f"{name}_error": None}
     return {name: number(estimate.value), f"{name}_error": number(estimate.standard_error)}
 
 
 def number(value: float) -> float | None:
-    """The value, or None if it is not finite."""
+    """Return the value, or None if it is not finite."""
     return float(value) if math.isfinite(value) else None
 
 
 def nearest(values: np.ndarray, target: float) -> int:
-    """Index of the value nearest to a target; 0 if there are none."""
+    """Return the index of the value nearest to a target; 0 if there are no values."""
     return int(np.abs(values - target).argmin()) if len(values) else 0
 
 
 def lost_after(row: Row, found: Accuracy) -> float | None:
-    """Collisions per disc after which the rms error of the positions is LOST diameters; None if it never is."""
+    """Return the collisions per disc after which the rms error of the positions exceeds LOST; None if it never does."""
     if row.trajectory is None or not (gone := row.trajectory > LOST).any():
         return None
     return float(found.collisions[int(gone.argmax())])
@@ -77,7 +77,7 @@ def lost_after(row: Row, found: Accuracy) -> float | None:
 
 
 def sentences(found: Accuracy) -> list[str]:
-    """Results in sentences."""
+    """Return the results in sentences."""
     rate = price(found, "the collision rate", found.rate_law)
     results = [rate, _pressure(found), _missed(found), *_motion(found)]
     if found.left_out:
@@ -86,7 +86,10 @@ def sentences(found: Accuracy) -> list[str]:
 
 
 def cost_of(dt: float, rows: list[Row]) -> float:
-    """CPU seconds per unit of simulated time for a time step dt, by a power law between measured time steps."""
+    """Return the CPU seconds per unit of simulated time for a time step, interpolated between measured time steps.
+
+    A power law is assumed between neighbouring time steps.
+    """
     steps = np.log([row.case.dt or 0.0 for row in rows][::-1])
     costs = np.log([row.timing.median for row in rows][::-1])
     k = int(np.clip(np.searchsorted(steps, math.log(dt)), 1, len(steps) - 1))
@@ -95,7 +98,7 @@ def cost_of(dt: float, rows: list[Row]) -> float:
 
 
 def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
-    """Sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
+    """Return a sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
     if law is None:
         return ""
     dt = law.step(TARGET)
@@ -108,22 +111,22 @@ def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
     )
 
 
-def _pressure(found: Accuracy) -> str:
-    exact = found.event_driven.z_pairs
+def _pressure(study: Accuracy) -> str:
+    exact = study.event_driven.z_pairs
     if exact is None:
         return ""
-    own = (
+    sentence = (
         f"The event-driven pressure is {exact.value:+.2%} ± {exact.standard_error:.2%} from theory. "
         if exact.standard_error > 0
         else ""
     )
-    known = [row for row in found.steps if row.z_pairs]
-    law = bias_law(np.array([row.case.dt for row in known]), [row.z_pairs for row in known if row.z_pairs])
-    return (own + price(found, "the pressure of the pairs", law)).rstrip()
+    measured = [row for row in study.steps if row.z_pairs]
+    law = bias_law(np.array([row.case.dt for row in measured]), [row.z_pairs for row in measured if row.z_pairs])
+    return (sentence + price(study, "the pressure of the pairs", law)).rstrip()
 
 
-def _missed(found: Accuracy) -> str:
-    counts = [(row.case.dt or 0.0, row.missed) for row in found.steps if row.missed and row.missed.compared]
+def _missed(study: Accuracy) -> str:
+    counts = [(row.case.dt or 0.0, row.missed) for row in study.steps if row.missed and row.missed.compared]
     if not counts:
         return ""
     (coarse, most), (fine, least) = counts[0], counts[-1]
@@ -138,23 +141,23 @@ def _missed(found: Accuracy) -> str:
     )
 
 
-def _motion(found: Accuracy) -> list[str]:
-    if not len(found.collisions):
+def _motion(study: Accuracy) -> list[str]:
+    if not len(study.collisions):
         return []
-    last = found.collisions[-1]
-    finest = found.steps[-1]
+    last = study.collisions[-1]
+    finest = study.steps[-1]
 
     def life(row: Row) -> str:
-        lost = lost_after(row, found)
+        lost = lost_after(row, study)
         return f"{lost:.2g}" if lost is not None else f"more than {last:.2g}"
 
-    single, double, twice = found.precisions
+    single, double, twice = study.precisions
     return [
-        f"The rms path error is {LOST} diameters after {life(found.event_driven)} collisions per disc "
+        f"The rms path error is {LOST} diameters after {life(study.event_driven)} collisions per disc "
         f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
         f"with dt = {finest.case.dt:.2g}. The reference is the double-double motion of the whole gas over "
         f"{last:.2g} collisions per disc, which takes "
-        f"{twice.timing.median / found.event_driven.timing.median:.2g} times the event-driven time.",
+        f"{twice.timing.median / study.event_driven.timing.median:.2g} times the event-driven time.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
         "precision by the same method.",
     ]
@@ -164,7 +167,7 @@ def _motion(found: Accuracy) -> list[str]:
 
 
 def accuracy_dict(found: Accuracy) -> dict[str, Any]:
-    """Plain values, ready for JSON: the rows of the CSV file, the trajectories and the sentences."""
+    """Return plain values, ready for JSON: the rows of the CSV file, the trajectories and the sentences."""
     rows = []
     for row in found.rows:
         error = None if row.trajectory is None else [number(value) for value in row.trajectory]
@@ -183,10 +186,19 @@ def accuracy_dict(found: Accuracy) -> dict[str, Any]:
 def outputs(
     path: str | os.PathLike[str], name: str, pictures: Sequence[str] = ("",), force: bool = False
 ) -> list[Path]:
-    """Paths NAME.csv, NAME.json and a figure NAME….png for each ending, in a folder that is created if it is missing.
+    """Return the paths of the output files, and create their folder if it is missing.
+
+    Args:
+        path: path of the folder.
+        name: name of the files without endings.
+        pictures: what follows the name in the file of each figure.
+        force: whether existing files may be overwritten.
+
+    Returns:
+        NAME.csv, NAME.json and a figure NAME….png for each entry of `pictures`.
 
     Raises:
-        OutputError: if the folder cannot be made, or one of the files not be written.
+        OutputError: if the folder cannot be created or a file cannot be written.
     """
     folder = Path(path)
     try:
@@ -194,8 +206,8 @@ def outputs(
     except OSError as error:
         raise storage_error(folder, error) from error
     paths = [folder / f"{name}{end}" for end in (".csv", ".json", *(f"{ending}.png" for ending in pictures))]
-    for found in paths:
-        check_output(found, found.suffix, force)
+    for file in paths:
+        check_output(file, file.suffix, force)
     return paths
 
 
@@ -206,7 +218,14 @@ def write_files(
     figures: Sequence[Figure],
     force: bool = False,
 ) -> None:
-    """Write the files that `outputs` gave; existing ones are replaced only with `force`.
+    """Write the output files of a study.
+
+    Args:
+        paths: paths from `outputs`.
+        result: plain values for the JSON file.
+        rows: rows of the CSV file.
+        figures: figures, in the order of `pictures` of `outputs`.
+        force: whether to replace existing files.
 
     Raises:
         OutputError: if a file cannot be written.

@@ -1,4 +1,4 @@
-"""Errors and CPU time of every case of the methods compared, measured in one process."""
+"""Measure the errors and the CPU time of every case of the comparison, in one process."""
 
 import math
 import statistics
@@ -20,14 +20,14 @@ from idealgas.log.summary import Summary
 from idealgas.scene import Scene
 from idealgas.state import Gas
 
-SHORTEST_TIMING = 0.1  # least CPU seconds of a timed run
-RATE_SECONDS = 30.0  # CPU seconds of all runs for the collision rates
-RATE_BLOCKS = 64  # of each of them
-BURN_IN = 0.1  # part of them in which the gas gets used to the method
-LONGEST_RUN = 40.0  # most CPU seconds of a case for its averages, and of the reference trajectories
+SHORTEST_TIMING = 0.1  # shortest timed run, CPU seconds
+RATE_SECONDS = 30.0  # total length of the runs for the collision rates, CPU seconds
+RATE_BLOCKS = 64  # number of blocks of each of these runs
+BURN_IN = 0.1  # initial fraction of these runs that is discarded, in which the gas adapts to the method
+LONGEST_RUN = 40.0  # longest run of a case for its averages, and for the reference trajectories, CPU seconds
 MOST_PRECISE = 4000  # largest number of discs for brute force
 FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
-"""Collisions per disc at which trajectories are compared; at the last one no digit of a float64 is correct."""
+"""Collisions per disc at which trajectories are compared; at the last one, no digit of a float64 is correct."""
 
 Progress = Callable[[str, float], None]
 """Function that is called with the name of the current work and the fraction of it that is done."""
@@ -37,8 +37,11 @@ Progress = Callable[[str, float], None]
 class Timing:
     """CPU time of a case.
 
-    median, least, most: CPU seconds per unit of simulated time over the repeats. collisions: pair collisions per unit
-    of simulated time.
+    Attributes:
+        median: median over the repeats of the CPU seconds per unit of simulated time.
+        least: smallest of these values.
+        most: largest of these values.
+        collisions: number of pair collisions per unit of simulated time.
     """
 
     median: float
@@ -54,13 +57,19 @@ class Timing:
 
 @dataclass(frozen=True)
 class Row:
-    """CPU time and errors of one case; None where an error was not measured.
+    """CPU time and errors of a case; errors that were not measured are None.
 
-    case: method, time step and precision. timing: CPU time. averages: averages of the whole run. rate: relative bias of
-    the collision rate, for time steps against the limit dt = 0 of all, for precisions against the event-driven run.
-    z_pairs, z_walls: relative bias of the pressure, by the virial of pairs and of walls, against theory. missed:
-    missed collisions. trajectory: (T,), rms distance from the reference trajectories, in diameters. way_back: rms
-    distance from the start after reversal of all velocities, in diameters.
+    Attributes:
+        case: method, time step and precision.
+        timing: CPU time.
+        averages: averages of the whole run.
+        rate: bias of the collision rate, for time steps relative to the common limit dt → 0, for precisions relative to
+            the event-driven run.
+        z_pairs: bias of the pressure from the virial of the pairs, relative to theory.
+        z_walls: bias of the pressure from the virial of the walls, relative to theory.
+        missed: missed collisions.
+        trajectory: (T,), rms distance from the reference trajectories, diameters.
+        way_back: rms distance from the start after reversal of all velocities, diameters.
     """
 
     case: Case
@@ -76,12 +85,17 @@ class Row:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """CPU time and errors of all cases for one scene.
+    """CPU time and errors of all cases for a scene.
 
-    title: of the scene. number: of discs. until: simulated time of the runs for averages. repeats: number of timings of
-    each case. collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not.
-    left_out: reason why brute force in several precisions was not run; empty if it was. rate_law: bias of the collision
-    rate by time steps; None if it is not significant. rows: one per case.
+    Attributes:
+        title: title of the scene.
+        number: number of discs.
+        until: simulated time of the runs for averages.
+        repeats: number of timings of each case.
+        collisions: (T,), collisions per disc at which trajectories were compared; empty if they were not compared.
+        left_out: reason why brute force in several precisions was not run; empty if it was.
+        rate_law: bias of the collision rate caused by time steps; None if it is not significant.
+        rows: one row for each case.
     """
 
     title: str
@@ -110,10 +124,15 @@ class Accuracy:
 
 
 def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda what, share: None) -> Accuracy:
-    """Run a scene in all cases and measure CPU time and errors.
+    """Run a scene in all cases, and measure CPU time and errors.
+
+    Args:
+        scene: the scene.
+        repeats: number of timings of each case.
+        progress: function that is called with the name of the current work and the fraction of it that is done.
 
     Raises:
-        UserError: if the scene cannot be run in time steps, or if no discs collide in it.
+        UserError: if the scene cannot be run with time steps, or if it has no collisions of discs.
     """
     check(scene)
     progress("equilibrating the gas", 0.0)
@@ -136,35 +155,35 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
     rows = [
         Row(
-            case, timing, found,
-            rate=relative(found.rate, truth.rate) if case.precision and found else rates.get(case),
-            z_pairs=None if found is None else from_theory(found.z_pairs),
-            z_walls=None if found is None else from_theory(found.z_walls),
+            case, timing, measured,
+            rate=relative(measured.rate, truth.rate) if case.precision and measured else rates.get(case),
+            z_pairs=None if measured is None else from_theory(measured.z_pairs),
+            z_walls=None if measured is None else from_theory(measured.z_walls),
             missed=missed.get(case),
             trajectory=trajectories.get(case),
             way_back=ways_back.get(case),
         )
-        for case, timing, found in zip(cases, timings, averages, strict=True)
+        for case, timing, measured in zip(cases, timings, averages, strict=True)
     ]  # fmt: skip
     return Accuracy(scene.scene.title, len(start.gas), until, repeats, collisions, left_out, rate_law, tuple(rows))
 
 
 def check(scene: Scene) -> None:
-    """Check that a scene can be run in time steps and has at least two discs.
+    """Check that a scene can be run with time steps and has at least two discs.
 
     Raises:
-        UserError: if not.
+        UserError: if it cannot be run with time steps or has a single disc.
     """
     if scene.run.method == "monte_carlo":
         raise UserError("run.method: nothing to compare (got monte_carlo; allowed a method that moves discs)")
-    if strange := scene.lacking("allows_time_steps"):
-        raise UserError(f"nothing to compare: time steps do not support {' and '.join(strange)}")
+    if unsupported := scene.lacking("allows_time_steps"):
+        raise UserError(f"nothing to compare: time steps do not support {' and '.join(unsupported)}")
     if len(make_gas(scene)) < 2:
         raise UserError("nothing to compare: a single disc never collides with another")
 
 
 def why_not_precise(scene: Scene, gas: Gas) -> str:
-    """Reason why a gas cannot be run in all precisions; empty if it can."""
+    """Return the reason why a gas cannot be run in all precisions; empty if it can."""
     if scene.effects:
         return f"only float64 supports {', '.join(scene.effects)}"
     if len(gas) > MOST_PRECISE:
@@ -173,14 +192,14 @@ def why_not_precise(scene: Scene, gas: Gas) -> str:
 
 
 def relative(value: Estimate, reference: Estimate) -> Estimate:
-    """Relative deviation value/reference - 1 of two independent estimates."""
+    """Return the relative deviation value/reference - 1 of two independent estimates."""
     ratio = value.value / reference.value
     error = ratio * math.hypot(value.standard_error / value.value, reference.standard_error / reference.value)
     return Estimate(ratio - 1, error, math.inf)
 
 
 def from_theory(value: Estimate | None) -> Estimate | None:
-    """Relative deviation value/theory - 1 of an estimate, with the errors of both; None without theory."""
+    """Return the relative deviation value/theory - 1 of an estimate, with both errors; None if it has no theory."""
     if value is None or value.theory is None or not math.isfinite(value.theory):
         return None
     error = math.hypot(value.standard_error, value.theory_error) / value.theory
@@ -188,7 +207,7 @@ def from_theory(value: Estimate | None) -> Estimate | None:
 
 
 def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
-    """Measure the CPU time of all cases in turn; each run is long enough to be timed (SHORTEST_TIMING)."""
+    """Return the CPU time of all cases, measured in turn; each run takes at least SHORTEST_TIMING."""
     durations = []
     for k, case in enumerate(cases):
         progress("compiling and first timing", k / len(cases))
@@ -208,7 +227,7 @@ def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress:
 
 
 def _long_enough(start: Start, case: Case) -> float:
-    """Simulated time of a run of SHORTEST_TIMING CPU seconds; it also compiles the machine code."""
+    """Return the simulated time of a run that takes SHORTEST_TIMING; the machine code is compiled on the way."""
     speed = float(np.hypot(*start.gas.velocity.T).mean())
     duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
     cpu_seconds(start.simulation(case.make()), duration)
@@ -220,7 +239,7 @@ def _long_enough(start: Start, case: Case) -> float:
 
 
 def measure_rates(start: Start, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress) -> list[Estimate]:
-    """Pair collisions of the gas per time in each case, from runs of the same length, RATE_SECONDS in all."""
+    """Return the pair collisions per time in each case, from runs of equal length that take RATE_SECONDS together."""
     whole = RATE_SECONDS / sum(timing.median for timing in timings[: len(cases)])
     edges = np.linspace(BURN_IN * whole, whole, RATE_BLOCKS + 1)
     rates = []
@@ -237,11 +256,11 @@ def measure_rates(start: Start, cases: Sequence[Case], timings: Sequence[Timing]
 def _all_averages(
     scene: Scene, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
 ) -> tuple[list[Averages | None], float]:
-    """Averages of the whole scene in all cases that are fast enough, and the simulated time of the runs.
+    """Return the averages of the scene in all cases that are fast enough, and the simulated time of the runs.
 
     The event-driven run, which is the first, determines this time.
     """
-    found: list[Averages | None] = []
+    averages: list[Averages | None] = []
     with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
         path = Path(folder) / "run.h5"
 
@@ -250,17 +269,22 @@ def _all_averages(
 
         settings = scene.run.model_copy(update={"method": "event_driven", "dt": None, "precision": None})
         first, summary = run(scene.model_copy(update={"run": settings}), cases[0])
-        found.append(first)
+        averages.append(first)
         for case, timing in zip(cases[1:], timings[1:], strict=True):
-            quick = timing.median * summary.end_time < LONGEST_RUN and case.precision != "float64"  # the same motion
-            found.append(run(case.scene(scene, summary.end_time), case, first.window)[0] if quick else None)
-    return found, summary.end_time
+            is_fast = timing.median * summary.end_time < LONGEST_RUN
+            is_new = case.precision != "float64"  # which has the same motion as the event-driven run
+            can_run = is_fast and is_new
+            averages.append(run(case.scene(scene, summary.end_time), case, first.window)[0] if can_run else None)
+    return averages, summary.end_time
 
 
 def _motion(
     start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
 ) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
-    """Collisions per disc, and `Row.trajectory` and `Row.way_back` of each case; the reference is double-double."""
+    """Return the collisions per disc, and `Row.trajectory` and `Row.way_back` of each case.
+
+    The reference is the double-double motion.
+    """
     if cases[-1].precision is None:
         return np.empty(0), {}, {}
     reference, timing = cases[-1], timings[-1]

@@ -1,1 +1,1 @@
-"""Speed of the engine, and cost of each effect."""
+"""Measure the speed of the engine and the cost of each effect."""

@@ -1,4 +1,4 @@
-"""Speed of the engine on this machine, with the event log and without it."""
+"""Measure the speed of the engine on this machine, with and without the event log."""
 
 import math
 import statistics
@@ -19,9 +19,16 @@ RADIUS = 0.5
 class Row(NamedTuple):
     """Speed of the engine for one number of discs, packing fraction and number of threads.
 
-    N: number of discs. phi: packing fraction. threads: number of those that there were. log: whether events were
-    logged. collisions_per_s: pair collisions per second, median over the repeats. slowest, fastest: its extremes.
-    ratio: rate with the log over rate without it, median over pairs of consecutive runs; None without the log.
+    Attributes:
+        N: number of discs.
+        phi: packing fraction.
+        threads: number of threads that were used.
+        log: whether events were logged.
+        collisions_per_s: pair collisions per second, median over the repeats.
+        slowest: smallest number of pair collisions per second.
+        fastest: largest number of pair collisions per second.
+        ratio: speed with the log relative to the speed without it, median over pairs of consecutive runs; None without
+            the log.
     """
 
     N: int
@@ -38,7 +45,9 @@ class Row(NamedTuple):
 class Bench:
     """Results of the benchmark.
 
-    compile_seconds: time for compiling or loading the machine code, seconds. rows: one for each kind of run.
+    Attributes:
+        compile_seconds: time for compiling or loading the machine code, s.
+        rows: one row for each kind of run.
     """
 
     compile_seconds: float
@@ -46,7 +55,7 @@ class Bench:
 
 
 def bench_scene(n: int, phi: float, collisions: int, log: bool, threads: int = 1) -> Scene:
-    """Scene of n equal discs on a lattice at temperature 1 in a square box."""
+    """Return a scene of n equal discs on a lattice at temperature 1 in a square box."""
     side = math.sqrt(n * math.pi * RADIUS**2 / phi)
     return Scene(
         scene=Header(title=f"bench, N = {n}, packing fraction {phi:g}"),
@@ -65,10 +74,15 @@ def bench(
     on_row: Callable[[Row], None] = lambda row: None,
     threads: Iterable[int] = (1,),
 ) -> Bench:
-    """Time runs of at least `collisions` pair collisions and two per disc, alternately without and with the log.
+    """Measure the speed of runs, alternately without and with the log.
 
-    numbers: numbers of discs. fractions: packing fractions. repeats: runs of each kind. on_row: called with each row.
-    threads: numbers of threads.
+    Args:
+        numbers: numbers of discs.
+        fractions: packing fractions.
+        collisions: smallest number of pair collisions of a run, which is increased to two per disc.
+        repeats: number of runs of each kind.
+        on_row: function that is called with each row of the result.
+        threads: numbers of threads.
     """
     with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
         path = Path(folder) / "bench.h5"

@@ -1,4 +1,7 @@
-"""Cost of each effect: time per event with it over that in the plain box, measured alternately in one process."""
+"""Measure the cost of each effect: the time per event with the effect relative to the plain box.
+
+Both are measured alternately in the same process.
+"""
 
 import math
 import statistics
@@ -35,14 +38,18 @@ def _scenes() -> dict[str, Sequence[Sample]]:
 
 
 SCENES = _scenes()
-"""What each effect, and all together, add to the scene of the plain box."""
+"""Samples that each effect, and all effects together, add to the scene of the plain box."""
 
 
 class Row(NamedTuple):
-    """Cost of one effect.
+    """Cost of an effect.
 
-    effect: name. ratio: time per event (pair collision or wall hit) over that in the plain box, median over the
-    repeats. smallest, largest: its extremes. compile_seconds: time for compiling or loading the machine code, seconds.
+    Attributes:
+        effect: name of the effect.
+        ratio: time per event (pair collision or wall hit) relative to the plain box, median over the repeats.
+        smallest: smallest of these ratios.
+        largest: largest of these ratios.
+        compile_seconds: time for compiling or loading the machine code, s.
     """
 
     effect: str
@@ -53,7 +60,7 @@ class Row(NamedTuple):
 
 
 def effect_scene(effect: str | None, events: int) -> Scene:
-    """Scene of the plain box with one effect of SCENES, or with none."""
+    """Return the scene of the plain box with an effect of SCENES, or without effects for None."""
     samples = SCENES[effect] if effect is not None else ()
     keys = "".join(sample.box(SIDE) for sample in samples)
     tables = "".join(sample.tables(SIDE) for sample in samples)
@@ -63,9 +70,12 @@ def effect_scene(effect: str | None, events: int) -> Scene:
 def bench_effects(
     events: int = 500_000, repeats: int = 5, on_row: Callable[[Row], None] = lambda row: None
 ) -> list[Row]:
-    """Time every effect alone, and all compatible effects together, alternately with the plain box.
+    """Measure the cost of every effect alone, and of all compatible effects together.
 
-    events: of each run. repeats: runs of each kind. on_row: called with each row.
+    Args:
+        events: number of events of each run.
+        repeats: number of runs of each kind.
+        on_row: function that is called with each row of the result.
     """
     with tempfile.TemporaryDirectory(prefix="idealgas-bench-") as folder:
 

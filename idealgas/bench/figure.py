@@ -1,4 +1,4 @@
-"""Figure of the speed of the engine: collisions per second, and time per collision, against the number of discs."""
+"""Draw the speed of the engine: collisions per second, and time per collision, against the number of discs."""
 
 from typing import Any, NamedTuple
 
@@ -13,7 +13,14 @@ MILLION, MICRO = 1e-6, 1e6
 
 
 class Peer(NamedTuple):
-    """Speed of another program, as it was stated: name, packing fraction φ, collisions per second by N, and source."""
+    """Stated speed of another program.
+
+    Attributes:
+        name: name of the program.
+        phi: packing fraction.
+        rates: collisions per second, by the number of discs.
+        source: source of these numbers.
+    """
 
     name: str
     phi: float
@@ -29,11 +36,14 @@ PEERS = (
         "measured on one core, alternating with idealgas",
     ),
 )
-"""Other programs; their figures are stated, not measured by the bench."""
+"""Other programs; their speeds are stated values, which the benchmark does not measure."""
 
 
 def bench_figure(found: Bench) -> Figure:
-    """Collisions per second, and time per collision, against N without the log: a line for each φ and threads."""
+    """Return a figure of collisions per second and time per collision against N, without the log.
+
+    It has a line for each packing fraction and number of threads.
+    """
     figure, (rates, times) = panels(1, 2)
     series: dict[tuple[float, int], dict[int, float]] = {}
     for row in found.rows:
@@ -42,8 +52,8 @@ def bench_figure(found: Bench) -> Figure:
     colour = dict(zip(sorted({phi for phi, _ in series}), COLOURS, strict=False))
     marker = dict(zip(sorted({threads for _, threads in series}), MARKERS, strict=False))
 
-    def draw(found: dict[int, float], label: str, **style: Any) -> None:
-        n, rate = list(found), np.array(list(found.values()))
+    def draw(speeds: dict[int, float], label: str, **style: Any) -> None:
+        n, rate = list(speeds), np.array(list(speeds.values()))
         rates.plot(n, MILLION * rate, label=label, **style)
         times.plot(n, MICRO / rate, **style)
 
