@@ -1,1 +1,1 @@
-"""The command `idealgas`: one module per command, each translating arguments into one library call."""
+"""The command `idealgas`: one module per command, which translates its arguments into a call of the library."""

@@ -1,4 +1,4 @@
-"""Common parts of commands that read a log, and commands of the analyses, made from their registry."""
+"""Common parts of commands that read a log, and the commands of the analyses, which are made from the registry."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ def log_argument(command: Callable) -> Callable:
 
 
 def open_log(path: str) -> "Log":
-    """Open a log for reading; print one line if it was not closed."""
+    """Open a log for reading, and print a line if it was not closed."""
     from idealgas import log
 
     opened = log.open_log(path)
@@ -44,13 +44,13 @@ def print_json(result: dict[str, Any]) -> None:
     data(json.dumps(result, indent=2, allow_nan=False))
 
 
-# ── one command an analysis ──
+# ── commands of the analyses ──
 
 
 class AnalysisCommand(click.Command):
-    """Command of an analysis: its logs, its own options, and the options of all analyses.
+    """Command of an analysis: its logs, its options, and the options of all analyses.
 
-    Its help is that of the module of the analysis, which is imported when options are needed.
+    The help is the docstring of the module of the analysis, which is imported only when its options are required.
     """
 
     def __init__(self, name: str) -> None:
@@ -58,7 +58,7 @@ class AnalysisCommand(click.Command):
         super().__init__(name, help=registry.help_of(name.replace("-", "_")), epilog=example, callback=self._call)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Parameters of the command."""
+        """Return the parameters of the command."""
         if not self.params:
             self.params = _parameters(self._analysis)
         return super().get_params(ctx)
@@ -89,7 +89,7 @@ def _logs(analysis: "type[Analysis]") -> Callable:
 
 
 def _option(option: "Option") -> Callable:
-    """Command-line option for an option of an analysis."""
+    """Return the command-line option for an option of an analysis."""
     kind: Any = option.kind
     if option.choices:
         kind = click.Choice(option.choices)
@@ -115,12 +115,12 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     yield force_option
     yield json_option
     yield quiet_option
-    words = "Print all numbers as CSV, a row for each quantity, with all digits."
+    words = "Print all numbers as CSV with all digits, one row for each quantity."
     yield click.option("--csv", "as_csv", is_flag=True, help=words)
     if analysis.is_checked():
         words = (
-            "Exit with code 1 if measurement and theory differ by more than chance allows, 2 if there are too few "
-            "samples to tell, 0 without a theory."
+            "Exit with code 1 if measurement and theory differ by more than chance allows, with 2 if there are too few "
+            "samples to decide, and with 0 if there is no theory."
         )
         yield click.option("--check", is_flag=True, help=words)
 
@@ -147,7 +147,7 @@ def _analyse(
         check_output(path, Path(path).suffix.lower(), force, paths)
     try:
         with progress_bar(f"reading {analysis.reads}") as progress:
-            results = [found for path in paths for found in _results(analysis, path, start, end, progress, options)]
+            results = [result for path in paths for result in _results(analysis, path, start, end, progress, options)]
         result = analysis.combined(results)
     except NotApplicableError as error:
         if not check or figures or as_csv:
@@ -172,8 +172,8 @@ def _analyse(
             add_title(figure, ". ".join([*missing.values(), figure.get_suptitle()]))
         save(figure, path, force)
     if as_json:
-        unasked = {"agrees": None} if analysis.is_checked() else {}
-        print_json(result.as_dict() | (checked.as_dict() if checked else unasked))
+        unchecked = {"agrees": None} if analysis.is_checked() else {}
+        print_json(result.as_dict() | (checked.as_dict() if checked else unchecked))
     elif as_csv:
         from idealgas.analysis.core.quantities import as_csv as csv_of
 
@@ -207,15 +207,15 @@ def _results(
     if analysis.restore and os.path.isdir(path):
         from idealgas.sweep.results import stored_results
 
-        for label, found, origin in stored_results(path, analysis.key):
-            yield analysis.restored(found, label, origin)
+        for label, stored, origin in stored_results(path, analysis.key):
+            yield analysis.restored(stored, label, origin)
         return
     with open_log(path) as log:
         yield analysis.analyse(log, start, end, progress, **options)
 
 
 def _missing(path: str) -> str:
-    """Sentence on the runs that the folder of a sweep lacks; empty for a complete sweep and for a log."""
+    """Return a sentence about runs that are missing in the folder of a sweep; empty if it is complete, or for a log."""
     if not os.path.isdir(path):
         return ""
     from idealgas.sweep.results import missing_runs

@@ -1,20 +1,20 @@
-"""Ctrl-C and SIGTERM as requests to stop that are never lost, even if a library swallows KeyboardInterrupt."""
+"""Handle Ctrl-C and SIGTERM as requests to stop, which are not lost even if a library swallows KeyboardInterrupt."""
 
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
-"""Signals that ask a command to stop: Ctrl-C, and what batch systems and `kill` send."""
+"""Signals that stop a command: Ctrl-C, and the signal that batch systems and `kill` send."""
 
 
 @contextmanager
 def stop_signals(raises: bool) -> Iterator[Callable[[], int]]:
-    """Yield a function that returns the exit code if a signal has asked the command to stop since then, or else 0.
+    """Yield a function that returns the exit code if a stop signal has arrived, and 0 otherwise.
 
     Args:
-        raises: whether the first signal also raises KeyboardInterrupt, which ends a wait; later ones do not interrupt
-            the cleanup.
+        raises: whether the first signal also raises KeyboardInterrupt, which ends a wait; later signals do not, so that
+            they do not interrupt the cleanup.
     """
     exit_code = 0
 

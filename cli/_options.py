@@ -16,7 +16,7 @@ FIGURE_ENDINGS = (".png", ".pdf", ".svg")
 
 
 class _File(click.ParamType):
-    """A path, which shells complete, and which commands check themselves."""
+    """A path, which shells complete and commands check themselves."""
 
     name = "file"
 
@@ -29,7 +29,7 @@ FILE = _File()
 
 
 def integer(text: str) -> int:
-    """An integer, which may be written as 1e6."""
+    """Return an integer from a text, which may have the form 1e6."""
     with suppress(ValueError):
         return int(text)
     with suppress(ValueError):
@@ -47,15 +47,16 @@ def scene_argument(command: Callable) -> Callable:
 
 
 def overrides_option(more: str = "") -> Callable:
-    """Option `--set`, as `overrides`. more: further help."""
+    """Return the option `--set`, as `overrides`. more: additional help text."""
     return click.option(
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE", shell_complete=_complete_key,
-        help=f"Change one key of the scene (species.0.count=50, species.argon.count=50); no value: its default.{more}",
+        help="Change a key of the scene (species.0.count=50, species.argon.count=50); an empty value restores the "
+        f"default.{more}",
     )  # fmt: skip
 
 
 def _complete_key(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Keys of scenes that begin with a text."""
+    """Return the keys of scenes that begin with the incomplete text."""
     return [CompletionItem(f"{key}=", help=text) for key, text in keys().items() if key.startswith(incomplete)]
 
 
@@ -81,5 +82,6 @@ plot_option = click.option(
 
 plot_errors_option = click.option(
     "--plot-errors", type=FILE, metavar="FILE.png", callback=_check_ending,
-    help="Write a figure of each error against the length of blocks of time, which shows slow fluctuations.",
+    help="Write a figure of each standard error against the length of the blocks of time, which reveals slow "
+    "fluctuations.",
 )  # fmt: skip

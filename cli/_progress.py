@@ -1,4 +1,4 @@
-"""Progress bar of a command, shown on a terminal only."""
+"""The progress bar of a command, which is shown only on a terminal."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,17 +8,17 @@ from ._terminal import terminal
 
 
 class Show(Protocol):
-    """Function that shows how much is done."""
+    """A function that shows the progress."""
 
     def __call__(self, done: float, total: float = 1.0, description: str | None = None, notice: str = "") -> None:
-        """Update the bar; a new description replaces the old one, a notice is printed above the bar."""
+        """Update the bar. A description replaces the previous one; a notice is printed above the bar."""
 
 
 @contextmanager
 def progress_bar(description: str) -> Iterator[Show]:
     """Yield a function that shows the fraction done, a description and the remaining time.
 
-    Notices are printed to stderr, also if it is not a terminal.
+    Notices are printed to stderr even if it is not a terminal.
     """
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 

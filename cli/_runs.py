@@ -37,10 +37,10 @@ def run_with_progress(
         simulate: function that runs a scene.
         path: path of the log.
         as_json: whether to print JSON.
-        from_start: whether this run wrote all events of the log.
-        on_start: called when the first events are in the log.
-        stream: prints the events instead of the summary; the run ends when it fails.
-        shows: names of the analyses that the scene leads with, printed as the commands to go on with.
+        from_start: whether this run writes all events of the log.
+        on_start: function that is called when the first events are in the log.
+        stream: stream that prints the events instead of the summary; the run ends if the stream fails.
+        shows: names of the main analyses of the scene, whose commands are suggested at the end.
     """
     from ._interrupt import stop_signals
 
@@ -48,15 +48,15 @@ def run_with_progress(
         with progress_bar("loading machine code, or compiling it once for these effects") as show:
             command = shlex.join(["idealgas", *sys.argv[1:]])
             started = time.perf_counter()
-            first: list[int] = []  # number of events at the first call, not 0 for a resumed run
+            first: list[int] = []  # number of events at the first call, which is not 0 for a resumed run
 
             def on_progress(progress: "Progress") -> None:
                 if not first:
                     first.append(progress.events)
                     on_start()
                 rate = (progress.events - first[0]) / (time.perf_counter() - started)
-                doing = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}"
-                show(progress.share, description=doing, notice=progress.notice)
+                description = f"{rate:,.0f} events/s, simulated time {progress.time:.6g}"
+                show(progress.share, description=description, notice=progress.notice)
 
             def stopped() -> bool:
                 return bool(interrupted()) or (stream is not None and stream.failure is not None)
@@ -104,7 +104,7 @@ def _print(summary: "Summary", output: str, from_start: bool, shows: Sequence[st
         rows["compiling or loading machine code"] = f"{summary.compile_seconds:.1f} s"
     if from_start:
         rows["events per second"] = f"{summary.events / summary.seconds:,.0f}"
-    with suppress(FileNotFoundError):  # moved while it was written
+    with suppress(FileNotFoundError):  # the file was moved during the run
         rows["file size"] = decimal(os.path.getsize(output))
     print_tables([facts(output if summary.completed else f"{output} (interrupted)", rows)])
     if shows:

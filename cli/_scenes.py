@@ -1,4 +1,4 @@
-"""The files that are installed with the example scenes, for commands."""
+"""Files that are installed with the example scenes."""
 
 import json
 import re
@@ -13,30 +13,34 @@ from ._terminal import written
 NOTEBOOK = ".ipynb"
 
 SCHEMA = "scene.schema.json"
-"""Name of the JSON Schema of scenes; the first line of a scene refers to it, in the same folder."""
+"""Name of the JSON Schema of scenes, to which the first line of a scene in the same folder refers."""
 
 
 DIGESTS = "digests.json"
-"""Name of the table of the scenes' digests, see `idealgas.run.digest`."""
+"""Name of the table with the digests of the scenes, see `idealgas.run.digest`."""
 
 
 def keys() -> dict[str, str]:
-    """Description of every key of a scene, by its name for `--set`."""
+    """Return the descriptions of all keys of a scene, by their names for `--set`."""
     schema = json.loads(path_of(SCHEMA).read_text(encoding="utf-8"))
-    found: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     for table, entry in schema["properties"].items():
         (kind,) = re.findall(r"#/\$defs/(\w+)", json.dumps(entry))
-        found |= {f"{table}.{key}": one["description"] for key, one in schema["$defs"][kind]["properties"].items()}
-    return found
+        properties = schema["$defs"][kind]["properties"]
+        descriptions |= {f"{table}.{key}": value["description"] for key, value in properties.items()}
+    return descriptions
 
 
 def notebooks() -> dict[str, Path]:
-    """Files of the notebooks, by name."""
+    """Return the files of the notebooks, by name."""
     return {path.stem: path for path in sorted(path_of("notebooks").glob(f"*{NOTEBOOK}"))}
 
 
 def shown_by(name: str) -> str:
-    """What a scene shows, the first sentence of its description; its title if it has none. Of a notebook its title."""
+    """Return what an example shows.
+
+    For a scene it is the first sentence of its description, or its title if it has none; for a notebook, its title.
+    """
     if notebook := notebooks().get(name):
         cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
         return cells[0]["source"][0].strip("# \n")
@@ -45,9 +49,12 @@ def shown_by(name: str) -> str:
 
 
 def copy_example(name: str, output: str | None, force: bool) -> None:
-    """Copy a notebook, or a scene and, into the same folder, the schema that its first line refers to.
+    """Copy a notebook, or a scene together with the schema to which its first line refers.
 
-    name: with or without the ending. output: path; None for the name in the current folder.
+    Args:
+        name: name of the example, with or without the ending.
+        output: path of the copy; None for the name of the example in the current folder.
+        force: whether to overwrite an existing file of the same kind.
 
     Raises:
         UserError: if the example is unknown or a file cannot be written.
@@ -56,8 +63,8 @@ def copy_example(name: str, output: str | None, force: bool) -> None:
 
     name = name.removesuffix(SCENE).removesuffix(NOTEBOOK)
     source = notebooks().get(name, path_of(name + SCENE))
-    if name not in (known := [*names(), *notebooks()]):
-        raise unknown("example", name, known)
+    if name not in (allowed := [*names(), *notebooks()]):
+        raise unknown("example", name, allowed)
     path = Path(output or source.name)
     copies = {path: source}
     check_output(path, "scene" if source.suffix == SCENE else NOTEBOOK, force)

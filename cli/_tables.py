@@ -1,4 +1,4 @@
-"""Printing of tables on the terminal: whatever its width, no digit is cut off."""
+"""Print tables on the terminal without cutting off digits, whatever its width."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,39 +15,39 @@ if TYPE_CHECKING:
     from idealgas.analysis.core.tables import Number, Table
 
 MANY_COLUMNS = 8
-"""Largest number of columns of a table with lines between them; wider tables have none."""
+"""Largest number of columns of a table with lines between the columns; wider tables have no lines."""
 
 TEXT = 16
-"""Width to which a column of text is narrowed, if all its words are shorter, before a table is cut into parts."""
+"""Width to which a column of text is narrowed, unless a word is longer, before a table is divided into parts."""
 
 
 def print_tables(tables: "Iterable[Table]") -> None:
-    """Print tables one below another, each after its notes."""
+    """Print tables one below the other, each after its notes."""
     console = terminal()
-    width, console.width = console.width, UNBOUNDED  # tables fit already, or the terminal is too narrow for any
-    for found in tables:
-        for note in found.notes:
+    width, console.width = console.width, UNBOUNDED  # Rich must not break lines, as `as_rich` fits tables to the width
+    for table in tables:
+        for note in table.notes:
             echo(note)
-        for part in as_rich(found, width):
+        for part in as_rich(table, width):
             console.print(part)
 
 
 def shown(text: str) -> "Number":
-    """A number that is written already: it stands at the right of its column and is never broken."""
+    """Return a cell with a number that is already formatted: it is aligned to the right and never broken."""
     from idealgas.analysis.core.tables import Number
 
     return Number(None, absent=text)
 
 
 def facts(title: str, values: Mapping[str, str]) -> "Table":
-    """Table of values, each in a row with its name."""
+    """Return a table with a row for each name and value."""
     from idealgas.analysis.core.tables import Table
 
     return Table(title, ("", ""), [(name, shown(value)) for name, value in values.items()])
 
 
 class _Column(NamedTuple):
-    """A column: its heading, its cells, whether they are texts, and its width, natural and least."""
+    """A column: its heading, its cells, whether they are texts, and its natural and smallest width."""
 
     head: str
     cells: Sequence[str]
@@ -57,22 +57,23 @@ class _Column(NamedTuple):
 
 
 def as_rich(table: "Table", width: int) -> "Iterator[Text | _Drawing]":
-    """Yield the title and the table for a terminal of a width; if that is too narrow in parts, with the first column.
+    """Yield the title and the table for a terminal of a given width.
 
-    Text is broken between its words, and numbers never.
+    If the terminal is too narrow, the table is divided into parts, each with the first column. Text is broken between
+    words; numbers are never broken.
     """
     from rich.text import Text
 
     if not table.shown:
         return
-    first, *others = _columns(table)
+    first, *remaining = _columns(table)
     dense = len(table.heads) > MANY_COLUMNS
-    between, around = (1, 2) if dense else (3, 1)  # characters between two columns, and at both ends together
+    between, around = (1, 2) if dense else (3, 1)  # characters between two columns, and at both ends in total
     if table.title:
         yield Text(plain(table.title), style="italic")
-    while others:
-        fitting = _fitting(first, others, width - around, between)
-        taken, others = [first, *others[:fitting]], others[fitting:]
+    while remaining:
+        fitting = _fitting(first, remaining, width - around, between)
+        taken, remaining = [first, *remaining[:fitting]], remaining[fitting:]
         widths = _widths(taken, width - around - between * len(taken))
         yield _Drawing(taken, widths, dense)
 
@@ -80,21 +81,21 @@ def as_rich(table: "Table", width: int) -> "Iterator[Text | _Drawing]":
 def _columns(table: "Table") -> list[_Column]:
     from rich.cells import cell_len
 
-    found = []
+    columns = []
     for k, head in enumerate(table.heads):
         head, cells = plain(head), [plain(row[k]) for row in table.shown]
         text = all(isinstance(row[k], str) for row in table.rows)
         words = max((cell_len(word) for cell in (head, *(cells if text else ())) for word in cell.split()), default=0)
         natural = max(cell_len(line) for cell in (head, *cells) for line in (cell.splitlines() or [""]))
         least = max(words, min(natural, TEXT)) if text else max(words, *map(cell_len, cells))
-        found.append(_Column(head, cells, text, natural, min(least, natural)))
-    return found
+        columns.append(_Column(head, cells, text, natural, min(least, natural)))
+    return columns
 
 
-def _fitting(first: _Column, others: Sequence[_Column], width: int, between: int) -> int:
-    """Number of the columns after the first one that fit into a width with it, one at least."""
+def _fitting(first: _Column, remaining: Sequence[_Column], width: int, between: int) -> int:
+    """Return how many of the remaining columns fit into a width together with the first column; at least one."""
     number, used = 0, first.least + between
-    for column in others:
+    for column in remaining:
         used += column.least + between
         if number and used > width:
             break
@@ -103,7 +104,7 @@ def _fitting(first: _Column, others: Sequence[_Column], width: int, between: int
 
 
 def _widths(columns: Sequence[_Column], width: int) -> list[int]:
-    """Widths of columns that are to fit into a width: the widest ones that can be narrower are narrowed."""
+    """Return the widths of columns that have to fit into a total width; the widest columns are narrowed first."""
     widths = [column.natural for column in columns]
     while sum(widths) > width:
         wide = [k for k, column in enumerate(columns) if widths[k] > column.least]
@@ -114,7 +115,7 @@ def _widths(columns: Sequence[_Column], width: int) -> list[int]:
 
 
 class _Drawing(NamedTuple):
-    """A table with lines between its columns, as Rich draws it, in a fraction of the time that Rich takes for it."""
+    """A table with lines between its columns, drawn as by Rich but in a fraction of the time."""
 
     columns: Sequence[_Column]
     widths: Sequence[int]
@@ -145,7 +146,7 @@ class _Drawing(NamedTuple):
         yield Segment(f"{frame.get_bottom(padded)}\n")
 
     def _lines(self, console: "Console", row: Sequence[str], at_bottom: bool = False) -> "Iterator[tuple[str, ...]]":
-        """Yield the lines of a row, each as the padded parts of its cells, at the bottom or the top of the row."""
+        """Yield the lines of a row as the padded parts of its cells, aligned to the top or the bottom of the row."""
         from rich.cells import cell_len
         from rich.text import Text
 

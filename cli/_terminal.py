@@ -1,4 +1,4 @@
-"""Output to the terminal: names, titles and commands from scenes and logs are printed as plain text."""
+"""Print to the terminal; names, titles and commands from scenes and logs are printed as plain text."""
 
 import io
 import os
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 CLOSED_PIPE = 141
-"""Exit code after the reader of the output has closed it: 128 + SIGPIPE, as in shells."""
+"""Exit code if the reader of the output has closed the pipe: 128 + SIGPIPE, as in shells."""
 
 UNBOUNDED = 100_000
-"""Width in columns of output that is not a terminal, so that lines are not broken."""
+"""Width of output that is not a terminal, in columns; it is so large that lines are not broken."""
 
 _QUIET = "idealgas_cli.quiet"
 
@@ -27,30 +27,30 @@ def be_quiet(ctx: click.Context, _: click.Parameter, value: bool) -> None:
 
 
 def quiet() -> bool:
-    """Whether the command prints only errors, warnings and data."""
+    """Return whether the command prints only errors, warnings and data."""
     ctx = click.get_current_context(silent=True)
     return ctx is not None and ctx.meta.get(_QUIET, False)
 
 
 def echo(text: object, err: bool = False) -> None:
-    """Print a line, unless the command is quiet; err: to stderr, always."""
+    """Print a line unless the command is quiet. err: print it to stderr, even if the command is quiet."""
     if err or not quiet():
         click.echo(plain(str(text)), err=err)
 
 
 def data(text: str, nl: bool = True) -> None:
-    """Print data for other programs, also if the command is quiet; nl: whether to end it with a new line."""
+    """Print data for other programs, even if the command is quiet. nl: whether to add a newline at the end."""
     click.echo(plain(text), nl=nl)
 
 
 def written(path: object, err: bool = False) -> None:
-    """Print that a file was written; err: to stderr, because stdout holds data."""
+    """Print that a file was written. err: print it to stderr, because data are printed to stdout."""
     if not quiet():
         echo(f"{path}: written", err=err)
 
 
 def terminal(err: bool = False) -> "Console":
-    """Console for tables and progress bars, in which no text is markup; err: on stderr."""
+    """Return a console for tables and progress bars, which prints markup as plain text. err: print to stderr."""
     from rich.console import Console
     from rich.text import Text
 
@@ -68,27 +68,30 @@ def terminal(err: bool = False) -> "Console":
 
 
 class _StandardOutput(io.FileIO):
-    """Standard output; a write that fails raises OutputError, or BrokenPipeError if the reader has closed the pipe."""
+    """Standard output that raises OutputError if a write fails, or BrokenPipeError if the reader closed the pipe."""
 
     def write(self, data: Any) -> int:
-        """Write bytes and return their number; after a failure, everything that follows is dropped."""
+        """Write bytes and return their number; after a failure, all further output is dropped."""
         try:
             return super().write(data)
         except OSError as error:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # takes what is still in the buffers
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # for the data that are still in the buffers
             if isinstance(error, BrokenPipeError):
                 raise
             raise OutputError(f"standard output: cannot be written: {error.strerror}", exit_code=1) from None
 
 
 def set_up_streams() -> None:
-    """Print characters that a stream cannot show as escapes, and report a failing write to standard output."""
+    """Set up the standard streams.
+
+    Characters that a stream cannot encode are printed as escapes, and a failed write to standard output is reported.
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     old = sys.stdout
     buffer = getattr(old, "buffer", None)
     raw = getattr(buffer, "raw", buffer)  # Python may run unbuffered
-    if type(raw) is io.FileIO:  # neither a console of Windows nor the memory of a test
+    if type(raw) is io.FileIO:  # neither a Windows console nor memory, as in tests
         file = io.BufferedWriter(_StandardOutput(raw.fileno(), "wb", closefd=False))
         sys.stdout = io.TextIOWrapper(file, old.encoding, old.errors, line_buffering=old.isatty())

@@ -32,8 +32,8 @@ def accuracy(
 ) -> None:
     """Measure errors and CPU time of the event-driven and time-driven methods and of several precisions.
 
-    Three discs on their unstable periodic orbit (configs/three-discs.toml) are followed until the orbit breaks, in
-    boxes of many sizes.
+    For three discs on their unstable periodic orbit (configs/three-discs.toml), measure instead how long the orbit
+    lasts in each precision, in boxes of many sizes.
     """
     from idealgas.accuracy import figure as accuracy_figure
     from idealgas.accuracy import report as accuracy_report
@@ -58,15 +58,15 @@ def accuracy(
         if on_orbit:
             orbit = study_orbit(gas, seed=scene.scene.seed, progress=progress)
         else:
-            found = study_accuracy(scene, repeats, progress)
+            study = study_accuracy(scene, repeats, progress)
     if on_orbit:
         result = orbit.as_dict()
         rows = [{key: value for key, value in row.items() if key != "times"} for row in result["survivals"]]
         figures, show = [accuracy_figure.orbit_figure(orbit)], lambda: _print_orbit(orbit)
     else:
-        result = accuracy_report.accuracy_dict(found)
-        rows = [accuracy_report.flat_row(row, found) for row in found.rows]
-        figures = [accuracy_figure.accuracy_figure(found), accuracy_figure.details_figure(found)]
+        result = accuracy_report.accuracy_dict(study)
+        rows = [accuracy_report.flat_row(row, study) for row in study.rows]
+        figures = [accuracy_figure.accuracy_figure(study), accuracy_figure.details_figure(study)]
         show = lambda: _print_rows(rows)  # noqa: E731
     if paths:
         accuracy_report.write_files(paths, result, rows, figures, force)
@@ -76,8 +76,8 @@ def accuracy(
         show()
         for sentence in result["sentences"]:
             echo(f"- {sentence}")
-    for made in paths:
-        written(made, err=as_json)
+    for file in paths:
+        written(file, err=as_json)
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
@@ -127,12 +127,11 @@ def _percent(row: dict[str, Any], name: str) -> "Number":
 def _print_orbit(orbit: "OrbitStudy") -> None:
     from idealgas.analysis.core.tables import Number, Table
 
-    def cells(found: "Survival") -> tuple["Cell", ...]:
-        least, most = (Number(f(found.times) if found.times else None, ".4g") for f in (min, max))
-        own = Number(found.scene, ".4g", "unbroken")
-        median, unbroken = Number(found.median, ".4g"), Number(found.unbroken, "d")
-        return found.precision, Number(found.digits, ".1f"), own, median, least, most, unbroken
+    def cells(s: "Survival") -> tuple["Cell", ...]:
+        least, most = (Number(f(s.times) if s.times else None, ".4g") for f in (min, max))
+        here, median, unbroken = Number(s.scene, ".4g", "unbroken"), Number(s.median, ".4g"), Number(s.unbroken, "d")
+        return s.precision, Number(s.digits, ".1f"), here, median, least, most, unbroken
 
     title = f"Unstable periodic orbit, period {orbit.period:.6g}, {orbit.placements} boxes and radii"
     heads = ("", "digits", "this box", "median", "least", "most", "unbroken")
-    print_tables([Table(title, heads, [cells(found) for found in orbit.survivals])])
+    print_tables([Table(title, heads, [cells(survival) for survival in orbit.survivals])])

@@ -1,4 +1,4 @@
-"""Command `idealgas animate`: film of a log."""
+"""Command `idealgas animate`: make a film of a log."""
 
 import re
 from typing import Any
@@ -28,7 +28,7 @@ def _pixels(_: click.Context, __: click.Parameter, text: str | None) -> tuple[in
     type=FILE,
     required=True,
     metavar="FILM.mp4",
-    help="The film to write, .mp4 or .gif; .png with --frame.",
+    help="File of the film, .mp4 or .gif; with --frame, .png.",
 )
 @click.option(
     "--from", "start", type=float, metavar="T", help="Start of the film, in simulated time.  [default: the log's start]"
@@ -51,19 +51,20 @@ def _pixels(_: click.Context, __: click.Parameter, text: str | None) -> tuple[in
 )
 @click.option(
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species", "order"]),
-    help="What the colour of a disc shows; order: the angle of ψ₆ of its neighbours.",
+    help="Property that the colours of the discs show; order is the angle of the local order ψ₆.",
 )  # fmt: skip
 @click.option(
     "--panel", default="speeds", show_default=True, type=click.Choice(["speeds", "density", "left-right", "none"]),
-    help="What is shown beside the discs; left-right: the fraction of discs right of the first gate or the middle.",
+    help="Panel beside the discs; left-right is the fraction of discs to the right of the first gate or the middle.",
 )  # fmt: skip
 @click.option(
-    "--trail", "trails", type=click.IntRange(0), multiple=True, metavar="DISC", help="Draw the path of a disc (its id)."
-)
+    "--trail", "trails", type=click.IntRange(0), multiple=True, metavar="ID",
+    help="Draw the path of the disc with this id.",
+)  # fmt: skip
 @click.option(
     "--background", default="light", show_default=True, type=click.Choice(["light", "dark"]), help="Background."
 )
-@click.option("--frame", type=float, metavar="T", help="Write one frame, at this simulated time, instead of a film.")
+@click.option("--frame", type=float, metavar="T", help="Write a single frame at this simulated time instead of a film.")
 @force_option
 @quiet_option
 def animate(
@@ -81,7 +82,7 @@ def animate(
     frame: float | None,
     force: bool,
 ) -> None:
-    """Make a film of a log: the discs at their exact positions, next to the distribution of their speeds.
+    """Make a film of a log: the discs at their exact positions, beside the distribution of their speeds.
 
     An MP4 film requires ffmpeg, from the system or by .venv/bin/pip install -e ".[film]"; a GIF does not.
     """

@@ -1,4 +1,4 @@
-"""Command `idealgas bench`: speed of the engine on this machine."""
+"""Command `idealgas bench`: measure the speed of the engine on this machine."""
 
 import json
 from pathlib import Path
@@ -39,7 +39,7 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
     help="Number of runs of each kind; the median is shown.",
 )  # fmt: skip
 @click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
-@click.option("--effects", is_flag=True, help="Measure the cost of each effect relative to the plain box instead.")
+@click.option("--effects", is_flag=True, help="Measure instead the cost of each effect relative to the plain box.")
 @plot_option
 @force_option
 @json_option
@@ -54,9 +54,9 @@ def bench(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Measure the speed of the event-driven engine for several N and φ, without the event log and with it.
+    """Measure the speed of the event-driven engine for several N and φ, with and without the event log.
 
-    The figure also shows published speeds of other programs.
+    The figure also shows stated speeds of other programs.
     """
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions):
         raise click.UsageError("N must be at least 1, φ above 0 and at most 0.9")
@@ -69,13 +69,13 @@ def bench(
     if effects:
         _bench_effects(collisions, repeats, as_json)
         return
-    found = _measure([int(n) for n in numbers], fractions, [int(number) for number in threads], collisions, repeats)
+    result = _measure([int(n) for n in numbers], fractions, [int(number) for number in threads], collisions, repeats)
     if plot:
         from idealgas.analysis.core.style import save
         from idealgas.bench.figure import bench_figure
 
-        save(bench_figure(found), plot, force)
-    _show(found, as_json)
+        save(bench_figure(result), plot, force)
+    _show(result, as_json)
     if plot:
         written(plot, err=as_json)
 
@@ -95,12 +95,12 @@ def _measure(numbers: list[int], fractions: list[float], threads: list[int], col
         )
 
 
-def _show(found: "Bench", as_json: bool) -> None:
+def _show(result: "Bench", as_json: bool) -> None:
     from idealgas.analysis.core.tables import Number, Table
 
     if as_json:
-        rows = [row._asdict() for row in found.rows]
-        data(json.dumps({"compile_seconds": found.compile_seconds, "rows": rows}, indent=2))
+        rows = [row._asdict() for row in result.rows]
+        data(json.dumps({"compile_seconds": result.compile_seconds, "rows": rows}, indent=2))
         return
     cells = [
         (
@@ -112,11 +112,11 @@ def _show(found: "Bench", as_json: bool) -> None:
             shown(f"{row.slowest / 1e6:.3f} – {row.fastest / 1e6:.3f}"),
             Number(row.ratio, ".2f"),
         )
-        for row in found.rows
+        for row in result.rows
     ]
     heads = ("N", "φ", "threads", "log", "M collisions/s", "slowest – fastest", "log / no log")
     print_tables([Table("", heads, cells)])
-    echo(f"compilation or loading of the machine code: {found.compile_seconds:.2f} s, not counted above")
+    echo(f"compilation or loading of the machine code: {result.compile_seconds:.2f} s, not counted above")
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
@@ -131,12 +131,12 @@ def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
         return
     cells = [
         (
-            found.effect,
-            Number(found.ratio, ".2f"),
-            shown(f"{found.smallest:.2f} – {found.largest:.2f}"),
-            Number(found.compile_seconds, ".1f"),
+            row.effect,
+            Number(row.ratio, ".2f"),
+            shown(f"{row.smallest:.2f} – {row.largest:.2f}"),
+            Number(row.compile_seconds, ".1f"),
         )
-        for found in rows
+        for row in rows
     ]
     heads = ("effect", "time per event / plain box", "smallest – largest", "compiling or loading, s")
     print_tables([Table("", heads, cells)])

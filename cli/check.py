@@ -1,4 +1,4 @@
-"""Command `idealgas check`: errors of a scene, and cost estimate of its run."""
+"""Command `idealgas check`: report errors of a scene, and estimate the size of its run."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from idealgas.scene.lattice import TriangularLattice
 
 LEAST_STRAIN = 1e-9
-"""Strain of a lattice that may be due to the rounding of the numbers in a scene."""
+"""Smallest strain of a lattice that is not attributed to rounding of the numbers in a scene."""
 
 MANY_HITS = 100.0
-"""Hits of a disc at rest per mean free time of the gas above which `check` prints a warning."""
+"""Number of hits of a disc at rest per mean free time of the gas above which `check` prints a warning."""
 
 ROUGH_REST = (
     "Rough collisions dissipate the kinetic energy; discs that a force presses together then collide ever more often, "
@@ -34,7 +34,7 @@ ROUGH_REST = (
 @scene_argument
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Check a scene and show it in full, with the rates and the size of the run expected by kinetic theory."""
+    """Check a scene, and show it in full with the rates and the size of the run that kinetic theory predicts."""
     from idealgas.scene import load_scene
     from idealgas.toml.dump import dump_document
 
@@ -50,8 +50,8 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
         effects = {"effects": scene.effects, "compiled_out": _absent(scene)}
         sharing = {"threads": threads.number, "threads_reason": threads.reason}
         shape = None if lattice is None else {"strain": lattice.strain, "unstrained": lattice.unstrained}
-        others = {"lattice": shape, "warning": ROUGH_REST if scene.collapse_risk else None}
-        data(json.dumps({"scene": tables, **effects, **sharing, **others, **asdict(expected)}, indent=2))
+        notes = {"lattice": shape, "warning": ROUGH_REST if scene.collapse_risk else None}
+        data(json.dumps({"scene": tables, **effects, **sharing, **notes, **asdict(expected)}, indent=2))
         return
     echo(dump_document(scene))
     print_tables([_species_table(expected), _walls_table(scene), _gas_table(expected, scene.run.until)])
@@ -74,7 +74,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
 
 def _lattice_line(lattice: "TriangularLattice") -> str:
-    """Rows of the initial lattice, its strain, and the box in which it is not strained."""
+    """Return a line about the initial lattice: its rows, its strain, and the size of the box without strain."""
     shape = f"lattice: {lattice.rows} rows along {'xy'[lattice.axis]} of {lattice.columns} discs"
     if abs(lattice.strain) < LEAST_STRAIN:
         return f"{shape}, without strain"
@@ -82,7 +82,7 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
 
 
 def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
-    """Bouncing of discs that have come to rest, and a warning if it dominates the run."""
+    """Yield lines about the bouncing of discs that have come to rest, with a warning if it dominates the run."""
     least, most = rest.hits
     if most is None or rest.per_free_time is None:
         yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."

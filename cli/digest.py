@@ -1,4 +1,4 @@
-"""Command `idealgas digest`: digest of a log; comparison of the example scenes with their digests on record."""
+"""Command `idealgas digest`: print the digest of a log, or compare the example scenes with their recorded digests."""
 
 import json
 
@@ -14,13 +14,13 @@ from ._terminal import data
 
 @click.command(epilog="Example: idealgas digest gas.h5")
 @click.argument("arguments", type=FILE, nargs=-1, metavar="RUN.h5 | --check [SCENE...]")
-@click.option("--check", is_flag=True, help="Run example scenes (all by default) and compare with digests.json.")
+@click.option("--check", is_flag=True, help="Run example scenes (all by default), and compare them with digests.json.")
 @click.pass_context
 def digest(context: click.Context, arguments: tuple[str, ...], check: bool) -> None:
     """Print the SHA-256 digest of the events and the final state of a log.
 
-    Equal scenes give equal digests on every machine, with any number of threads and any compression. --check runs each
-    scene for at most 20 000 events; the exit code is 1 if a digest differs.
+    Equal scenes have equal digests on every machine, with any number of threads and any compression. With --check, each
+    scene is run for at most 20 000 events, and the exit code is 1 if a digest differs.
     """
     if not check:
         if len(arguments) != 1:
@@ -40,8 +40,8 @@ def digest(context: click.Context, arguments: tuple[str, ...], check: bool) -> N
     recorded = json.loads(path_of(DIGESTS).read_text(encoding="utf-8"))
     same = True
     for name in arguments or names():
-        found = scene_digest(path_of(f"{name}.toml"))
-        same &= found == recorded.get(name)
-        data(f"{name}: {'same' if found == recorded.get(name) else 'differs'} {found}")
+        computed = scene_digest(path_of(f"{name}.toml"))
+        same &= computed == recorded.get(name)
+        data(f"{name}: {'same' if computed == recorded.get(name) else 'differs'} {computed}")
     if not same:
         context.exit(1)

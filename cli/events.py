@@ -1,4 +1,4 @@
-"""Command `idealgas events`: event rows of a log as lines of JSON."""
+"""Command `idealgas events`: print the event rows of a log as lines of JSON."""
 
 import json
 import time
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from idealgas.columns import EventBatch
 
 KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped", "fixed_disc")
-LINES = 200  # in one write, which a pipe takes as a whole
-SECONDS = 0.2  # between two looks at a log that is being written
+LINES = 200  # number of lines in a write, so that a pipe accepts it as a whole
+SECONDS = 0.2  # time between two updates from a log that is being written
 
 
 @click.command(epilog="Example: idealgas events gas.h5 --disc 0 --follow")
@@ -25,11 +25,11 @@ SECONDS = 0.2  # between two looks at a log that is being written
 @click.option("--kind", type=click.Choice(KINDS), help="Only events of this kind.")
 @click.option("--from", "t0", type=float, metavar="T", help="Only events at this time or later.")
 @click.option("--to", "t1", type=float, metavar="T", help="Only events before this time.")
-@click.option("--follow", is_flag=True, help="While the log is being written, wait for the next events.")
+@click.option("--follow", is_flag=True, help="Wait for further events while the log is being written.")
 def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: float | None, follow: bool) -> None:
-    """Print the event rows of a log, one line of JSON for each: time, disc, kind, partner, and the state afterwards.
+    """Print the event rows of a log as lines of JSON: time, disc, kind, partner, and the state after the event.
 
-    A collision of two discs is two rows. Partners are ids of discs, or -1 - k for wall k.
+    A collision of two discs is two rows. A partner is the id of a disc, or -1 - k for wall k.
     """
     with open_log(path) as log:
         log.require_events()
@@ -37,7 +37,7 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
             raise UserError(f"{path}: no such disc (got {disc}; allowed 0 to {len(log.discs) - 1})")
         row = 0 if t0 is None else log.row_at(t0)
         while True:
-            live = follow and log.live  # before the rows are read, so that none is missed
+            live = follow and log.live  # tested before the rows are read, so that no row is missed
             stop = len(log) if t1 is None else log.row_at(t1)
             for batch in log.chunks(None, row, stop):
                 print_events(batch, disc, None if kind is None else KINDS.index(kind))
@@ -49,16 +49,16 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
 
 
 class EventStream:
-    """Function that prints event rows while the output takes them.
+    """A function that prints event rows as long as the output accepts them.
 
     Attributes:
-        failure: BrokenPipeError after the reader has closed the output, OutputError if it cannot be written.
+        failure: BrokenPipeError if the reader has closed the pipe, OutputError if the output cannot be written.
     """
 
     failure: BrokenPipeError | OutputError | None = None
 
     def __call__(self, batch: "EventBatch") -> None:
-        """Print the rows of a batch; waits while the pipe is full."""
+        """Print the rows of a batch; wait while the pipe is full."""
         if self.failure is not None:
             return
         try:
@@ -68,7 +68,7 @@ class EventStream:
 
 
 def print_events(batch: "EventBatch", disc: int | None = None, kind: int | None = None) -> None:
-    """Print the rows of a batch that are of a disc and of a kind, None for any."""
+    """Print the rows of a batch for a disc and a kind of events; None stands for any."""
     import numpy as np
 
     from idealgas.log.dataframes import flat

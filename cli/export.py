@@ -1,4 +1,4 @@
-"""Command `idealgas export`: files for other programs from a log."""
+"""Command `idealgas export`: write a log to files for other programs."""
 
 import sys
 from pathlib import Path
@@ -23,18 +23,18 @@ KINDS: "tuple[Kind, ...]" = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 @click.option("--format", "kind", type=click.Choice(KINDS), help="Format of the file.  [default: by the ending of OUT]")
 @click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
 @click.option("--flights", is_flag=True, help="Write the flights of all discs from event to event (csv, parquet).")
-@click.option("--parts", type=click.IntRange(1), help="Write a folder of so many parquet files, divided in time.")
+@click.option("--parts", type=click.IntRange(1), help="Write a folder with so many parquet files, divided in time.")
 @click.option(
     "--frames",
     metavar="N|every=DT",
-    help="Write all discs at N times from start to end, or every DT in simulated time.",
+    help="Write all discs at N times from start to end, or at intervals DT of simulated time.",
 )
 @click.option(
     "-o",
     "--output",
     type=FILE,
     metavar="OUT",
-    help="The file to write; - for standard output (csv, extxyz).  [default: RUN with the format's ending]",
+    help="File to write; - for standard output (csv, extxyz).  [default: RUN with the ending of the format]",
 )
 @force_option
 @quiet_option
@@ -50,8 +50,8 @@ def export(
 ) -> None:
     """Write the events or flights of a log, or frames of all discs, to a file for other programs.
 
-    gsd (HOOMD, OVITO) keeps positions as float32; extxyz (OVITO, ASE) and csv keep every digit; h5md3d (MDAnalysis) is
-    H5MD with a third coordinate, zero.
+    gsd (HOOMD, OVITO) stores positions as float32; extxyz (OVITO, ASE) and csv keep all digits; h5md3d (MDAnalysis) is
+    H5MD with a third coordinate equal to zero.
     """
     if events + flights + (frames is not None) != 1:
         raise click.UsageError("one of --events, --flights and --frames is required")
@@ -71,11 +71,11 @@ def export(
 
 
 def _kind_of(output: str | None) -> "Kind":
-    """Format of a file by its ending."""
+    """Return the format of a file, given its path with an ending."""
     from idealgas.log.export.export import FORMATS
 
     ending = Path(output or "").suffix.lower()
-    kind = next((kind for kind, made in FORMATS.items() if made.ending == ending), None)
+    kind = next((kind for kind, file_format in FORMATS.items() if file_format.ending == ending), None)
     if kind is None:
         raise UserError(f"--format: missing (allowed {', '.join(KINDS)}), or an OUT with the ending of one")
     return kind

@@ -1,4 +1,4 @@
-"""Command `idealgas follow`: status of a run in progress."""
+"""Command `idealgas follow`: show the status of a run in progress."""
 
 import time
 from dataclasses import replace
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.status import Status
     from idealgas.log import Log
 
-SECONDS = 1.0  # between two updates
+SECONDS = 1.0  # time between two updates
 
 
 @click.command(epilog="Example: idealgas follow gas.h5")
@@ -25,7 +25,7 @@ SECONDS = 1.0  # between two updates
 def follow(path: str, once: bool) -> None:
     """Show the status of a run until it ends; if the output is not a terminal, only the final status.
 
-    Pressure and Z are measured from the latest events, the speeds are those of the latest state.
+    Pressure and Z are measured from the latest events, and the speeds from the latest state.
     """
     from rich.live import Live
 
@@ -46,7 +46,7 @@ def follow(path: str, once: bool) -> None:
                 break
             if console.is_terminal:
                 screen.update(_view(log, seen, rate, console.width), refresh=True)
-    with open_log(path) as log:  # opened again, as it may have been closed
+    with open_log(path) as log:  # opened again, as the run may have closed it
         if log.complete and log.summary["seconds"] > 0:
             rate = log.summary["events"] / log.summary["seconds"]
         shown = _view(log, status(log), rate, console.width)
@@ -72,7 +72,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 
 def _histogram(seen: "Status") -> str:
-    """Text histogram of the speeds, with a mark at the Maxwell-Boltzmann density in each line."""
+    """Return a text histogram of the speeds, with a mark at the Maxwell-Boltzmann density on each line."""
     from idealgas.analysis.core.tables import bars
 
     if seen.density is None:

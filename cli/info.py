@@ -1,4 +1,4 @@
-"""Command `idealgas info`: contents of a log."""
+"""Command `idealgas info`: show the contents of a log."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -21,15 +21,15 @@ def info(path: str, as_json: bool) -> None:
     from idealgas.analysis.info import info as describe_log
 
     with open_log(path) as log:
-        found = describe_log(log)
+        facts = describe_log(log)
     if as_json:
-        print_json(found)
+        print_json(facts)
         return
     print_tables(
         _table(name, {key: value for key, value in values.items() if key != "species"})
-        for name, values in found.items()
+        for name, values in facts.items()
     )
-    for species in found["gas"]["species"]:
+    for species in facts["gas"]["species"]:
         echo("species: " + ", ".join(f"{key} {_text(value)}" for key, value in species.items()))
 
 

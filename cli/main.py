@@ -1,8 +1,8 @@
-"""The command `idealgas`: one command for each module here and for each analysis of the registry.
+"""The command `idealgas`: a command for each module in this folder and for each analysis in the registry.
 
-Command NAME is the function NAME of the module NAME, which is imported when the command is called; modules whose name
-starts with an underscore, and this one, are not commands. Commands that analyse a log are made from the classes of
-the analyses.
+Command NAME is the function NAME of the module NAME, which is imported when the command is called. This module and the
+modules whose names start with an underscore are not commands. The commands that analyse a log are made from the classes
+of the analyses.
 """
 
 import gc
@@ -31,7 +31,7 @@ GROUPS = {
     "Share": ("report", "export", "events"),
     "Study": ("sweep", "accuracy", "bench"),
 }
-"""All commands in the groups, and in the order, in which `--help` shows them."""
+"""All commands, in the groups and in the order in which `--help` lists them."""
 
 EXAMPLES = {
     "Run": "idealgas new gas",
@@ -44,14 +44,14 @@ EXAMPLES = {
 
 
 class Commands(click.Group):
-    """Group of all commands: modules of this folder and analyses; it prints a UserError as plain lines."""
+    """The group of all commands, which are the modules in this folder and the analyses; it prints errors of users."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all commands, group by group."""
+        """Return the names of all commands, group by group."""
         return [name for names in GROUPS.values() for name in names]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Command with a name; None if it does not exist."""
+        """Return the command with a name; None if it does not exist."""
         if name not in self.list_commands(ctx):
             return None
         if name in registry.commands():
@@ -60,7 +60,7 @@ class Commands(click.Group):
         return getattr(import_module(f".{module}", __package__), module)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of the commands: each group with an example, each command with its first sentence."""
+        """Write the list of the commands: each group with an example, and each command with its first sentence."""
         widest = max(map(len, self.list_commands(ctx)))
         for group, names in GROUPS.items():
             commands = [(name, self.get_command(ctx, name)) for name in names]
@@ -69,11 +69,15 @@ class Commands(click.Group):
                 formatter.write_dl(rows)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Options and the rest of a command line; `help NAME` is `NAME --help`."""
+        """Parse a command line and return the arguments left; `help NAME` is the same as `NAME --help`."""
         return super().parse_args(ctx, [*args[1:], "--help"] if args[:1] == ["help"] else args)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[Any, ...]:
-        """Name, command and arguments of a command line; UserError, with the most similar name, if unknown."""
+        """Return the name, the command and the arguments of a command line.
+
+        Raises:
+            UserError: if the command is unknown; the message suggests the most similar name.
+        """
         if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
             raise unknown("command", args[0], [*self.list_commands(ctx), "--version"])
         return super().resolve_command(ctx, args)
@@ -81,9 +85,9 @@ class Commands(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program."""
         set_up_streams()
-        gc.set_threshold(100_000, 50, 50)  # imports make many objects that stay, and search them again and again
-        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it looks for them in all installed packages
-        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns where it cannot keep its caches
+        gc.set_threshold(100_000, 50, 50)  # imports create many permanent objects, which would be searched repeatedly
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # the search for plugins reads all packages
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no warnings if its cache cannot be written
         return super().main(*args, **options)
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
@@ -100,7 +104,10 @@ class Commands(click.Group):
 
 @contextmanager
 def _plain_errors() -> Iterator[None]:
-    """Print errors that a user can correct as one line, with options instead of arguments, and exit with their code."""
+    """Print errors that a user can correct on one line, and exit with their codes.
+
+    Names of arguments of the library are replaced by options of the command.
+    """
     try:
         yield
         if sys.stdout is not None:
@@ -126,12 +133,12 @@ def _plain_errors() -> Iterator[None]:
 
 
 def first_sentence(command: click.Command) -> str:
-    """First sentence of the help of a command, on one line."""
+    """Return the first sentence of the help of a command, on one line."""
     return command.get_short_help_str(limit=1000)
 
 
 def _check_threads(number: str) -> None:
-    """Raise UserError for a value with which numba cannot be imported."""
+    """Raise UserError for a value of NUMBA_NUM_THREADS with which numba could not be imported."""
     if not (number.isascii() and number.isdigit() and int(number)):
         raise UserError(f"NUMBA_NUM_THREADS: not a number of threads (got {number}; allowed a whole number >= 1)")
 
@@ -139,7 +146,7 @@ def _check_threads(number: str) -> None:
 @click.command(
     cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`idealgas COMMAND --help` explains a command and its options.",
+    epilog="`idealgas COMMAND --help` describes a command and its options.",
 )
 @click.version_option(__version__, "-V", "--version", prog_name="idealgas")
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Command `idealgas new`: a scene to start from."""
+"""Command `idealgas new`: write a scene to start from."""
 
 import click
 
@@ -13,7 +13,7 @@ from ._terminal import data
 @click.argument("name")
 @force_option
 def new(name: str, force: bool) -> None:
-    """Write a commented scene to start from, NAME.toml, or to standard output for -.
+    """Write a commented scene to start from as NAME.toml, or to standard output if NAME is -.
 
     A JSON Schema is written to the same folder; editors use it to complete and check keys.
     """

@@ -1,4 +1,4 @@
-"""Command `idealgas report`: one page with all results of a log."""
+"""Command `idealgas report`: write a page with all results of a log."""
 
 import click
 
@@ -16,14 +16,15 @@ from ._terminal import written
     "start",
     type=float,
     metavar="T",
-    help="First time in the player, in simulated time.  [default: the log's start]",
+    help="Start of the motion in the player, in simulated time.  [default: the log's start]",
 )
 @force_option
 @quiet_option
 def report(path: str, output: str, start: float | None, force: bool) -> None:
-    """Write one HTML page with all applicable analyses and a player of the motion.
+    """Write an HTML page with all applicable analyses and a player of the motion.
 
-    The page is a single file and needs no network. Of a long run, the player shows a part, and states which.
+    The page is a single file and requires no network. If the run is long, the player shows only a part of it, which the
+    page states.
     """
     from idealgas.report.page import write_report
 

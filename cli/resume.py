@@ -22,10 +22,9 @@ from ._options import integer, json_option, quiet_option
 @json_option
 @quiet_option
 def resume(path: str, as_json: bool, **ends: Any) -> None:
-    """Continue a run from its last checkpoint, if it was interrupted or killed, or if it is to end later.
+    """Continue a run that was interrupted or killed from its last checkpoint, or continue it to a later end.
 
-    The log is the same, bit for bit, as that of a run without interruption. A new end replaces all stop rules of the
-    scene.
+    The result is bit for bit the log of an uninterrupted run. A new end replaces all stop conditions of the scene.
     """
     from idealgas.run.resume import resume as resume_run
 

@@ -1,4 +1,4 @@
-"""Command `idealgas run`: event log of a scene."""
+"""Command `idealgas run`: run a scene and write its log."""
 
 from contextlib import nullcontext
 from functools import partial
@@ -15,16 +15,16 @@ from ._options import FILE, force_option, json_option, quiet_option, scene_argum
 @scene_argument
 @click.option("-o", "--output", type=FILE, required=True, metavar="RUN.h5", help="The log to write.")
 @force_option
-@click.option("--watch", is_flag=True, help="Show the run in the browser, until Ctrl-C.")
-@click.option("--stream", is_flag=True, help="Print each event as a line of JSON while the run waits for the reader.")
+@click.option("--watch", is_flag=True, help="Show the run in the browser until Ctrl-C.")
+@click.option("--stream", is_flag=True, help="Print each event as a line of JSON; the run waits for a slow reader.")
 @json_option
 @quiet_option
 def run(
     path: str, overrides: tuple[str, ...], output: str, force: bool, watch: bool, stream: bool, as_json: bool
 ) -> None:
-    """Run a scene and write every event into an HDF5 log. After Ctrl-C, `resume` continues the run from its log.
+    """Run a scene and write every event to an HDF5 log. After Ctrl-C, `resume` continues the run from its log.
 
-    With --stream the events are also printed, as by `idealgas events`; the run ends when the reader closes the pipe.
+    With --stream, the events are also printed as by `idealgas events`; the run ends when the reader closes the pipe.
     """
     from idealgas.scene import load_scene
 

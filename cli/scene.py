@@ -1,4 +1,4 @@
-"""Command `idealgas scene`: a scene that starts from a state of a log."""
+"""Command `idealgas scene`: write a scene that starts from a state of a log."""
 
 import os
 from pathlib import Path
@@ -29,7 +29,7 @@ def _instant(_: click.Context, __: click.Parameter, value: str) -> float | Liter
 @click.option("-o", "--output", type=FILE, required=True, metavar="SCENE.toml", help="The scene to write.")
 @force_option
 def scene(path: str, time: float | Literal["end"], output: str, force: bool) -> None:
-    """Write a scene that starts from a state of a log: same box, effects and run, with the clock at 0."""
+    """Write a scene that starts from a state of a log, with the same box, effects and run, and the clock at 0."""
     check_output(output, "scene", force, [path])
     from idealgas.log import open_log
     from idealgas.log.start import continued_scene

@@ -1,4 +1,4 @@
-"""Command `idealgas schema`: JSON Schema of scenes and sweeps."""
+"""Command `idealgas schema`: print the JSON Schema of scenes or sweeps."""
 
 import click
 
@@ -10,7 +10,7 @@ from ._terminal import data
 def schema(kind: str) -> None:
     """Print the JSON Schema of scenes or of sweeps, which editors use to complete and check keys.
 
-    A file names its schema in its first line, as in `#:schema scene.schema.json`.
+    A file refers to its schema in its first line, as in `#:schema scene.schema.json`.
     """
     from idealgas.scene import Scene
     from idealgas.sweep.tables import Tables

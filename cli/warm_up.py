@@ -29,4 +29,4 @@ def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         data(json.dumps({"compile_seconds": seconds}, indent=2))
     else:
-        print_tables([facts("Compilation", {path: f"{taken:.1f} s" for path, taken in seconds.items()})])
+        print_tables([facts("Compilation", {path: f"{duration:.1f} s" for path, duration in seconds.items()})])

@@ -1,4 +1,4 @@
-"""Command `idealgas watch`: a log in the browser, also while it is written."""
+"""Command `idealgas watch`: show a log in the browser, even while it is written."""
 
 import os
 import subprocess
@@ -22,9 +22,9 @@ from ._terminal import echo
 @click.option("--until-eof", is_flag=True, hidden=True, help="End when the standard input ends, as with `run --watch`.")
 @quiet_option
 def watch(path: str, port: int, no_browser: bool, until_eof: bool) -> None:
-    """Show a log in the browser until Ctrl-C, also while it is written.
+    """Show a log in the browser until Ctrl-C, even while it is written.
 
-    The page has the discs, their speeds beside the Maxwell-Boltzmann distribution, and temperature and pressure in
+    The page shows the discs, their speeds with the Maxwell-Boltzmann distribution, and temperature and pressure against
     time. Only browsers on this machine can open it.
     """
     from idealgas.log import open_log
@@ -42,21 +42,21 @@ def watch(path: str, port: int, no_browser: bool, until_eof: bool) -> None:
 
 
 def _end_at_eof() -> None:
-    """End this process when its standard input ends, as it does when the process at its other end is killed."""
+    """End this process when its standard input ends, which also happens if the process at the other end is killed."""
     sys.stdin.buffer.read()
     os._exit(0)
 
 
 def has_screen() -> bool:
-    """Whether a browser opens in a window; without a screen, one would open in the terminal of the command."""
+    """Return whether a browser opens in a window; without a screen, it would open in the terminal of the command."""
     return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 @contextmanager
 def watching(path: str) -> Iterator[Callable[[], None]]:
-    """Yield a function that starts `idealgas watch` for the log of a run, once; its page stays until Ctrl-C.
+    """Yield a function that starts `idealgas watch` for the log of a run once; the page stays open until Ctrl-C.
 
-    The page has a process of its own, so that it does not slow down the run.
+    The page is served by a separate process, so that it does not slow down the run.
     """
     pages: list[subprocess.Popen[str]] = []
 
@@ -79,4 +79,4 @@ def watching(path: str) -> Iterator[Callable[[], None]]:
 
 def _repeat(lines: Iterable[str]) -> None:
     for line in lines:
-        echo(line.rstrip("\n"), err=True)  # above the progress bar
+        echo(line.rstrip("\n"), err=True)  # printed above the progress bar

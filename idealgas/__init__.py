@@ -6,23 +6,26 @@
     summary = idealgas.simulate(scene, "run.h5")
     print(summary.events, summary.energy_drift)
     with idealgas.open_log("run.h5") as log:
-        found = idealgas.pressure(log)  # or analyse(log, "pressure")
-        for route in found.routes:
+        result = idealgas.pressure(log)  # or analyse(log, "pressure")
+        for route in result.routes:
             print(route.name, route.compressibility_factor.value, route.compressibility_factor.standard_error)
         print(log.to_pandas("events", disc=0))
 
-`load_scene`, `load_example` and `parse_scene` make a `Scene`. `simulate` runs it and writes a log, `resume` continues a
-run; both return a `Summary`. `open_run` begins a run that a program advances and steers. `open_log` opens a `Log` for
-reading. `analyse`, or an analysis by its name, measures something in it, or in a log at a path, and `combine` takes its
-results of several logs; `write_report`, `animate` and `export` take both as well. `run_sweep` runs what `load_sweep`
-has read. Results are dataclasses with `as_dict()`, which gives plain values for JSON, `tables()` and `plot()`, which
-gives a figure of matplotlib; notebooks show their tables. A measured number is an `Estimate`, a value with its standard
-error. An error that a user can mend is a `UserError`, in one plain line; `SceneError`, `LogError` and `OutputError` are
-kinds of it.
+`load_scene`, `load_example` and `parse_scene` return a `Scene`. `simulate` runs a scene and writes a log, and `resume`
+continues a run; both return a `Summary`. `open_run` starts a run that a program advances and steers.
 
-Lengths, times and masses are in units of the user's own; Boltzmann's constant is 1. A name is imported when it is first
-used, so that `import idealgas` itself is quick. Linear algebra of NumPy and SciPy takes one thread if idealgas is
-imported before NumPy, unless the environment variable OPENBLAS_NUM_THREADS sets another number.
+`open_log` opens a `Log` for reading. Each analysis is a function, such as `pressure`; `analyse` calls an analysis by
+its name, and `combine` combines its results from several logs. Analyses, `write_report`, `animate` and `export` accept
+a log or the path of a log. `load_sweep` reads a sweep, and `run_sweep` runs it.
+
+Results are dataclasses with the methods `as_dict()`, which returns plain values for JSON, `tables()`, and `plot()`,
+which returns a matplotlib figure; notebooks show their tables. A measured number is an `Estimate`, a value with its
+standard error. An error that a user can correct is a `UserError` with a one-line message; `SceneError`, `LogError` and
+`OutputError` are derived from it.
+
+Lengths, times and masses are in arbitrary units, and Boltzmann's constant is 1. A name is imported when it is first
+used, so that `import idealgas` itself is fast. If idealgas is imported before NumPy, the linear algebra of NumPy and
+SciPy uses one thread, unless the environment variable OPENBLAS_NUM_THREADS sets another number.
 """
 
 import os
@@ -32,7 +35,7 @@ from typing import Any
 
 from idealgas._version import __version__
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait actively, longer than small products take
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin while they wait, longer than small products take
 
 _HOMES = {
     "idealgas.accuracy.study": ("study_accuracy",),
@@ -54,7 +57,7 @@ _HOMES = {
     "idealgas.sweep.plan": ("load_sweep",),
     "idealgas.sweep.run": ("run_sweep",),
 }
-"""Where the names lie that are no analysis; the analyses are those of the registry."""
+"""Modules of all names that are not analyses; the analyses are in the registry."""
 
 __all__ = [  # and the names of all analyses
     "Estimate",
@@ -90,7 +93,7 @@ __all__ = [  # and the names of all analyses
 
 
 def __getattr__(name: str) -> Any:
-    """What has one of the names above or that of an analysis, imported at its first use (PEP 562)."""
+    """Return the object with a name, which is imported at its first use (PEP 562)."""
     for home, names in _HOMES.items():
         if name in names:
             globals()[name] = value = getattr(import_module(home), name)
@@ -104,14 +107,14 @@ def __getattr__(name: str) -> Any:
 
 @cache
 def _function(name: str) -> Any:
-    """Function of an analysis, the same one at each use."""
+    """Return the function of an analysis, always the same object."""
     from idealgas.analysis import registry
 
     return registry.find(name).function()
 
 
 def __dir__() -> list[str]:
-    """All names of the interface, those of analyses as the registry has them."""
+    """Return all names of the interface, including the analyses in the registry."""
     from idealgas.analysis import registry
 
     return sorted({*__all__, *registry.names()})

@@ -1,4 +1,4 @@
-"""`python -m idealgas` is the command `idealgas`."""
+"""Run the command `idealgas` as `python -m idealgas`."""
 
 from idealgas_cli.main import main
 

@@ -1,11 +1,11 @@
-"""Names of the analyses, which are those of their modules, read from their folder without importing any."""
+"""List the names of the analyses, which are the names of their modules, without importing them."""
 
 from pathlib import Path
 from pkgutil import iter_modules
 
 FOLDER = Path(__file__).parent / "analysis"
 OTHERS = ("core", "info", "registry", "status", "theory")
-"""Modules in the folder that are not analyses."""
+"""Modules in the folder of the analyses that are not analyses."""
 
 
 def names() -> tuple[str, ...]:
@@ -14,5 +14,5 @@ def names() -> tuple[str, ...]:
 
 
 def commands() -> tuple[str, ...]:
-    """Return the names of the commands of all analyses, also used in scenes and sweeps."""
+    """Return the names of the commands of all analyses, which scenes and sweeps use as well."""
     return tuple(name.replace("_", "-") for name in names())

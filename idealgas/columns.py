@@ -1,8 +1,8 @@
-"""What one event row is: columns, batches, kinds of events, and the numbers of walls.
+"""Definition of an event row: its columns, batches of rows, kinds of events, and numbers of walls.
 
-A column is declared once, here; batches, tables of a log, checkpoints, snapshots and exports are made from it.
+Each column is declared once, here. Batches, tables of a log, checkpoints, snapshots and exports use this declaration.
 
-Walls 0 to 3 are the sides of the box, wall segments follow. Events name wall k as partner -1 - k.
+Walls 0 to 3 are the sides of the box; wall segments follow. In events, the partner -1 - k stands for wall k.
 """
 
 from collections.abc import Collection, Sequence
@@ -15,13 +15,13 @@ SIDES = ("left", "right", "bottom", "top")
 """Names of walls 0 to 3."""
 
 MOST_SPECIES, MOST_WALLS = 1_000, 10_000
-"""Largest numbers of species, whose pairs are counted, and of wall segments."""
+"""Largest number of species, which is limited as pairs of species are counted, and of wall segments."""
 
 FIRST_SEGMENT = len(SIDES)
-"""Number of the first wall segment; the others follow in the order of the scene."""
+"""Number of the first wall segment; further segments follow in the order of the scene."""
 
 HEAT_BATH = 1 << 30
-"""Number of a heat bath, larger than that of any wall; events name it as partner BATH."""
+"""Number of the heat bath, larger than the number of any wall; in events, the partner BATH stands for it."""
 
 BATH = -1 - HEAT_BATH
 """Partner of a disc in an event of kind THERMOSTAT."""
@@ -40,37 +40,38 @@ BLOCK = 65_536
 
 
 class Kind(IntEnum):
-    """What a disc collided with; stored in the log as `events/kind`."""
+    """Kind of an event, that is what a disc collided with; stored in the log as `events/kind`."""
 
     DISC = 0
     WALL = 1
-    """Or a sheared side, through which it enters at the opposite one."""
+    """A wall, or a sheared side through which the disc passes to the opposite side."""
     WALL_END = 2
     PISTON = 3
     THERMOSTAT = 4
     """The heat bath of a thermostat."""
     STEERED = 5
-    """Nothing: its velocity or its acceleration changed from outside."""
+    """Not a collision: the velocity or the acceleration of the disc was changed from outside."""
     ESCAPED = 6
-    """An absorbing wall, through which it left the gas: its last event."""
+    """An absorbing wall, through which the disc left the gas; this is its last event."""
     FIXED_DISC = 7
-    """A fixed disc of the scene, which is a wall of its own."""
+    """A fixed disc of the scene, which counts as a wall."""
 
 
 WALL_HITS = (Kind.WALL, Kind.WALL_END, Kind.FIXED_DISC, Kind.PISTON)
-"""Kinds of events in which a disc hits a wall, inner ones, fixed discs and pistons included, and stays in the gas."""
+"""Kinds of events in which a disc hits a side, a wall segment, a fixed disc or a piston and stays in the gas."""
 
 
 class Column(NamedTuple):
-    """One column of a table.
+    """A column of a table.
 
     Attributes:
         name: name of the column.
         dtype: NumPy type of its numbers.
-        shape: shape of one row's entry.
+        shape: shape of the entry of a row.
         unit: unit of its numbers; empty if they have none.
-        when: property of the discs (see `POSITIONS`) that events need to have this column; empty for all events.
-        parts: names of the components of an entry, for tables in which every column is one number.
+        when: property that discs must have (see `POSITIONS`) for their events to have this column; empty if all events
+            have it.
+        parts: names of the components of an entry, for tables in which each column is a single number.
     """
 
     name: str
@@ -85,10 +86,10 @@ Arrays = dict[Column, np.ndarray]
 """Columns with an entry for each disc."""
 
 Values = dict[Column, Any]
-"""Columns with one entry."""
+"""Columns with a single entry."""
 
 POSITIONS, SPINS, IMAGES, TRIALS = "positions", "spins", "images", "trials"
-"""Properties that discs may have: positions, spins, images through periodic sides, and Monte Carlo trials."""
+"""Properties that discs may have: positions, spins, images across periodic sides, and Monte Carlo trials."""
 
 POSITION = Column("position", "f8", (2,), "length", POSITIONS, ("x", "y"))
 VELOCITY = Column("velocity", "f8", (2,), "length/time", parts=("vx", "vy"))
@@ -106,21 +107,21 @@ EVENT_COLUMNS = (
     IMAGE,
     Column("trial", "u8", when=TRIALS),
 )
-"""All columns that events may have, in the order of an `EventBatch`."""
+"""All columns that events may have, in the order of the fields of `EventBatch`."""
 
 
 class EventBatch(NamedTuple):
     """Rows of the event log in order of time; a collision of two discs has two rows, the smaller id first.
 
     Attributes:
-        time: (n,) f8, time.
+        time: (n,) f8, time of the event.
         disc: (n,) u4, id of the disc.
         partner: (n,) i4, id of the other disc, -1 - k for wall k, BATH or OUTSIDE.
         kind: (n,) u1, a `Kind`.
-        position: (n, 2) f8, length, after the event; None where the method has no positions.
-        velocity: (n, 2) f8, length/time, after the event.
-        angular_velocity: (n,) f8, 1/time, after the event; None where discs do not spin.
-        image: (n, 2) i4, box lengths to add to the position to unwrap it; None without periodic sides.
+        position: (n, 2) f8, position after the event, length; None if the method has no positions.
+        velocity: (n, 2) f8, velocity after the event, length/time.
+        angular_velocity: (n,) f8, angular velocity after the event, 1/time; None if discs do not spin.
+        image: (n, 2) i4, number of box lengths to add to the position to unwrap it; None without periodic sides.
         trial: (n,) u8, number of the Monte Carlo trial, from 1; None for other methods.
     """
 
@@ -135,17 +136,17 @@ class EventBatch(NamedTuple):
     trial: np.ndarray | None = None
 
     def rows(self, start: int, stop: int) -> "EventBatch":
-        """View of the rows from `start` to before `stop`."""
+        """Return a view of the rows from `start` up to, but not including, `stop`."""
         return EventBatch(*(None if column is None else column[start:stop] for column in self))  # type: ignore[arg-type]
 
 
 def event_columns(*has: str) -> tuple[Column, ...]:
-    """Columns of the events of discs that have these properties."""
+    """Return the columns of the events of discs that have these properties."""
     return tuple(column for column in EVENT_COLUMNS if not column.when or column.when in has)
 
 
 def columns_named(names: Collection[str]) -> tuple[Column, ...]:
-    """Columns of events with these names, in the order of the declaration."""
+    """Return the columns of events with these names, in the order of their declaration."""
     return tuple(column for column in EVENT_COLUMNS if column.name in names)
 
 
@@ -154,42 +155,42 @@ PLAIN_COLUMNS = event_columns(POSITIONS)
 
 
 def empty_batch(rows: int = BLOCK, columns: Sequence[Column] = PLAIN_COLUMNS) -> EventBatch:
-    """Batch of `rows` rows with these columns, for an engine to fill; None for all other columns."""
+    """Return a batch of `rows` rows with these columns, for an engine to fill; all other columns are None."""
     made = {column.name: np.empty((rows, *column.shape), column.dtype) for column in columns}
     return EventBatch(*(made.get(name) for name in EventBatch._fields))  # type: ignore[arg-type]
 
 
 def face_names(walls: Sequence[str]) -> list[str]:
-    """Names of all wall faces, from the names of the walls: the sides, then both faces of every segment.
+    """Return the names of all faces of walls, given the names of the walls: the sides, then both faces of each segment.
 
-    The face on the left, seen from the segment's start towards its end, comes first.
+    The face on the left, seen from the start of the segment towards its end, comes first.
     """
     segments = walls[FIRST_SEGMENT:]
     return [*walls[:FIRST_SEGMENT], *(f"{name} {face}" for name in segments for face in ("left", "right"))]
 
 
 def axis_of(side: int) -> int:
-    """Axis normal to a side: 0 (x) for left and right, 1 (y) for bottom and top."""
+    """Return the axis normal to a side: 0 (x) for left and right, 1 (y) for bottom and top."""
     return side // 2
 
 
 def is_upper(side: int) -> bool:
-    """Whether a side is at the larger coordinate along its axis: right and top."""
+    """Return whether a side is at the larger coordinate along its axis, as are right and top."""
     return side % 2 == 1
 
 
 def sides_across(axis: int) -> tuple[int, int]:
-    """Numbers of the two sides normal to an axis, the one at the smaller coordinate first."""
+    """Return the numbers of the two sides normal to an axis; the side at the smaller coordinate is first."""
     return 2 * axis, 2 * axis + 1
 
 
 def opposite(side: int) -> int:
-    """Number of the opposite side."""
+    """Return the number of the opposite side."""
     return side ^ 1
 
 
 def side_ends(box: tuple[float, float]) -> list[tuple[Point, Point]]:
-    """Both end points of each side of a box (width, height), length."""
+    """Return both end points of each side of a box (width, height), length."""
     width, height = box
     left, right = ((0.0, 0.0), (0.0, height)), ((width, 0.0), (width, height))
     return [left, right, ((0.0, 0.0), (width, 0.0)), ((0.0, height), (width, height))]

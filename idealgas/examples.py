@@ -14,40 +14,40 @@ if TYPE_CHECKING:
 SCENE = ".toml"
 
 TEMPLATE = "template"
-"""Name of the commented scene that `idealgas new` copies, which shows no gas."""
+"""Name of the commented scene that `idealgas new` copies; it is not an example of a gas."""
 
 
 def path_of(name: str) -> Path:
-    """Path of an installed file."""
+    """Return the path of an installed file."""
     return Path(next(iter(import_module("idealgas_scenes").__path__))) / name
 
 
 def paths() -> list[Path]:
-    """Files of all scenes, in alphabetical order of their names."""
+    """Return the paths of all scenes, in alphabetical order of their names."""
     return sorted(path_of("").glob(f"*{SCENE}"), key=lambda path: path.stem)
 
 
 def names() -> list[str]:
-    """Names of the scenes, in alphabetical order."""
+    """Return the names of the scenes, in alphabetical order."""
     return [path.stem for path in paths()]
 
 
 def first_sentence(description: str) -> tuple[str, str]:
     """Return the first sentence of the description of a scene on one line, and the text that follows it."""
-    paragraph, *others = description.strip("\n").split("\n\n", maxsplit=1)
+    paragraph, *following = description.strip("\n").split("\n\n", maxsplit=1)
     sentence, *rest = re.split(r"(?<=\.)\s+", paragraph, maxsplit=1)
-    return " ".join(sentence.split()), "\n\n".join((*rest, *others))
+    return " ".join(sentence.split()), "\n\n".join((*rest, *following))
 
 
 def load_example(name: str, overrides: Sequence[str] = ()) -> "Scene":
     """Load one of the example scenes that are installed with the package.
 
     Args:
-        name: its name, as `idealgas examples` lists it.
-        overrides: changes, as for `load_scene`.
+        name: name of the example; `idealgas examples` lists all names.
+        overrides: changes of keys, as for `load_scene`.
 
     Raises:
-        UserError: if there is no such example, or the changes are invalid.
+        UserError: if there is no such example or the changes are invalid.
     """
     from idealgas.scene import load_scene
 

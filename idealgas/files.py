@@ -1,4 +1,4 @@
-"""Output files: checks before writing, and complete files appear under their names at once."""
+"""Output files: they are checked before writing, and appear under their names only when they are complete."""
 
 import errno
 import os
@@ -14,9 +14,9 @@ from idealgas.errors import OutputError
 from idealgas.locks import WriteLock, is_locked, open_regular
 
 LOG = "log"
-"""Kind of a log; the other kinds are the endings of their files."""
+"""The kind of a log; the other kinds of files are called by their endings."""
 
-HEAD = 4096  # bytes at the start of a file from which its type is recognised
+HEAD = 4096  # number of bytes at the start of a file from which its type is recognised
 
 _HTML = rb'<!doctype html>.*<meta name="generator" content="idealgas'
 _HDF5 = rb"\x89HDF\r\n\x1a\n"
@@ -37,11 +37,11 @@ _BEGINNINGS = {
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
     ".toml": rb"# sweep of \d+ points by idealgas\n",
-    "results.csv": rb"",  # a sweep keeps a table that it has not written under another name
+    "results.csv": rb"",  # a sweep renames a table that it has not written itself
     "scene": rb"#:schema scene",
     "scene.schema.json": rb'\{\s*"\$defs"',
 }
-"""First bytes of the files of each kind that this program writes."""
+"""Patterns of the first bytes of the files that this program writes, by kind."""
 
 IN_USE = "another run is writing this file"
 NO_LOCKS = "no locks on this file system (HDF5_USE_FILE_LOCKING=FALSE goes without; let only one process write a file)"
@@ -50,22 +50,31 @@ Name = str | os.PathLike[str]
 
 
 def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> None:
-    """Raise OutputError if a file of a kind cannot be written.
+    """Check that a file can be written.
 
-    An existing file is only overwritten with `force`, and only if it is empty or of the same kind, so that a typing
-    error does not destroy other files. inputs: files that must not be overwritten.
+    An existing file is overwritten only with `force`, and only if it is empty or of the same kind, so that a typing
+    error does not destroy other files.
+
+    Args:
+        path: path of the file.
+        kind: kind of the file.
+        force: whether an existing file of this kind may be overwritten.
+        inputs: files that must not be overwritten.
+
+    Raises:
+        OutputError: if the file cannot be written.
     """
     path = Path(path)
     try:
-        found = _stat(path)
+        existing = _stat(path)
         place = path.resolve()
-        if found is None and not place.parent.is_dir():
+        if existing is None and not place.parent.is_dir():
             raise OutputError(f"{path}: no folder {path.parent}")
-        if found is not None:
-            _check_replaceable(path, found, kind, force, inputs)
-        if found is not None and is_locked(place):
+        if existing is not None:
+            _check_replaceable(path, existing, kind, force, inputs)
+        if existing is not None and is_locked(place):
             raise OutputError(f"{path}: {IN_USE}")
-        if found is not None:
+        if existing is not None:
             open_regular(place, "r+b").close()
         _check_folder(place, needs_lock=kind == LOG)
     except OSError as error:
@@ -73,7 +82,7 @@ def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Na
 
 
 def _check_folder(place: Path, needs_lock: bool) -> None:
-    """Raise OSError, with the reason of the system, if no file can be made beside another one, or locked if needed."""
+    """Raise OSError with the reason of the system if a file cannot be created beside another, or cannot be locked."""
     part = beside(place)
     part.touch(exist_ok=False)
     try:
@@ -82,28 +91,28 @@ def _check_folder(place: Path, needs_lock: bool) -> None:
         part.unlink()
 
 
-def _check_replaceable(path: Path, found: os.stat_result, kind: str, force: bool, inputs: Iterable[Name]) -> None:
-    if stat.S_ISDIR(found.st_mode):
+def _check_replaceable(path: Path, existing: os.stat_result, kind: str, force: bool, inputs: Iterable[Name]) -> None:
+    if stat.S_ISDIR(existing.st_mode):
         raise OutputError(f"{path}: is a folder")
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(existing.st_mode):
         raise OutputError(f"{path}: is not a regular file")
-    if any(os.path.samestat(found, there) for there in map(_stat, inputs) if there):
+    if any(os.path.samestat(existing, status) for status in map(_stat, inputs) if status):
         raise OutputError(f"{path}: output would overwrite the input")
     if not force:
         raise OutputError(f"{path}: already exists (use force=True to overwrite)")
-    if found.st_size and not is_of_kind(path, kind):
+    if existing.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
         raise OutputError(f"{path}: is not a {what} of idealgas and is not overwritten")
 
 
 def is_of_kind(path: Path, kind: str) -> bool:
-    """Whether a file begins like those of a kind that this program writes."""
+    """Return whether a file begins like the files of a kind that this program writes."""
     with open_regular(path) as file:
         return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
 
 def describe_file_type(head: bytes) -> str:
-    """Type of a file by its first bytes, and the command that reads such files."""
+    """Return the type of a file, recognised by its first bytes, and the command that reads such files."""
     if re.match(_HDF5, head):
         return "an HDF5 file (`idealgas info` reads logs)"
     if b"\0" in head:
@@ -119,7 +128,7 @@ def _stat(path: Name) -> os.stat_result | None:
 
 @contextmanager
 def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> Iterator[Path]:
-    """Check an output with `check_output`, then write it as in `replacing`. Raises OutputError."""
+    """Check an output with `check_output`, and then write it as with `replacing`. Raises OutputError."""
     check_output(path, kind, force, inputs)
     with replacing(Path(path), force) as part:
         yield part
@@ -127,9 +136,10 @@ def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] =
 
 @contextmanager
 def replacing(path: Path, force: bool = True) -> Iterator[Path]:
-    """Yield a temporary path for writing; the complete file is then moved to `path`.
+    """Yield a temporary path for writing; afterwards, the complete file is moved to `path`.
 
-    Raises OutputError on failure, after which no temporary file is left.
+    Raises:
+        OutputError: if the file cannot be written; the temporary file is removed.
     """
     part = beside(path)
     try:
@@ -143,13 +153,13 @@ def replacing(path: Path, force: bool = True) -> Iterator[Path]:
 
 
 def beside(path: Path) -> Path:
-    """Unique hidden path in the folder of a file; of a symbolic link, in the folder of its target."""
+    """Return a unique hidden path in the folder of a file; for a symbolic link, in the folder of its target."""
     place = path.resolve()
     return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
 
 
 def temporaries(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder with paths from `beside`."""
+    """Yield the files in a folder whose paths were made by `beside`."""
     for path in folder.iterdir():
         if re.fullmatch(r"\..+\.[0-9a-f]{8}", path.name):
             yield path
@@ -158,7 +168,7 @@ def temporaries(folder: Path) -> Iterator[Path]:
 def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:
     """Move a complete file to its final path, atomically.
 
-    Existing files are only overwritten with `force`, and never while they are being written.
+    An existing file is overwritten only with `force`, and never while it is being written.
     """
     place = path.resolve()
     while not _named(part, place, force):
@@ -179,7 +189,7 @@ def _named(part: Path, place: Path, force: bool) -> bool:
             if not old.is_of(place):
                 return False
             if not system.MOVES_OPEN_FILES:
-                old.close()  # a writer that opens it now keeps it from being replaced
+                old.close()  # if a writer opens the file now, it cannot be replaced
             part.replace(place)
     except FileNotFoundError:
         if not part.exists():
@@ -189,14 +199,17 @@ def _named(part: Path, place: Path, force: bool) -> bool:
 
 
 def error_number(error: Exception) -> int | None:
-    """Number of the system's error behind an error, which HDF5 has only in its text; None if there is none."""
+    """Return the number of the system error that caused an error; None if there is none.
+
+    Errors of HDF5 contain the number only in their text.
+    """
     number = error.errno if isinstance(error, OSError) else None
-    found = re.search(r"errno = (\d+)", str(error))
-    return int(found[1]) if number is None and found else number
+    match = re.search(r"errno = (\d+)", str(error))
+    return int(match[1]) if number is None and match else number
 
 
 def storage_error(path: Path, error: Exception) -> OutputError:
-    """Error for a file that could not be written."""
+    """Return the OutputError for a file that could not be written."""
     number = error_number(error)
     if number == errno.EEXIST:
         return OutputError(f"{path}: already exists (use force=True to overwrite)")

@@ -1,4 +1,4 @@
-"""Gallery of the example scenes: a picture of each at time 0, and one HTML page with all of them."""
+"""The gallery of the example scenes: a picture of each scene at time 0, and an HTML page with all of them."""
 
 import base64
 import io
@@ -50,13 +50,13 @@ $scenes
 
 
 def described(name: str) -> tuple[str, str]:
-    """Title of an example scene, and its description as HTML."""
+    """Return the title of an example scene, and its description as HTML."""
     about = tomllib.loads(path_of(name + SCENE).read_text(encoding="utf-8"))["scene"]
     return about["title"], description_html(about.get("description", ""))
 
 
 def commands(name: str) -> tuple[str, ...]:
-    """Commands that copy an example scene, run it, and show all about it."""
+    """Return the commands that copy an example scene, run it, and write its report."""
     return (
         f"idealgas examples {name}",
         f"idealgas run {name}.toml -o {name}.h5",
@@ -100,16 +100,19 @@ def write_gallery(
     force: bool = False,
     on_scene: Callable[[int, str], None] = lambda done, name: None,
 ) -> Path:
-    """Write one page with pictures and descriptions of example scenes, which needs no other files.
+    """Write a self-contained page with pictures and descriptions of example scenes.
 
     Args:
         output: path of the page, with the ending .html or .htm.
-        scenes: their names.
+        scenes: names of the scenes.
         force: whether to replace an existing page.
-        on_scene: called before each scene with the number of finished ones and its name.
+        on_scene: function that is called before each scene with the number of finished scenes and its name.
+
+    Returns:
+        Path of the page.
 
     Raises:
-        UserError: for another ending or an unknown name.
+        UserError: if the path has another ending or a name is unknown.
         OutputError: if the page cannot be written.
     """
     path, kind = Path(output), Path(output).suffix.lower()
@@ -131,7 +134,7 @@ def write_gallery(
 
 
 def _scene(name: str, picture: bytes | None) -> str:
-    """HTML of a scene."""
+    """Return the HTML of a scene."""
     title, description = described(name)
     image = ""
     if picture is not None:

@@ -1,4 +1,7 @@
-"""Regular files, and one writer per file: a lock for all processes, and a register of what this process writes."""
+"""Open regular files, and allow only one writer per file.
+
+The writer holds a lock that all processes respect, and is registered in its own process.
+"""
 
 import errno
 import os
@@ -11,7 +14,7 @@ from typing import IO, Self
 from idealgas import system
 
 TIMEOUT = 0.5
-"""Time for which a writer waits for a lock, as on some systems readers take it for a moment, s."""
+"""Time for which a writer waits for a lock, as readers hold it for a moment on some systems, s."""
 
 _held: dict[tuple[int, int], "WriteLock"] = {}
 _guard = threading.Lock()
@@ -21,14 +24,18 @@ class WriteLock:
     """The right to be the only writer of a file, until `close`.
 
     Attributes:
-        descriptor: of the file, open for reading and writing.
+        descriptor: descriptor of the file, open for reading and writing.
     """
 
     def __init__(self, path: Path, needed: bool = True) -> None:
-        """Lock a file. needed: whether its file system must have locks, unless the user does without.
+        """Lock a file.
+
+        Args:
+            path: path of the file.
+            needed: whether the file system must support locks, unless the user has disabled file locking.
 
         Raises:
-            BlockingIOError: if this process or another one is writing it.
+            BlockingIOError: if this or another process is writing the file.
             OSError: if it cannot be opened for writing, or, with number ENOLCK, if its file system has no locks.
         """
         self.descriptor = regular(path, os.O_RDWR)
@@ -44,11 +51,11 @@ class WriteLock:
             raise
 
     def is_of(self, path: Path) -> bool:
-        """Whether a path still leads to the locked file."""
+        """Return whether a path still leads to the locked file."""
         return os.path.samestat(os.fstat(self.descriptor), os.stat(path))
 
     def close(self) -> None:
-        """Free the lock."""
+        """Release the lock."""
         with _guard:
             if _held.get(self._key) is self:
                 del _held[self._key]
@@ -62,12 +69,12 @@ class WriteLock:
 
 
 def _key(descriptor: int) -> tuple[int, int]:
-    found = os.fstat(descriptor)
-    return found.st_dev, found.st_ino
+    status = os.fstat(descriptor)
+    return status.st_dev, status.st_ino
 
 
 def _does_without() -> bool:
-    """Whether the user does without locks where there are none, as in HDF5."""
+    """Return whether the user has disabled file locking, by the same environment variable as for HDF5."""
     return os.environ.get("HDF5_USE_FILE_LOCKING", "").upper() in ("FALSE", "0", "BEST_EFFORT")
 
 
@@ -87,7 +94,7 @@ def _lock(descriptor: int, needed: bool) -> None:
 
 
 def is_locked(path: Path) -> bool:
-    """Whether this process or another one is writing a file."""
+    """Return whether this or another process is writing a file."""
     try:
         with open_regular(path) as file:
             return _key(file.fileno()) in _held or system.has_other_lock(file.fileno())
@@ -96,7 +103,7 @@ def is_locked(path: Path) -> bool:
 
 
 def _leave_to_parent() -> None:
-    """Close the locked files in a forked child: otherwise it would keep them locked after the death of its parent."""
+    """Close the locked files in a forked child, which would otherwise keep them locked after its parent has ended."""
     global _guard
     _guard = threading.Lock()
     for lock in tuple(_held.values()):
@@ -108,24 +115,27 @@ if hasattr(os, "register_at_fork"):
 
 
 def open_regular(path: Path, mode: str = "rb") -> IO[bytes]:
-    """Open a regular file, unbuffered. Raises OSError for anything else."""
+    """Open a regular file without buffering. Raises OSError if it is not a regular file."""
     return open(path, mode, buffering=0, opener=regular)
 
 
 def regular(path: str | Path, flags: int) -> int:
-    """Opener for `open`, of regular files only. Opening a device may change it, and opening a FIFO waits."""
+    """Open a regular file, as the `opener` of `open`.
+
+    Other files are refused before they are opened, as opening a device may change it, and opening a FIFO waits.
+    """
     _check_regular(os.stat(path))
     descriptor = os.open(path, flags | system.WITHOUT_WAITING)
     try:
-        _check_regular(os.fstat(descriptor))  # it may have been replaced meanwhile
+        _check_regular(os.fstat(descriptor))  # the file may have been replaced in the meantime
     except OSError:
         os.close(descriptor)
         raise
     return descriptor
 
 
-def _check_regular(found: os.stat_result) -> None:
-    if stat.S_ISDIR(found.st_mode):
+def _check_regular(status: os.stat_result) -> None:
+    if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise OSError(errno.EINVAL, "not a regular file")

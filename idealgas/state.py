@@ -1,26 +1,26 @@
-"""State of the gas at one instant, and the random numbers from which it is drawn."""
+"""The state of the gas at an instant, and the random numbers from which it is drawn."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 MOST_PAIRED = 32
-"""Largest number of species of which every pair is told apart; memory and time would grow with its square."""
+"""Largest number of species whose pairs are counted separately; memory and time grow with the square of this number."""
 
 
 @dataclass(frozen=True)
 class Gas:
-    """All discs at one instant, in order of id.
+    """All discs at an instant, in order of id.
 
     Attributes:
-        box: (Lx, Ly), length; the origin is its lower left corner.
-        position: (N, 2) f8, length.
-        velocity: (N, 2) f8, length/time.
-        radius: (N,) f8, length.
-        mass: (N,) f8, mass.
+        box: (Lx, Ly), size of the box, length; the origin is the lower left corner.
+        position: (N, 2) f8, positions, length.
+        velocity: (N, 2) f8, velocities, length/time.
+        radius: (N,) f8, radii, length.
+        mass: (N,) f8, masses, mass.
         species: (N,) u2, index into species_names.
         species_names: name of each species.
-        solid_area: area of the box where no gas can be, length².
+        solid_area: area of the box from which the gas is excluded by solid walls, length².
     """
 
     box: tuple[float, float]
@@ -33,25 +33,25 @@ class Gas:
     solid_area: float = 0.0
 
     def __len__(self) -> int:
-        """Number N of discs."""
+        """Return the number N of discs."""
         return len(self.mass)
 
     @property
     def partners(self) -> tuple[str, ...]:
-        """Names of the G groups of discs by which collisions of a species are counted: the species, or "all" discs.
+        """Names of the groups of partners for which the collisions of a species are counted separately.
 
-        All discs are one group if there are more than MOST_PAIRED species.
+        The groups are the species, or a single group "all" if there are more than MOST_PAIRED species.
         """
         return self.species_names if len(self.species_names) <= MOST_PAIRED else ("all",)
 
     @property
     def partner(self) -> np.ndarray:
-        """Index (N,) into `partners` of each disc."""
+        """(N,), index into `partners` of each disc."""
         return self.species if len(self.species_names) <= MOST_PAIRED else np.zeros_like(self.species)
 
     @property
     def unlike(self) -> tuple[str, ...]:
-        """Names of the species whose discs differ in radius or mass."""
+        """Names of the species whose discs differ from each other in radius or mass."""
         _, first, kind = np.unique(self.species, return_index=True, return_inverse=True)
         differs = (self.radius != self.radius[first][kind]) | (self.mass != self.mass[first][kind])
         return tuple(self.species_names[k] for k in np.unique(self.species[differs]))
@@ -63,21 +63,26 @@ class Gas:
 
     @property
     def packing_fraction(self) -> float:
-        """Fraction of the area that discs cover, no unit."""
+        """Fraction of the area that the discs cover, no unit."""
         return float(np.pi * (self.radius**2).sum() / self.area)
 
     @property
     def kinetic_energy(self) -> float:
-        """Sum of m v²/2 over the discs, mass length²/time²."""
+        """Sum of m v²/2 over the discs, mass·length²/time²."""
         vx, vy = self.velocity.T
         return float((0.5 * self.mass * (vx**2 + vy**2)).sum())
 
     @property
     def temperature(self) -> float:
-        """Kinetic temperature E/N, mass length²/time²; a disc has two degrees of freedom, and k_B = 1."""
+        """Kinetic temperature E/N, mass·length²/time², as a disc has two degrees of freedom and k_B = 1."""
         return self.kinetic_energy / len(self)
 
 
 def rng(seed: int, use: str) -> "np.random.Generator":
-    """Random numbers of a seed for one use, independent of those for any other use."""
+    """Return the generator of random numbers of a seed for a purpose, independent of the generators for all others.
+
+    Args:
+        seed: seed of the scene.
+        use: name of the purpose.
+    """
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=tuple(use.encode()))))

@@ -1,6 +1,6 @@
-"""Differences between operating systems, in one place: locks, files that are open, folders of users.
+"""Functions that differ between operating systems: locks, open files, folders of users.
 
-Everything else in the package uses only what Python offers on all systems.
+The rest of the package uses only what Python offers on all systems.
 """
 
 import ctypes
@@ -25,42 +25,47 @@ except ImportError:
     msvcrt = None  # type: ignore[assignment]
 
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
-"""Numbers of the errors of file systems and kernels without locks."""
+"""Error numbers of file systems and kernels that do not support locks."""
 
 MOVES_OPEN_FILES = os.name != "nt"
-"""Whether a file that is open can be moved and replaced."""
+"""Whether an open file can be moved and replaced."""
 
 STDIN = "/dev/stdin"
-"""Path of the standard input, also on systems without such a file."""
+"""Path that stands for the standard input, even on systems without such a file."""
 
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0)
-"""Flag of `os.open` with which opening a FIFO does not wait."""
+"""Flag of `os.open` that prevents waiting when a FIFO is opened."""
 
 _FLOCK = "hhqqi0q"
-"""Linux's `struct flock`: type, whence, start, length, process."""
+"""Format of Linux's `struct flock`: type, whence, start, length, process."""
 
 _FAR = 1 << 30
-"""High 32 bits of the byte that is locked on Windows: the lock also keeps others from reading, so it lies far away."""
+"""High 32 bits of the position of the byte that is locked on Windows.
+
+It lies far beyond the end of any file, as a locked byte cannot be read by others.
+"""
 
 
 def lock(descriptor: int) -> None:
-    """Lock a file, open for writing, until it is closed.
+    """Lock a file, which is open for writing, until it is closed. The lock is advisory.
 
     The lock belongs to the open file, not to the process: opening and closing the same file elsewhere in the process
-    does not free it. It is advisory.
+    does not release it.
 
     Raises:
-        BlockingIOError: if another open file has the lock, in this process or in another one.
-        OSError: with number ENOLCK, if the file system has no locks.
+        BlockingIOError: if another open file has the lock, in this or another process.
+        OSError: with number ENOLCK, if the file system does not support locks.
     """
     _locking(lambda: _lock(descriptor))
 
 
 def has_other_lock(descriptor: int) -> bool:
-    """Whether another open file has the lock of a file, open for reading; on some systems this takes it for a moment.
+    """Return whether another open file has the lock of a file, which is open for reading.
+
+    On some systems the test itself holds the lock for a moment.
 
     Raises:
-        OSError: as `lock`.
+        OSError: as for `lock`.
     """
     try:
         return _locking(lambda: _test(descriptor))
@@ -83,8 +88,8 @@ if hasattr(fcntl, "F_OFD_SETLK"):  # Linux
         fcntl.fcntl(descriptor, fcntl.F_OFD_SETLK, _exclusive())
 
     def _test(descriptor: int) -> bool:
-        found = fcntl.fcntl(descriptor, fcntl.F_OFD_GETLK, _exclusive())
-        return struct.unpack(_FLOCK, found)[0] != fcntl.F_UNLCK
+        conflict = fcntl.fcntl(descriptor, fcntl.F_OFD_GETLK, _exclusive())
+        return struct.unpack(_FLOCK, conflict)[0] != fcntl.F_UNLCK
 
     def _exclusive() -> bytes:
         return struct.pack(_FLOCK, fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
@@ -103,7 +108,7 @@ elif msvcrt:
     _kernel.LockFile.argtypes = [ctypes.c_void_p, *[ctypes.c_uint32] * 4]  # handle; offset and length: low, high bits
 
     def _lock(descriptor: int) -> None:
-        """Lock one byte; `msvcrt.locking` takes only the low bits of the offset, and would lie within long files."""
+        """Lock a byte. `msvcrt.locking` accepts only low offsets, which lie within long files."""
         if not _kernel.LockFile(msvcrt.get_osfhandle(descriptor), 0, _FAR, 1, 0):  # type: ignore[attr-defined]
             locked = ctypes.get_last_error() == 33  # type: ignore[attr-defined]
             number = errno.EAGAIN if locked else errno.ENOLCK
@@ -123,7 +128,7 @@ else:
 
 
 def sync_folder(folder: Path) -> None:
-    """Wait until the names in a folder are on the disk; Windows cannot, and writes them in order."""
+    """Wait until the names in a folder are on the disk; on Windows, which writes them in order, do nothing."""
     if os.name != "nt":
         descriptor = os.open(folder, os.O_RDONLY)
         try:
@@ -133,9 +138,12 @@ def sync_folder(folder: Path) -> None:
 
 
 def move_to_free_name(part: Path, place: Path) -> None:
-    """Move a file to a name that is free; FileExistsError if it is not.
+    """Move a file to a new name, without overwriting an existing file.
 
-    Windows does so itself. A file system without links has no way to do so atomically.
+    This is atomic, except on a file system without links.
+
+    Raises:
+        FileExistsError: if a file with this name exists.
     """
     if os.name == "nt":
         part.rename(place)
@@ -153,35 +161,35 @@ def move_to_free_name(part: Path, place: Path) -> None:
 
 
 def cores() -> int:
-    """Number of cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def free_unused_memory() -> None:
-    """Return freed memory to the system: glibc keeps much of what placing a large gas and compiling took."""
+    """Return freed memory to the system, as glibc keeps much of the memory used for placing a gas and compiling."""
     if sys.platform == "linux" and hasattr(c_library := ctypes.CDLL(None), "malloc_trim"):
         c_library.malloc_trim(0)
 
 
 def cache_home() -> Path | None:
-    """Folder for caches of the user; None for a user without a home."""
+    """Return the folder for caches of the user; None for a user without a home folder."""
     if sys.platform == "win32":
         named, usual = "LOCALAPPDATA", "~/AppData/Local"
     else:
         named, usual = "XDG_CACHE_HOME", "~/Library/Caches" if sys.platform == "darwin" else "~/.cache"
-    found = (Path(os.environ.get(named, "")), Path(os.path.expanduser(usual)))
-    return next((path for path in found if path.is_absolute()), None)
+    candidates = (Path(os.environ.get(named, "")), Path(os.path.expanduser(usual)))
+    return next((path for path in candidates if path.is_absolute()), None)
 
 
 def user_number() -> int | None:
-    """Number of the user of this process; None on Windows, where the folders of a user are private."""
+    """Return the numeric id of the user of this process; None on Windows, where the folders of a user are private."""
     return os.geteuid() if hasattr(os, "geteuid") else None
 
 
 def make_private(folder: Path) -> bool:
-    """Make a folder unless it exists; returns whether only the user of this process and root can write or replace it.
+    """Create a folder unless it exists; return whether only the user of this process and root can change it.
 
-    Nothing is made in a folder of another user.
+    The folder is not created inside a folder that another user can change.
     """
     user = user_number()
     if user is not None:
@@ -190,5 +198,5 @@ def make_private(folder: Path) -> bool:
             return False
     for path in (folder.parent, folder):
         path.mkdir(0o700, parents=True, exist_ok=True)
-    own = folder.lstat()
-    return user is None or (stat.S_ISDIR(own.st_mode) and own.st_uid == user and not own.st_mode & 0o022)
+    status = folder.lstat()
+    return user is None or (stat.S_ISDIR(status.st_mode) and status.st_uid == user and not status.st_mode & 0o022)
