@@ -86,6 +86,20 @@ def test_free_flights_in_a_gas_that_is_not_uniform(make):
         histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path")
 
 
+@pytest.mark.usefixtures("uncompiled")
+def test_mean_free_path_without_positions(make):
+    """Mean speed over Enskog's rate, 2σ (N - 1) χ/A times the mean relative speed.
+
+    As the total momentum is 0, the mean relative speed is √2 √(N/(N - 1)) times the mean speed.
+    """
+    (gas,) = histogram(make('run.method="monte_carlo"'), "free-path").distributions
+    phi = 40 * np.pi * 0.01 / 48
+    chi = (1 - 7 * phi / 16) / (1 - phi) ** 2
+    path = np.sqrt(39 / 40) * 48 / (2 * np.sqrt(2) * 0.2 * 39 * chi)
+    assert gas.mean.theory == pytest.approx(path, rel=1e-12)
+    assert gas.edges[-1] == pytest.approx(10 * path)
+
+
 def test_a_single_disc_has_no_law(make):
     found = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
     assert found.no_law == "a single disc shares its energy with no other"

@@ -146,7 +146,7 @@ def test_by_default_flights_fill_the_log_and_an_event_at_an_edge_ends_the_block_
     assert np.bincount(found.disc, found.end - found.start) == pytest.approx(np.full(9, log.end_time))
     assert found.end[-9:].tolist() == [log.end_time] * 9
     (times,) = log.chunks(("time",))
-    edges = np.array([0.0, times.time[100], times.time[150], log.end_time])
+    edges = np.array([*times.time[[50, 100, 150]], log.end_time])
     check(log, edges, Flights.joined(log.flights(edges)))
 
 

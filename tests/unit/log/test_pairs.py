@@ -29,8 +29,9 @@ def test_whole_pairs_are_accepted_also_between_two_chunks_but_not_at_the_start()
     checked(ROWS[:2])  # and the first one ends it
     checked(ROWS, names=("disc", "partner"))
     check_pairs({"disc": np.array([1, 1]), "time": np.array([2.0, 2.0])}, 0)
-    with pytest.raises(ValueError, match="no pair in row 0"):
-        checked(ROWS[2:])
+    for rows in (ROWS[2:], [(3, 3, 2.0, Kind.DISC)] * 2):  # half a pair; a disc and itself
+        with pytest.raises(ValueError, match="no pair in row 0"):
+            checked(rows)
 
 
 @pytest.mark.parametrize(

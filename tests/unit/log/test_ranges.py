@@ -37,7 +37,7 @@ def rules():
         ("events/kind", [int(Kind.ESCAPED)], None),
         ("events/kind", [int(Kind.THERMOSTAT)], "THERMOSTAT in row 7, which this log cannot have"),
         ("events/time", [1.0, 1.0, 2.0], None),
-        ("events/time", [1.0, 2.0, 1.5], "decreases in row 9"),
+        ("events/time", [1.0, 1.0, 2.0, 1.5], "decreases in row 10"),
         ("events/time", [0.0, LEAST / 2], "in row 8 .allowed 0, or from 1e-100 on"),
         ("events/time", [LONGEST * 2], "2e[+]150"),
         ("discs/species", [0, 1], None),

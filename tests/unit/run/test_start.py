@@ -8,8 +8,9 @@ import pytest
 from helpers.log_compare import differences
 from helpers.support import called, error_of, logged, output_of
 
-from idealgas import Scene, SceneError, load_scene, open_log, parse_scene, resume, simulate
+from idealgas import Scene, SceneError, UserError, load_scene, open_log, parse_scene, resume, simulate
 from idealgas.columns import Kind
+from idealgas.log.start import continued_scene
 from idealgas.toml.dump import dump_document
 
 GAS = """
@@ -111,6 +112,33 @@ def test_the_new_log_needs_the_old_one_no_more(tmp_path):
         assert re.fullmatch("[0-9a-f]{32}", log.scene.start.digest)
     assert "light" in output_of("temperature", tmp_path / "new.h5")
     assert "start.log: cannot be started from" in error_of("check", tmp_path / "next.toml")
+
+
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize(
+    ("effect", "allowed", "at", "message"),
+    [
+        (  # the images above are ahead by 0.5 * 4 * t, a multiple of 6 at t = 3
+            "box={left='periodic',right='periodic',bottom={shear=0.5},top={shear=0.5},size=[6,4]}",
+            3.0,
+            2.0,
+            r"from t = 2 \(allowed multiples of 3, when images",
+        ),
+        (
+            "box.size=[6,4]\npiston=[{side='right',mass=50,pressure=4}]\nlog.snapshot_every=0.75",
+            1.5,
+            1.4,
+            r"not at t = 1.4; the nearest is t = 1.5$",
+        ),
+    ],
+    ids=["sheared sides", "piston"],
+)
+def test_without_a_state_to_start_from_the_nearest_is_named(tmp_path, effect, allowed, at, message):
+    text = f"{effect}\nrun.until=3.2\nspecies=[{{name='gas',count=5,radius=0.2,temperature=1}}]\n"
+    with logged(parse_scene(text), tmp_path / "old.h5") as log:
+        assert f"time = {allowed}\n" in continued_scene(log, allowed, "old.h5")
+        with pytest.raises(UserError, match=message):
+            continued_scene(log, at, "old.h5")
 
 
 def test_every_state_of_a_log_is_a_start(old):

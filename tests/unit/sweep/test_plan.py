@@ -71,6 +71,7 @@ def test_seeds_depend_on_the_values_number_and_the_replicate_alone(sweep):
     seeds = {(p.combination, p.replicate): p.scene.scene.seed for p in more.points}
     assert all(seeds[p.combination, p.replicate] == p.scene.scene.seed for p in few.points)
     assert len(set(seeds.values())) == 12
+    assert min(seeds.values()) > 2**32  # of 63 bits, so that the seeds of many points differ too
     others = sweep("[sweep]\nseed = 6\nreplicates = 2\n" + axis + BASE)
     assert not {p.scene.scene.seed for p in others.points} & set(seeds.values())
 
