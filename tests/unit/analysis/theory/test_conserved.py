@@ -68,6 +68,17 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
     assert "moves as a whole with the velocity (3, 0), 99.9% of its kinetic energy" in sentence
 
 
+def test_unequal_discs_have_a_centre_of_mass_and_a_fixed_disc_takes_momentum():
+    """3 (2, 1) + (-2, 5) = 4 (1, 2). Beside a fixed disc the other has both of its degrees of freedom."""
+    pair = "species=[{{name='a', mass={}, velocities=[[2, 1]], {n}}}, {{name='b', velocities=[[-2, 5]], {n}}}]"
+    scene, gas = made(TWO, PERIODIC, pair.format(3, n="count=1, radius=0.2"))
+    assert conserved.centre_of_mass_velocity(scene, gas) == pytest.approx([1, 2])
+    assert conserved.degrees_of_freedom(scene, gas) == 2
+    assert conserved.degrees_of_freedom(*made(TWO, PERIODIC, pair.format(1e12, n="count=1, radius=0.2"))) == 2
+    for unit in (0.1, 1.0, 10.0):
+        assert conserved.are_fixed(unit * np.array([1e12, 0.9e12, 1.0])).tolist() == [True, False, False]
+
+
 def test_a_flow_that_walls_stop_becomes_heat():
     scene, gas = made(STREAM)
     assert conserved.centre_of_mass_velocity(scene, gas).tolist() == [0, 0]
