@@ -82,6 +82,13 @@ class Column(NamedTuple):
     parts: tuple[str, ...] = ()
 
 
+COUNTED = {
+    Kind.THERMOSTAT: Column("thermostat_collisions", "i8"),
+    Kind.STEERED: Column("steered", "i8"),
+    Kind.ESCAPED: Column("escaped", "i8"),
+}
+"""Columns of checkpoints that count the events of a kind; only logs whose checkpoints have one have such events."""
+
 Arrays = dict[Column, np.ndarray]
 """Columns with an entry for each disc."""
 

@@ -74,7 +74,7 @@ def shown(scene: "Scene") -> tuple[str, ...]:
         "cooling": dissipative,
         "evolution": opened or not properties.fixed_walls or dissipative,
         "profile": not properties.straight_flight or len(properties.temperatures) > 1,
-        "transport": all(properties.periodic) and properties.lossless,
+        "transport": all(properties.periodic) and properties.collisions_conserve_energy,
     }
     return tuple(name for name, called in called_for.items() if called) or MAIN
 

@@ -195,7 +195,7 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
     rate a part of x: both are parts of its error, and a stronger heat bath than FAST leaves it unknown.
     """
     gas, properties = log.discs, log.scene.properties
-    if not (properties.elastic and properties.lossless) or properties.spins:
+    if not (properties.elastic and properties.collisions_conserve_energy) or properties.spins:
         return None, None
     if len(gas.species_names) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST:
         return None, None

@@ -8,7 +8,7 @@ account, the benchmark and the tests follow from it.
 from importlib import import_module
 from typing import Any
 
-from idealgas.effects.effect import EffectSpec
+from idealgas.effects.effect import Effect
 
 NAMES = (
     "gravity",
@@ -28,7 +28,7 @@ NAMES = (
 )
 """Names of the files of the effects."""
 
-EFFECTS: tuple[EffectSpec[Any], ...] = tuple(import_module(f"{__name__}.{name}").EFFECT for name in NAMES)
+EFFECTS: tuple[Effect[Any], ...] = tuple(import_module(f"{__name__}.{name}").EFFECT for name in NAMES)
 """All effects. Code for effects that a scene does not have is not compiled."""
 
 EFFECT_NAMES = tuple(effect.name for effect in EFFECTS)

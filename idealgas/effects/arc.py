@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import arc as law
@@ -10,14 +10,6 @@ from idealgas.physics.arc_geometry import Arc
 
 FLATTEST = 100.0
 """Largest radius of an arc in units of the box's longer side; rounding errors of contacts grow in this ratio."""
-
-
-def _properties(tables: Tables) -> Properties | None:
-    return Properties() if any(wall is not None and wall.arc for wall in tables.walls) else None
-
-
-def _make(tables: Tables, _: Start) -> np.recarray:
-    return make_arcs([wall.arc for wall in tables.walls])
 
 
 def make_arcs(found: list[Arc | None]) -> np.recarray:
@@ -35,11 +27,19 @@ def _circle(side: float) -> str:
     return f"[[wall]]\nfrom = [{low}, {middle}]\nto = [{low}, {middle}]\nvia = [{high}, {middle}]\n"
 
 
-EFFECT = EffectSpec(
-    name="arcs",
-    field="arcs",
-    properties=_properties,
-    make=_make,
-    samples=(Sample(tables=_circle),),
-    sample_together=Sample(tables=lambda side: "[[wall]]\nfrom = [2, 2]\nto = [8, 2]\nvia = [5, 5]\n"),
-)
+class ArcEffect(Effect[np.recarray]):
+    """Arcs and circles among the walls inside the box."""
+
+    name = "arcs"
+    field = "arcs"
+    samples = (Sample(tables=_circle),)
+    sample_together = Sample(tables=lambda side: "[[wall]]\nfrom = [2, 2]\nto = [8, 2]\nvia = [5, 5]\n")
+
+    def properties(self, tables: Tables) -> Properties | None:
+        return Properties() if any(wall is not None and wall.arc for wall in tables.walls) else None
+
+    def make(self, tables: Tables, _: Start) -> np.recarray:
+        return make_arcs([wall.arc for wall in tables.walls])
+
+
+EFFECT = ArcEffect()

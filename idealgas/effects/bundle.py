@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.columns import Arrays, Column, Values
+from idealgas.columns import COUNTED, Arrays, Column, Values
 from idealgas.effects import EFFECTS
-from idealgas.effects.effect import EffectSpec
+from idealgas.effects.effect import Effect
 from idealgas.physics import stress
 from idealgas.physics.exact_sum import add_sums, clear
 from idealgas.physics.periodic import unwrapped
@@ -70,7 +70,7 @@ def for_kernels(effects: Effects) -> Effects:
     return effects._replace(gravity=gravity, periodic=periodic, schedule=None, steering=None, step_energy=None)
 
 
-def present(effects: Effects) -> Iterator[tuple[EffectSpec[Any], Any]]:
+def present(effects: Effects) -> Iterator[tuple[Effect[Any], Any]]:
     """Yield the effects that a bundle has, with their states."""
     for effect in EFFECTS:
         if (state := getattr(effects, effect.field)) is not None:
@@ -110,19 +110,21 @@ def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[st
         if effects.absorbing is not None:
             position = np.nan_to_num(position)  # the positions of discs that have left are nan
         gas = replace(gas, position=position)
-    parts = ((effect.energy, state) for effect, state in present(effects))
-    return {part.part: part.of(state, gas, local_time) for part, state in parts if part is not None}
+    return {
+        effect.energy_part: effect.energy(state, gas, local_time)
+        for effect, state in present(effects)
+        if effect.energy_part
+    }
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:
     """Energy of the discs at time 0 that collisions may turn into kinetic energy, mass length²/time²."""
-    parts = ((effect.energy, state) for effect, state in present(effects))
-    return sum(part.of(state, gas, 0.0) for part, state in parts if part is not None and part.inner)
+    return sum(effect.energy(state, gas, 0.0) for effect, state in present(effects) if effect.energy_is_inner)
 
 
 def counted(effects: Effects) -> tuple[Column, ...]:
     """Columns of the event counts that these effects add."""
-    return tuple(effect.counted for effect, _ in present(effects) if effect.counted is not None)
+    return tuple(COUNTED[effect.events] for effect, _ in present(effects) if effect.events is not None)
 
 
 def disc_state(effects: Effects) -> Arrays:

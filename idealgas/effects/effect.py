@@ -1,12 +1,11 @@
 """Specification of an effect: its table in a scene, its state in a run, and its columns in the log."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from collections.abc import Callable, Container, Iterable, Mapping
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from idealgas.columns import SIDES, Arrays, Column, Values
+from idealgas.columns import SIDES, Arrays, Column, Kind, Values
 from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.effects.schedule import Change
 from idealgas.state import Gas
@@ -54,23 +53,6 @@ class Start(NamedTuple):
     later_accelerations: tuple[tuple[float, float], ...] = ()
 
 
-class EnergyPart(NamedTuple, Generic[State]):
-    """A part of the energy that an effect adds.
-
-    Attributes:
-        part: a field of `idealgas.run.energy.Energy`.
-        of: function that returns the energy, mass length²/time², from the state of the effect, the gas (under gravity
-            with unwrapped positions) and the local time.
-        observed: column of this energy in the samples; None if the samples do not contain it.
-        inner: whether the energy belongs to the discs and collisions may turn it into kinetic energy.
-    """
-
-    part: str
-    of: Callable[[State, Gas, float], float]
-    observed: Column | None = None
-    inner: bool = False
-
-
 SAMPLE_DISCS = 1000
 
 
@@ -88,71 +70,134 @@ class Sample(NamedTuple):
     tables: Callable[[float], str] = lambda side: ""
 
 
-@dataclass(frozen=True)
-class EffectSpec(Generic[State]):
-    """An effect: its names and tables, and functions of its state, which `make` returns and the engine then changes.
+class Later(NamedTuple):
+    """The instant of a log from which another scene continues.
+
+    Attributes:
+        time: time at which the clock of the new scene starts.
+        species: names of the species that have discs then.
+        sampled: function sampled(column) that returns the value of a column of the samples at this time.
+    """
+
+    time: float
+    species: Container[str]
+    sampled: Callable[[str], np.ndarray]
+
+
+class Effect(Generic[State]):
+    """One effect. A subclass has its tables, its state in a run and what the log keeps of it; its law is elsewhere.
+
+    The state is what `make` returns: arrays and numbers, which the engine changes. Most methods take it as their first
+    argument. What an effect does not override leaves the gas as it is.
 
     Attributes:
         name: name in output and messages.
         field: field of the bundle of all effects (`idealgas.effects.bundle`).
-        properties: returns the properties of a gas with its tables, or sides of the box; None if they change nothing.
-        make: returns the state at time 0; called if the scene has the effect.
-        make_always: whether `make` is called for every scene; it may then return None.
         key: key of its table in a scene; empty if the effect is only a kind of side, or a key of other tables.
         table: its table, a Pydantic model.
         many: whether the scene has an array of such tables.
-        description: description of the table for the JSON Schema.
-        side: kind of side of the box: a word, or a table with a single key.
-        side_text: form in which such a side is written.
-        check: yields those issues of its table that depend on the box or the walls; called if the scene has the effect
-            and a valid box.
-        disc_state: returns the arrays of the state, with an entry per disc, that a checkpoint stores; arrays that are
-            columns of events are also in event rows and snapshots.
-        constants: returns the values per disc that the log stores once, at the start.
-        values: returns the values that do not belong to a disc, at a local time, for checkpoints and samples.
-        restore: sets the state to these values of a checkpoint, by name; arrays with an entry per disc are restored for
-            all effects alike.
-        energy: part of the energy that the effect adds.
-        gives_energy: whether walls give energy to discs, or take it.
-        own_walls: numbers of walls whose energy is part of the energy account, so that they add none from outside.
-        counted: column with the total number of the effect's events.
-        begin_epoch: prepares the state for an epoch, from the time at its start, counted from the start of the run, and
-            its length (time).
-        reverse: reverses the velocities in the state, at the start of an epoch.
-        end_epoch: lets local times count from the end of the epoch, from its length (time).
-        schedule: yields the changes in time of values of the state, after time 0.
-        change: returns the state with a new value of an item.
-        samples: additions to the scene of the benchmark.
-        sample_together: addition to the scene with all effects; the first of the samples if None.
+        description: description of the table, for the JSON Schema.
+        side: a kind of side of the box: a word, or a table with one key.
+        side_text: how such a side is written.
+        energy_part: field of `idealgas.run.energy.Energy` that `energy` is; empty if the effect adds none.
+        energy_column: column of this energy in the samples; None if they have none.
+        energy_is_inner: whether this energy belongs to the discs and collisions may turn it into kinetic energy.
+        events: kind of the events that only this effect has, which are counted; None if it has none.
+        shearable: whether the effect acts in the same way everywhere, so that the gas may be sheared.
+        samples: scenes of the benchmark.
+        sample_together: part of the effect in the scene of all effects together; the first of the samples if None.
     """
 
-    name: str
-    field: str
-    properties: Callable[[Tables], Properties | None]
-    make: Callable[[Tables, Start], State | None]
-    samples: tuple[Sample, ...]
-    sample_together: Sample | None = None
-    make_always: bool = False
-    key: str = ""
-    table: type[Table] | None = None
-    many: bool = False
-    description: str = ""
-    side: str | type[Table] | None = None
-    side_text: str = ""
-    check: Callable[[Tables], Iterable[Issue]] = lambda tables: ()
-    disc_state: Callable[[State], Arrays] = lambda state: {}
-    constants: Callable[[State], Arrays] = lambda state: {}
-    values: Callable[[State, float], Values] = lambda state, local_time: {}
-    restore: Callable[[State, Mapping[str, np.ndarray]], None] = lambda state, arrays: None
-    energy: EnergyPart[State] | None = None
-    gives_energy: Callable[[State], bool] = lambda state: False
-    own_walls: Callable[[State], tuple[int, ...]] = lambda state: ()
-    counted: Column | None = None
-    begin_epoch: Callable[[State, float, float], None] = lambda state, time, length: None
-    end_epoch: Callable[[State, float], None] = lambda state, length: None
-    reverse: Callable[[State], None] = lambda state: None
-    schedule: Callable[[Tables, Start], Iterable[Change]] = lambda tables, start: ()
-    change: Callable[[State, int, float], State] = lambda state, item, value: state
+    name: ClassVar[str]
+    field: ClassVar[str]
+    key: ClassVar[str] = ""
+    table: ClassVar[type[Table] | None] = None
+    many: ClassVar[bool] = False
+    description: ClassVar[str] = ""
+    side: ClassVar[str | type[Table] | None] = None
+    side_text: ClassVar[str] = ""
+    energy_part: ClassVar[str] = ""
+    energy_column: ClassVar[Column | None] = None
+    energy_is_inner: ClassVar[bool] = False
+    events: ClassVar[Kind | None] = None
+    shearable: ClassVar[bool] = False
+    samples: ClassVar[tuple[Sample, ...]]
+    sample_together: ClassVar[Sample | None] = None
+
+    def properties(self, tables: Tables) -> Properties | None:
+        """Return how the tables, or sides of the box, change the gas; None if they change nothing."""
+        raise NotImplementedError
+
+    def check(self, tables: Tables) -> Iterable[Issue]:
+        """Issues of the table that need the box or the walls; called if the scene has the effect and a valid box."""
+        return ()
+
+    def continued(self, table: Any, later: Later) -> Any:
+        """Table, or tuple of tables, of a scene that continues from a later time."""
+        return table.after(later.time) if hasattr(table, "after") else table
+
+    def make(self, tables: Tables, start: Start) -> State | None:
+        """Return the state at time 0 of an effect that the scene has."""
+        raise NotImplementedError
+
+    def state_at_start(self, tables: Tables, start: Start) -> State | None:
+        """Return the state at time 0; None if the scene does not have the effect."""
+        return self.make(tables, start) if self.find(tables) is not None else None
+
+    def disc_state(self, state: State) -> Arrays:
+        """Arrays of the state with an entry for each disc, which checkpoints store.
+
+        Those that are columns of events are in event rows and snapshots too.
+        """
+        return {}
+
+    def constants(self, state: State) -> Arrays:
+        """Values for each disc that the log stores once, at the start."""
+        return {}
+
+    def values(self, state: State, local_time: float) -> Values:
+        """Values of the effect as a whole at a local time, which checkpoints and samples store."""
+        return {}
+
+    def restore(self, state: State, arrays: Mapping[str, np.ndarray]) -> None:
+        """Set the state to the values of a checkpoint, by name, except for those of each disc."""
+
+    def energy(self, state: State, gas: Gas, local_time: float) -> float:
+        """Energy that the effect adds, at a local time; under gravity the gas has unwrapped positions."""
+        return 0.0
+
+    def gives_energy(self, state: State) -> bool:
+        """Whether walls give energy to discs, or take some."""
+        return False
+
+    def own_walls(self, state: State) -> tuple[int, ...]:
+        """Numbers of the walls whose energy is part of the energy account, so that they give none from outside."""
+        return ()
+
+    def driving_speed(self, state: State, gas: Gas) -> float:
+        """Estimated increase of the mean speed of the discs, length/time; for epoch lengths and units of sums only."""
+        return 0.0
+
+    def driving_energy(self, state: State, gas: Gas) -> float:
+        """Largest energy that the effect can bring to a disc on its way across the box."""
+        return 0.0
+
+    def begin_epoch(self, state: State, time: float, length: float) -> None:
+        """Prepare the state for an epoch of some length (time) that begins at a time of the run."""
+
+    def end_epoch(self, state: State, length: float) -> None:
+        """Make local times count from the end of an epoch of some length (time)."""
+
+    def reverse(self, state: State) -> None:
+        """Turn the velocities of the state around, at the start of an epoch."""
+
+    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+        """Changes in time of values of the state, after time 0."""
+        return ()
+
+    def change(self, state: State, item: int, value: float) -> State:
+        """Return the state with another value of an item."""
+        return state
 
     def find(self, tables: Tables) -> ActiveEffect | None:
         """Return the keys that turn the effect on and its properties; None if the scene does not have the effect."""

@@ -1,12 +1,13 @@
 """Gravity: a uniform acceleration of all discs, which may change in steps."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 from pydantic import Field
 
 from idealgas.columns import Column
-from idealgas.effects.effect import EffectSpec, EnergyPart, Sample, Start, Tables
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, VectorInSteps, steps_of
 from idealgas.physics import gravity as law
@@ -14,7 +15,7 @@ from idealgas.state import Gas
 from idealgas.toml.issues import Issue, Key
 
 
-class Gravity(SteppedTable):
+class GravityTable(SteppedTable):
     """`[gravity]`: a uniform acceleration of all discs."""
 
     in_steps = ("acceleration",)
@@ -27,61 +28,57 @@ class Gravity(SteppedTable):
         return steps_of(self.acceleration)
 
 
-def _properties(tables: Tables) -> Properties:
-    (_, first), *later = steps_of(tables.own.acceleration)
-    return Properties(
-        uniform=False,
-        straight_flight=False,
-        allows_monte_carlo=False,
-        drives_discs=True,
-        allows_time_steps=not later,
-        acceleration=first,
-        later_accelerations=tuple(acceleration for _, acceleration in later),
-        changes=tuple(time for time, _ in later),
-        varies=bool(later),
-    )
+class GravityEffect(Effect[law.Gravity]):
+    """Gravity: a uniform acceleration of all discs, which may change in steps."""
+
+    name = "gravity"
+    field = "gravity"
+    key = "gravity"
+    table = GravityTable
+    description = "[gravity]: acceleration"
+    energy_part = "potential"
+    energy_column = Column("potential_energy", "f8", (), "energy")
+    samples = (Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),)
+
+    def properties(self, tables: Tables) -> Properties:
+        (_, first), *later = steps_of(tables.own.acceleration)
+        return Properties(
+            uniform=False,
+            straight_flight=False,
+            allows_monte_carlo=False,
+            drives_discs=True,
+            allows_time_steps=not later,
+            acceleration=first,
+            later_accelerations=tuple(acceleration for _, acceleration in later),
+            changes=tuple(time for time, _ in later),
+            varies=bool(later),
+        )
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        """Yield an issue if the acceleration is always zero."""
+        key: Key = ("gravity", "acceleration")
+        steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
+        if not any(map(any, steps)):
+            yield Issue((key,), "no acceleration", str(list(steps[0])), "no [gravity], or one that pulls")
+
+    def state_at_start(self, _: Tables, start: Start) -> law.Gravity | None:
+        """Return the acceleration summed over all effects, which is what moves the discs."""
+        return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
+
+    def driving_speed(self, gravity: law.Gravity, gas: Gas) -> float:
+        return math.sqrt(math.hypot(*gravity) * sum(gas.box))
+
+    def energy(self, gravity: law.Gravity, gas: Gas, _: float) -> float:
+        """Potential energy; its decrease along periodic sides is the work of gravity on the flowing gas."""
+        return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
+
+    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+        """Yield the changes of the acceleration along x (item 0) and along y (item 1)."""
+        for time, acceleration in steps_of(tables.own.acceleration)[1:]:
+            yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))
+
+    def change(self, gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
+        return gravity._replace(**{"xy"[axis]: component})
 
 
-def _check(tables: Tables) -> Iterator[Issue]:
-    """Yield an issue if the acceleration is always zero."""
-    key: Key = ("gravity", "acceleration")
-    steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
-    if not any(map(any, steps)):
-        yield Issue((key,), "no acceleration", str(list(steps[0])), "no [gravity], or one that pulls")
-
-
-def _make(_: Tables, start: Start) -> law.Gravity | None:
-    """Return the acceleration summed over all effects, which is what moves the discs."""
-    return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
-
-
-def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
-    """Yield the changes of the acceleration along x (item 0) and along y (item 1)."""
-    for time, acceleration in steps_of(tables.own.acceleration)[1:]:
-        yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))
-
-
-def _change(gravity: law.Gravity, axis: int, component: float) -> law.Gravity:
-    return gravity._replace(**{"xy"[axis]: component})
-
-
-def _energy(gravity: law.Gravity, gas: Gas, _: float) -> float:
-    """Potential energy; its decrease along periodic sides is the work of gravity on the flowing gas."""
-    return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
-
-
-EFFECT = EffectSpec(
-    name="gravity",
-    field="gravity",
-    key="gravity",
-    table=Gravity,
-    description="[gravity]: acceleration",
-    properties=_properties,
-    check=_check,
-    make=_make,
-    make_always=True,
-    schedule=_schedule,
-    change=_change,
-    energy=EnergyPart("potential", _energy, Column("potential_energy", "f8", (), "energy")),
-    samples=(Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),),
-)
+EFFECT = GravityEffect()

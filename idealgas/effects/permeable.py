@@ -6,15 +6,10 @@ from typing import Any
 import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import permeable as law
 from idealgas.toml.issues import Issue
-
-
-def _properties(tables: Tables) -> Properties | None:
-    walls = [wall for wall in tables.walls if wall is not None and wall.is_permeable]
-    return Properties(one_way=any(wall.permeable_from for wall in walls)) if walls else None
 
 
 def _to_left(wall: Any) -> float:
@@ -30,46 +25,52 @@ def _passage(wall: Any) -> int:
     return law.FROM_LEFT if _to_left(wall) > 0 else law.FROM_RIGHT
 
 
-def _check(tables: Tables) -> Iterator[Issue]:
-    """Yield issues of walls without the side `permeable_from`, and of gates that let discs pass from one side."""
-    for i, wall in enumerate(tables.walls):
-        if wall is None or wall.permeable_from is None:
-            continue
-        key, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
-        if wall.via is not None:
-            yield Issue(
-                (key, ("wall", i, "via")), "an arc that discs pass from one side", got, "a straight wall, or both sides"
-            )
-        elif wall.start != wall.end and _to_left(wall) == 0:
-            sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
-            yield Issue((key,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
-        if wall.absences:
-            keys = (key, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
-            allowed = "a wall that is always there; beside a gate at its place, if need be"
-            yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
-
-
-def _make(tables: Tables, start: Start) -> law.Permeable:
-    gas = start.gas
-    names = np.array(gas.species_names)
-    passage = np.full((len(tables.walls), len(names)), law.SOLID, np.uint8)
-    for wall, row in zip(tables.walls, passage, strict=True):
-        if wall.is_permeable:
-            row[slice(None) if wall.permeable_to is None else np.isin(names, wall.permeable_to)] = _passage(wall)
-    return law.Permeable(gas.species.astype(np.uint16), passage)
-
-
 def _door(x: float, height: float) -> str:
     """Table of a wall from the bottom up to a height (length), which all discs pass from the left."""
     return f'[[wall]]\nfrom = [{x}, 0]\nto = [{x}, {height}]\npermeable_from = "left"\n'
 
 
-EFFECT = EffectSpec(
-    name="permeable walls",
-    field="permeable",
-    properties=_properties,
-    check=_check,
-    make=_make,
-    samples=(Sample(tables=lambda side: _door(side / 4, side)),),
-    sample_together=Sample(tables=lambda side: _door(side / 4, 9.0)),
-)
+class PermeableEffect(Effect[law.Permeable]):
+    """Wall segments that let discs of some species pass, from both sides or from one."""
+
+    name = "permeable walls"
+    field = "permeable"
+    samples = (Sample(tables=lambda side: _door(side / 4, side)),)
+    sample_together = Sample(tables=lambda side: _door(side / 4, 9.0))
+
+    def properties(self, tables: Tables) -> Properties | None:
+        walls = [wall for wall in tables.walls if wall is not None and wall.is_permeable]
+        return Properties(one_way=any(wall.permeable_from for wall in walls)) if walls else None
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        """Yield issues of walls without the side `permeable_from`, and of gates that let discs pass from one side."""
+        for i, wall in enumerate(tables.walls):
+            if wall is None or wall.permeable_from is None:
+                continue
+            key, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
+            if wall.via is not None:
+                yield Issue(
+                    (key, ("wall", i, "via")),
+                    "an arc that discs pass from one side",
+                    got,
+                    "a straight wall, or both sides",
+                )
+            elif wall.start != wall.end and _to_left(wall) == 0:
+                sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
+                yield Issue((key,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
+            if wall.absences:
+                keys = (key, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
+                allowed = "a wall that is always there; beside a gate at its place, if need be"
+                yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
+
+    def make(self, tables: Tables, start: Start) -> law.Permeable:
+        gas = start.gas
+        names = np.array(gas.species_names)
+        passage = np.full((len(tables.walls), len(names)), law.SOLID, np.uint8)
+        for wall, row in zip(tables.walls, passage, strict=True):
+            if wall.is_permeable:
+                row[slice(None) if wall.permeable_to is None else np.isin(names, wall.permeable_to)] = _passage(wall)
+        return law.Permeable(gas.species.astype(np.uint16), passage)
+
+
+EFFECT = PermeableEffect()

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Column, Point, Values, axis_of
-from idealgas.effects.effect import SAMPLE_DISCS, EffectSpec, EnergyPart, Sample, Start, Tables
+from idealgas.effects.effect import SAMPLE_DISCS, Effect, Later, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import (
     Change,
@@ -19,7 +19,7 @@ from idealgas.effects.schedule import (
     steps_of,
     value_at,
 )
-from idealgas.effects.wall import LastingWall
+from idealgas.effects.wall import PermanentWall
 from idealgas.jit import aligned
 from idealgas.physics import piston as law
 from idealgas.physics.steering import reversed_velocity
@@ -31,7 +31,7 @@ NAME = "piston"
 """Name of an inner piston among the walls, unless the scene gives it another."""
 
 
-class Piston(SteppedTable):
+class PistonTable(SteppedTable):
     """`[[piston]]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
 
     It moves at a given velocity, or it has a mass and is accelerated by gravity along its axis. A piston that replaces
@@ -132,7 +132,7 @@ class Piston(SteppedTable):
 
 
 @dataclass(frozen=True)
-class InnerPiston(LastingWall):
+class InnerPiston(PermanentWall):
     """An inner piston among the walls inside the box, at its position at the start.
 
     Its left face is on the side of smaller coordinates.
@@ -146,7 +146,7 @@ class InnerPiston(LastingWall):
     radius = 0.0
 
 
-def inner_pistons(tables: Sequence[Piston | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
+def inner_pistons(tables: Sequence[PistonTable | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
     """Return the inner pistons among the tables, which are None if invalid; size: of the box, length."""
     pistons = []
     for k, table in enumerate(tables):
@@ -157,95 +157,10 @@ def inner_pistons(tables: Sequence[Piston | None], size: tuple[float, float]) ->
     return tuple(pistons)
 
 
-def _properties(tables: Tables) -> Properties:
-    pistons = [piston for piston in tables.own if piston is not None]
-    times = tuple(sorted({time for piston in pistons for time in piston.times}))
-    return Properties(
-        uniform=False,
-        fixed_walls=False,
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        is_scalable=False,
-        driven=any(p.mass is None and any(velocity for _, velocity in p.velocity_steps) for p in pistons),
-        drives_discs=True,
-        changes=times,
-        varies=bool(times),
-    )
-
-
-def _check(tables: Tables) -> Iterator[Issue]:
-    """Yield issues of names of pistons that are taken or have no effect."""
-    walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
-    taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
-    for k, piston in enumerate(tables.own):
-        if piston is None:
-            continue
-        key: Key = ("piston", k, "name" if piston.name else "inner")
-        if piston.inner is None and piston.name:
-            yield Issue((key,), "a name of a piston at a side", f'"{piston.name}"', "none: it has that of the side")
-        elif piston.inner and piston.wall in taken:
-            yield Issue((key,), f"name taken by {taken[piston.wall]}", f'"{piston.wall}"', "a name of its own")
-        elif piston.inner:
-            taken[piston.wall] = "another piston"
-
-
-def _make(tables: Tables, start: Start) -> np.ndarray:
-    size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.own)
-    pistons = aligned(len(tables.own), law.PISTON)
-    for record, table in zip(pistons, tables.own, strict=True):
-        record.x, record.v = table.start(size), table.start_velocity
-        record.a = table.acceleration(size, start.acceleration)
-        record.m, record.length, record.axis = table.mass or 0.0, size[table.axis], table.axis
-        record.outward = table.outward
-        record.wall = first if table.inner else SIDES.index(table.wall)
-        first += table.inner is not None
-    return pistons
-
-
-def _schedule(tables: Tables, start: Start) -> Iterator[Change]:
-    """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
-    for k, table in enumerate(tables.own):
-        for time, _ in steps_of(table.pressure)[1:]:
-            yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))
-        for time, velocity in table.velocity_steps[1:]:
-            yield Change(time, 2 * k + 1, velocity)
-
-
-def _change(pistons: np.ndarray, item: int, value: float) -> np.ndarray:
-    pistons[item // 2]["v" if item % 2 else "a"] = value
-    return pistons
-
-
 def _columns(number: int) -> tuple[Column, Column]:
     """Columns of the positions and velocities of a number of pistons."""
     places = Column("piston_position", "f8", (number,), "length")
     return places, Column("piston_velocity", "f8", (number,), "length/time")
-
-
-def _values(pistons: np.ndarray, local_time: float) -> Values:
-    motion = np.array([law.piston_motion(record, local_time) for record in pistons])
-    return dict(zip(_columns(len(pistons)), motion.T.copy(), strict=True))
-
-
-def _restore(pistons: np.ndarray, arrays: Mapping[str, np.ndarray]) -> None:
-    pistons["x"], pistons["v"] = (arrays[column.name] for column in _columns(len(pistons)))
-    pistons["t"] = 0.0
-
-
-def _energy(pistons: np.ndarray, _: Gas, local_time: float) -> float:
-    motions = ((piston, law.piston_motion(piston, local_time)) for piston in pistons if piston.m > 0)
-    return float(sum(law.piston_energy(piston.m, x, v, piston.a) for piston, (x, v) in motions))
-
-
-def _own_walls(pistons: np.ndarray) -> tuple[int, ...]:
-    return tuple(int(record.wall) for record in pistons if record.m > 0)
-
-
-def _reverse(pistons: np.ndarray) -> None:
-    """Reverse the velocities of pistons with a mass; a given velocity remains."""
-    for record in pistons:
-        if record.m > 0:
-            record.v = reversed_velocity(record.v)
 
 
 def _sample(side: float) -> str:
@@ -257,24 +172,114 @@ def _inner_sample(side: float) -> str:
     return '[[piston]]\ninner = "x"\nmass = 100\n'
 
 
-EFFECT = EffectSpec(
-    name="piston",
-    field="piston",
-    key="piston",
-    table=Piston,
-    many=True,
-    description="[[piston]] tables",
-    properties=_properties,
-    check=_check,
-    make=_make,
-    schedule=_schedule,
-    change=_change,
-    values=_values,
-    restore=_restore,
-    energy=EnergyPart("piston", _energy),
-    gives_energy=lambda pistons: True,
-    own_walls=_own_walls,
-    reverse=_reverse,
-    end_epoch=law.end_epoch,
-    samples=(Sample(tables=_sample), Sample("inner", tables=_inner_sample)),
-)
+class PistonEffect(Effect[np.ndarray]):
+    """Pistons: walls across the whole box that move."""
+
+    name = "piston"
+    field = "piston"
+    key = "piston"
+    table = PistonTable
+    many = True
+    description = "[[piston]] tables"
+    energy_part = "piston"
+    samples = (Sample(tables=_sample), Sample("inner", tables=_inner_sample))
+
+    def properties(self, tables: Tables) -> Properties:
+        pistons = [piston for piston in tables.own if piston is not None]
+        times = tuple(sorted({time for piston in pistons for time in piston.times}))
+        return Properties(
+            uniform=False,
+            fixed_walls=False,
+            allows_monte_carlo=False,
+            allows_time_steps=False,
+            is_scalable=False,
+            driven=any(p.mass is None and any(velocity for _, velocity in p.velocity_steps) for p in pistons),
+            drives_discs=True,
+            changes=times,
+            varies=bool(times),
+        )
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        """Yield issues of names of pistons that are taken or have no effect."""
+        walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
+        taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
+        for k, piston in enumerate(tables.own):
+            if piston is None:
+                continue
+            key: Key = ("piston", k, "name" if piston.name else "inner")
+            if piston.inner is None and piston.name:
+                yield Issue((key,), "a name of a piston at a side", f'"{piston.name}"', "none: it has that of the side")
+            elif piston.inner and piston.wall in taken:
+                yield Issue((key,), f"name taken by {taken[piston.wall]}", f'"{piston.wall}"', "a name of its own")
+            elif piston.inner:
+                taken[piston.wall] = "another piston"
+
+    def continued(self, table: tuple[PistonTable, ...], later: Later) -> tuple[PistonTable, ...]:
+        if not table:
+            return ()
+        places, velocities = (later.sampled(column.name) for column in _columns(len(table)))
+        moved = []
+        for piston, place, velocity in zip(table, places, velocities, strict=True):
+            motion = {"velocity": float(velocity)} if piston.mass is not None else {}
+            moved.append(piston.after(later.time).model_copy(update={"position": float(place), **motion}))
+        return tuple(moved)
+
+    def make(self, tables: Tables, start: Start) -> np.ndarray:
+        size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.own)
+        pistons = aligned(len(tables.own), law.PISTON)
+        for record, table in zip(pistons, tables.own, strict=True):
+            record.x, record.v = table.start(size), table.start_velocity
+            record.a = table.acceleration(size, start.acceleration)
+            record.m, record.length, record.axis = table.mass or 0.0, size[table.axis], table.axis
+            record.outward = table.outward
+            record.wall = first if table.inner else SIDES.index(table.wall)
+            first += table.inner is not None
+        return pistons
+
+    def values(self, pistons: np.ndarray, local_time: float) -> Values:
+        motion = np.array([law.piston_motion(record, local_time) for record in pistons])
+        return dict(zip(_columns(len(pistons)), motion.T.copy(), strict=True))
+
+    def restore(self, pistons: np.ndarray, arrays: Mapping[str, np.ndarray]) -> None:
+        pistons["x"], pistons["v"] = (arrays[column.name] for column in _columns(len(pistons)))
+        pistons["t"] = 0.0
+
+    def energy(self, pistons: np.ndarray, _: Gas, local_time: float) -> float:
+        motions = ((piston, law.piston_motion(piston, local_time)) for piston in pistons if piston.m > 0)
+        return float(sum(law.piston_energy(piston.m, x, v, piston.a) for piston, (x, v) in motions))
+
+    def gives_energy(self, pistons: np.ndarray) -> bool:
+        return True
+
+    def own_walls(self, pistons: np.ndarray) -> tuple[int, ...]:
+        return tuple(int(record.wall) for record in pistons if record.m > 0)
+
+    def driving_speed(self, pistons: np.ndarray, gas: Gas) -> float:
+        return float(np.abs(pistons["v"]).max())
+
+    def driving_energy(self, pistons: np.ndarray, gas: Gas) -> float:
+        return float(np.abs(pistons["m"] * pistons["a"]).sum()) * max(gas.box)
+
+    def end_epoch(self, piston: np.ndarray, length: float) -> None:
+        law.end_epoch(piston, length)
+
+    def reverse(self, pistons: np.ndarray) -> None:
+        """Reverse the velocities of pistons with a mass; a given velocity remains."""
+        for record in pistons:
+            if record.m > 0:
+                record.v = reversed_velocity(record.v)
+
+    def schedule(self, tables: Tables, start: Start) -> Iterator[Change]:
+        """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
+        for k, table in enumerate(tables.own):
+            for time, _ in steps_of(table.pressure)[1:]:
+                yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))
+            for time, velocity in table.velocity_steps[1:]:
+                yield Change(time, 2 * k + 1, velocity)
+
+    def change(self, pistons: np.ndarray, item: int, value: float) -> np.ndarray:
+        pistons[item // 2]["v" if item % 2 else "a"] = value
+        return pistons
+
+
+EFFECT = PistonEffect()

@@ -25,9 +25,9 @@ def _merge(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(y if x is None else x or y for x, y in zip_longest(a, b))
 
 
-def _plain(value: Any, both: Callable[[Any, Any], Any]) -> Any:
-    """Field with a property of the plain box; both: function that combines the property for two effects."""
-    return field(default=value, metadata={"both": both})
+def _property(default: Any, combine: Callable[[Any, Any], Any]) -> Any:
+    """Field with a property of the plain box; combine: function that combines the property for two effects."""
+    return field(default=default, metadata={"combine": combine})
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,7 @@ class Properties:
     Attributes that are False by default, and true for a scene if true for any of its effects:
         driven: a wall that moves at a given velocity does work on the gas.
         dissipative: energy is lost when discs collide with discs or walls.
+        collisions_give_energy: discs gain energy when they collide.
         has_rough_walls: walls exert tangential forces.
         drives_discs: discs at rest are set in motion.
         varies: a temperature, pressure, velocity or acceleration changes in time.
@@ -67,37 +68,38 @@ class Properties:
         changes: times at which a value changes in a step, or a gate opens or closes.
     """
 
-    uniform: bool = _plain(True, operator.and_)
-    straight_flight: bool = _plain(True, operator.and_)
-    elastic: bool = _plain(True, operator.and_)
-    fixed_walls: bool = _plain(True, operator.and_)
-    allows_monte_carlo: bool = _plain(True, operator.and_)
-    allows_time_steps: bool = _plain(True, operator.and_)
-    is_scalable: bool = _plain(True, operator.and_)
-    driven: bool = _plain(False, operator.or_)
-    dissipative: bool = _plain(False, operator.or_)
-    has_rough_walls: bool = _plain(False, operator.or_)
-    drives_discs: bool = _plain(False, operator.or_)
-    varies: bool = _plain(False, operator.or_)
-    vibrates: bool = _plain(False, operator.or_)
-    one_way: bool = _plain(False, operator.or_)
-    escapes: bool = _plain(False, operator.or_)
-    inertia: float | None = _plain(None, _first_not_none)
-    periodic: tuple[bool, bool] = _plain((False, False), _merge)
-    acceleration: tuple[float, float] = _plain((0.0, 0.0), _sums)
-    later_accelerations: tuple[tuple[float, float], ...] = _plain((), operator.add)
-    emits: tuple[float | None, ...] = _plain((None,) * len(SIDES), _merge)
-    bath: float | None = _plain(None, _first_not_none)
-    thermostat_rate: float = _plain(0.0, max)
-    shear: float = _plain(0.0, max)
-    later_temperatures: tuple[float, ...] = _plain((), operator.add)
-    last_wall_removed_at: float = _plain(0.0, max)
-    changes: tuple[float, ...] = _plain((), operator.add)
+    uniform: bool = _property(True, operator.and_)
+    straight_flight: bool = _property(True, operator.and_)
+    elastic: bool = _property(True, operator.and_)
+    fixed_walls: bool = _property(True, operator.and_)
+    allows_monte_carlo: bool = _property(True, operator.and_)
+    allows_time_steps: bool = _property(True, operator.and_)
+    is_scalable: bool = _property(True, operator.and_)
+    driven: bool = _property(False, operator.or_)
+    dissipative: bool = _property(False, operator.or_)
+    collisions_give_energy: bool = _property(False, operator.or_)
+    has_rough_walls: bool = _property(False, operator.or_)
+    drives_discs: bool = _property(False, operator.or_)
+    varies: bool = _property(False, operator.or_)
+    vibrates: bool = _property(False, operator.or_)
+    one_way: bool = _property(False, operator.or_)
+    escapes: bool = _property(False, operator.or_)
+    inertia: float | None = _property(None, _first_not_none)
+    periodic: tuple[bool, bool] = _property((False, False), _merge)
+    acceleration: tuple[float, float] = _property((0.0, 0.0), _sums)
+    later_accelerations: tuple[tuple[float, float], ...] = _property((), operator.add)
+    emits: tuple[float | None, ...] = _property((None,) * len(SIDES), _merge)
+    bath: float | None = _property(None, _first_not_none)
+    thermostat_rate: float = _property(0.0, max)
+    shear: float = _property(0.0, max)
+    later_temperatures: tuple[float, ...] = _property((), operator.add)
+    last_wall_removed_at: float = _property(0.0, max)
+    changes: tuple[float, ...] = _property((), operator.add)
 
     @property
-    def lossless(self) -> bool:
-        """Whether collisions of discs with discs or walls do not lose energy at all."""
-        return not self.dissipative
+    def collisions_conserve_energy(self) -> bool:
+        """Whether collisions of discs with discs or walls neither take energy from the discs nor give them any."""
+        return not (self.dissipative or self.collisions_give_energy)
 
     @property
     def spins(self) -> bool:
@@ -118,7 +120,7 @@ class Properties:
     @property
     def conserves_energy(self) -> bool:
         """Whether only heat, from walls or a heat bath, changes the energy of translation and spin."""
-        return self.lossless and self.straight_flight and self.fixed_walls and not self.escapes
+        return self.collisions_conserve_energy and self.straight_flight and self.fixed_walls and not self.escapes
 
     @property
     def conserves_motion(self) -> bool:
@@ -137,7 +139,7 @@ class Properties:
         return x, y
 
     @property
-    def falls(self) -> tuple[bool, bool]:
+    def free_fall_axes(self) -> tuple[bool, bool]:
         """Whether gravity acts along x, and along y, between periodic sides, where nothing ends the fall."""
         x, y = (on and g != 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
         return x, y
@@ -150,13 +152,15 @@ class Properties:
     @property
     def conserves_momentum(self) -> tuple[bool, bool]:
         """Whether the total momentum of the discs is conserved along x, and along y."""
-        x, y = (self.frictionless and on and not fall for on, fall in zip(self.periodic, self.falls, strict=True))
+        x, y = (
+            self.frictionless and on and not fall for on, fall in zip(self.periodic, self.free_fall_axes, strict=True)
+        )
         return x and not self.shear, y
 
     def __and__(self, other: "Properties") -> "Properties":
         """Return the properties of a gas with the effects of both."""
         pairs = ((entry, getattr(self, entry.name), getattr(other, entry.name)) for entry in fields(self))
-        return Properties(**{entry.name: entry.metadata["both"](first, second) for entry, first, second in pairs})
+        return Properties(**{entry.name: entry.metadata["combine"](first, second) for entry, first, second in pairs})
 
 
 @dataclass(frozen=True)

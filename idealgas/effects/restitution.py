@@ -5,8 +5,8 @@ import math
 import numpy as np
 from pydantic import Field
 
-from idealgas.columns import Column
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.columns import Arrays, Column
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import restitution as law
 from idealgas.toml.table import Positive, Real, Table
@@ -15,7 +15,7 @@ LAST_COLLISION = Column("last_collision", "f8", (), "time")
 """Time of a disc's last collision, counted from the checkpoint."""
 
 
-class Restitution(Table):
+class RestitutionTable(Table):
     """`[restitution]`: discs separate more slowly than they approached.
 
     A disc that collided less than the contact duration ago collides elastically; this prevents infinitely many
@@ -36,27 +36,34 @@ class Restitution(Table):
         return self.normal == 1 and self.wall == 1
 
 
-def _properties(tables: Tables) -> Properties | None:
-    if tables.own.elastic:
-        return None
-    return Properties(uniform=False, elastic=False, dissipative=True)
+class RestitutionEffect(Effect[law.Restitution]):
+    """Inelastic collisions of discs with each other and with walls."""
+
+    name = "restitution"
+    field = "restitution"
+    key = "restitution"
+    table = RestitutionTable
+    description = "[restitution]: normal, wall, contact_duration"
+    shearable = True
+    samples = (Sample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),)
+
+    def properties(self, tables: Tables) -> Properties | None:
+        if tables.own.elastic:
+            return None
+        return Properties(uniform=False, elastic=False, dissipative=True)
+
+    def make(self, tables: Tables, start: Start) -> law.Restitution:
+        table = tables.own
+        return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
+
+    def disc_state(self, restitution: law.Restitution) -> Arrays:
+        return {LAST_COLLISION: restitution.last}
+
+    def gives_energy(self, restitution: law.Restitution) -> bool:
+        return restitution.wall < 1
+
+    def end_epoch(self, restitution: law.Restitution, length: float) -> None:
+        law.end_epoch(restitution, length)
 
 
-def _make(tables: Tables, start: Start) -> law.Restitution:
-    table = tables.own
-    return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
-
-
-EFFECT = EffectSpec(
-    name="restitution",
-    field="restitution",
-    key="restitution",
-    table=Restitution,
-    description="[restitution]: normal, wall, contact_duration",
-    properties=_properties,
-    make=_make,
-    disc_state=lambda restitution: {LAST_COLLISION: restitution.last},
-    gives_energy=lambda restitution: restitution.wall < 1,
-    end_epoch=law.end_epoch,
-    samples=(Sample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),),
-)
+EFFECT = RestitutionEffect()

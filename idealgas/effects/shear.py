@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pydantic import Field
 
 from idealgas.columns import SIDES
-from idealgas.effects.effect import EffectSpec, Sample, Tables
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.properties import Properties
 from idealgas.physics import shear as law
@@ -27,49 +27,56 @@ class ShearedSide(Table):
         return f"sheared, rate {self.shear:g}"
 
 
-def _properties(tables: Tables) -> Properties | None:
-    rates = [side.shear for side in tables.sides if isinstance(side, ShearedSide)]
-    if not rates:
-        return None
-    return Properties(
-        uniform=False,
-        fixed_walls=False,
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        driven=True,
-        drives_discs=True,
-        periodic=(False, True),
-        shear=rates[0],
-    )
+class ShearEffect(Effect[law.Shear]):
+    """Sheared sides: bottom and top are periodic, and the images above and below the box move along x."""
 
-
-def _check(tables: Tables) -> Iterator[Issue]:
-    """Yield issues unless bottom and top have the same shear rate and the other sides are periodic."""
-    left, right, bottom, top = tables.sides
-    across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
-    if left != PERIODIC or right != PERIODIC:
-        yield Issue(across, "no shear between other sides", "left and right not periodic", f'both "{PERIODIC}"')
-    if bottom != top:
-        keys: tuple[Key, ...] = (("box", "bottom"), ("box", "top"))
-        yield Issue(keys, "sheared in two ways", "different bottom and top", "the same { shear = rate } for both")
-
-
-EFFECT = EffectSpec(
-    name="sheared sides",
-    field="shear",
-    side=ShearedSide,
-    side_text="at bottom and top { shear = rate }",
-    properties=_properties,
-    check=_check,
-    make=lambda tables, start: law.make_shear(tables.sides[3].shear, tables.size),
-    gives_energy=lambda shear: True,
-    begin_epoch=law.begin_epoch,
-    samples=(
+    name = "sheared sides"
+    field = "shear"
+    side = ShearedSide
+    side_text = "at bottom and top { shear = rate }"
+    shearable = True
+    samples = (
         Sample(
             box=lambda side: (
                 f'left = "{PERIODIC}"\nright = "{PERIODIC}"\nbottom = {{ shear = 0.05 }}\ntop = {{ shear = 0.05 }}\n'
             )
         ),
-    ),
-    sample_together=Sample(),
-)
+    )
+    sample_together = Sample()
+
+    def properties(self, tables: Tables) -> Properties | None:
+        rates = [side.shear for side in tables.sides if isinstance(side, ShearedSide)]
+        if not rates:
+            return None
+        return Properties(
+            uniform=False,
+            fixed_walls=False,
+            allows_monte_carlo=False,
+            allows_time_steps=False,
+            driven=True,
+            drives_discs=True,
+            periodic=(False, True),
+            shear=rates[0],
+        )
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        """Yield issues unless bottom and top have the same shear rate and the other sides are periodic."""
+        left, right, bottom, top = tables.sides
+        across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
+        if left != PERIODIC or right != PERIODIC:
+            yield Issue(across, "no shear between other sides", "left and right not periodic", f'both "{PERIODIC}"')
+        if bottom != top:
+            keys: tuple[Key, ...] = (("box", "bottom"), ("box", "top"))
+            yield Issue(keys, "sheared in two ways", "different bottom and top", "the same { shear = rate } for both")
+
+    def make(self, tables: Tables, start: Start) -> law.Shear:
+        return law.make_shear(tables.sides[3].shear, tables.size)
+
+    def gives_energy(self, shear: law.Shear) -> bool:
+        return True
+
+    def begin_epoch(self, shear: law.Shear, time: float, length: float) -> None:
+        law.begin_epoch(shear, time, length)
+
+
+EFFECT = ShearEffect()

@@ -1,20 +1,18 @@
 """Velocities that are changed from outside: reversed at given times, or set by a program."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from pydantic import Field
 
-from idealgas.columns import Column
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.columns import Kind
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, Times, as_times, without_past
 from idealgas.toml.issues import Issue
 from idealgas.toml.table import Table
 
-STEERED = Column("steered", "i8")
 
-
-class Steering(Table):
+class SteeringTable(Table):
     """`[steering]`: velocities are changed from outside, at given times or by a Python program (`idealgas.open_run`).
 
     When all velocities and spins are reversed, an elastic gas retraces its path.
@@ -24,37 +22,40 @@ class Steering(Table):
         default=None, description="time > 0, or times, at which all velocities and spins are reversed"
     )
 
-    def after(self, time: float) -> "Steering":
+    def after(self, time: float) -> "SteeringTable":
         """Return the table for a scene whose clock starts at a later time."""
         return self.model_copy(update={"reversed_at": without_past(self.reversed_at, time)})
 
 
-def _check(tables: Tables) -> Iterator[Issue]:
-    times = as_times(tables.own.reversed_at)
-    if sorted(set(times)) != list(times) or 0 in times:
-        yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
+class SteeringEffect(Effect[tuple[float, ...]]):
+    """Velocities that are changed from outside: reversed at given times, or set by a program."""
+
+    name = "steering"
+    field = "steering"
+    key = "steering"
+    table = SteeringTable
+    description = "[steering]: reversed_at"
+    events = Kind.STEERED
+    samples = (Sample(tables=lambda side: "[steering]\nreversed_at = 1\n"),)
+
+    def properties(self, tables: Tables) -> Properties:
+        return Properties(
+            allows_monte_carlo=False, allows_time_steps=False, varies=True, changes=as_times(tables.own.reversed_at)
+        )
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        times = as_times(tables.own.reversed_at)
+        if sorted(set(times)) != list(times) or 0 in times:
+            yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
+
+    def state_at_start(self, tables: Tables, start: Start) -> tuple[float, ...] | None:
+        """Return the times of the reversals; a tuple without times if only changes of gravity steer the discs."""
+        if tables.own is None:
+            return () if start.later_accelerations else None
+        return as_times(tables.own.reversed_at)
+
+    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+        return (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at))
 
 
-def _make(tables: Tables, start: Start) -> tuple[float, ...] | None:
-    """Return the times of the reversals: an empty tuple if only gravity steers discs, None if nothing does."""
-    if tables.own is None:
-        return () if start.later_accelerations else None
-    return as_times(tables.own.reversed_at)
-
-
-EFFECT = EffectSpec(
-    name="steering",
-    field="steering",
-    key="steering",
-    table=Steering,
-    description="[steering]: reversed_at",
-    properties=lambda tables: Properties(
-        allows_monte_carlo=False, allows_time_steps=False, varies=True, changes=as_times(tables.own.reversed_at)
-    ),
-    check=_check,
-    make=_make,
-    make_always=True,
-    schedule=lambda tables, start: (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at)),
-    counted=STEERED,
-    samples=(Sample(tables=lambda side: "[steering]\nreversed_at = 1\n"),),
-)
+EFFECT = SteeringEffect()

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from idealgas.columns import SIDES, Column
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.columns import SIDES, Arrays, Column
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, changes_of, description, steps_of, value_at
 from idealgas.physics import thermal as law
@@ -41,54 +41,54 @@ def _number(temperature: Any) -> float:
     return temperature if isinstance(temperature, float) else -1.0
 
 
-def _properties(tables: Tables) -> Properties | None:
-    temperatures = _temperatures(tables)
-    if not any(temperatures):
-        return None
-    first = (value_at(temperature, 0.0) for temperature in temperatures)
-    later = [step for temperature in temperatures for step in steps_of(temperature)[1:]]
-    return Properties(
-        allows_monte_carlo=False,
-        allows_time_steps=not later,
-        has_rough_walls=True,
-        emits=tuple(t if isinstance(t, float) else None for t in first),
-        later_temperatures=tuple(t for _, t in later if isinstance(t, float)),
-        changes=tuple(time for time, _ in later),
-        varies=bool(later),
-    )
-
-
-def _make(tables: Tables, start: Start) -> law.Thermal:
-    temperature = np.array([_number(value_at(t, 0.0)) for t in _temperatures(tables)])
-    return law.Thermal(temperature, np.uint64(start.seed), np.zeros(len(start.gas), np.uint64))
-
-
-def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
-    for wall, temperature in enumerate(_temperatures(tables)):
-        for change in changes_of(temperature, wall):
-            yield change._replace(value=_number(change.value))
-
-
-def _change(thermal: law.Thermal, wall: int, temperature: float) -> law.Thermal:
-    thermal.temperature[wall] = temperature
-    return thermal
-
-
 def _hot(*names: str) -> str:
     return "".join(f"{name} = {{ thermal = 1 }}\n" for name in names)
 
 
-EFFECT = EffectSpec(
-    name="thermal walls",
-    field="thermal",
-    side=ThermalSide,
-    side_text="{ thermal = T }",
-    properties=_properties,
-    make=_make,
-    schedule=_schedule,
-    change=_change,
-    disc_state=lambda thermal: {EMISSIONS: thermal.emissions},
-    gives_energy=lambda thermal: True,
-    samples=(Sample(box=lambda side: _hot(*SIDES)),),
-    sample_together=Sample(),
-)
+class ThermalEffect(Effect[law.Thermal]):
+    """Thermal walls: sides and segments that re-emit the discs that hit them at the temperature of the wall."""
+
+    name = "thermal walls"
+    field = "thermal"
+    side = ThermalSide
+    side_text = "{ thermal = T }"
+    samples = (Sample(box=lambda side: _hot(*SIDES)),)
+    sample_together = Sample()
+
+    def properties(self, tables: Tables) -> Properties | None:
+        temperatures = _temperatures(tables)
+        if not any(temperatures):
+            return None
+        first = (value_at(temperature, 0.0) for temperature in temperatures)
+        later = [step for temperature in temperatures for step in steps_of(temperature)[1:]]
+        return Properties(
+            allows_monte_carlo=False,
+            allows_time_steps=not later,
+            has_rough_walls=True,
+            emits=tuple(t if isinstance(t, float) else None for t in first),
+            later_temperatures=tuple(t for _, t in later if isinstance(t, float)),
+            changes=tuple(time for time, _ in later),
+            varies=bool(later),
+        )
+
+    def make(self, tables: Tables, start: Start) -> law.Thermal:
+        temperature = np.array([_number(value_at(t, 0.0)) for t in _temperatures(tables)])
+        return law.Thermal(temperature, np.uint64(start.seed), np.zeros(len(start.gas), np.uint64))
+
+    def disc_state(self, thermal: law.Thermal) -> Arrays:
+        return {EMISSIONS: thermal.emissions}
+
+    def gives_energy(self, thermal: law.Thermal) -> bool:
+        return True
+
+    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+        for wall, temperature in enumerate(_temperatures(tables)):
+            for change in changes_of(temperature, wall):
+                yield change._replace(value=_number(change.value))
+
+    def change(self, thermal: law.Thermal, wall: int, temperature: float) -> law.Thermal:
+        thermal.temperature[wall] = temperature
+        return thermal
+
+
+EFFECT = ThermalEffect()

@@ -1,23 +1,26 @@
 """A thermostat: a heat bath that gives discs new velocities at random times."""
 
+import math
+from collections.abc import Iterable
+
 import numpy as np
 from pydantic import Field
 
-from idealgas.columns import Column
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.columns import Arrays, Column, Kind
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
-from idealgas.effects.schedule import PositiveInSteps, SteppedTable, changes_of, steps_of, value_at
+from idealgas.effects.schedule import Change, PositiveInSteps, SteppedTable, changes_of, steps_of, value_at
 from idealgas.physics import thermostat as law
+from idealgas.state import Gas
 from idealgas.toml.table import Positive
 
-THERMOSTAT_COLLISIONS = Column("thermostat_collisions", "i8")
 NEXT_THERMOSTAT_COLLISION = Column("next_thermostat_collision", "f8", (), "time")
 """Time of a disc's next collision with the bath, counted from the checkpoint."""
 THERMOSTAT_COLLISION_NUMBER = Column("thermostat_collision_number", "u8")
 """Number of a disc's next collision with the bath, from 0."""
 
 
-class Thermostat(SteppedTable):
+class ThermostatTable(SteppedTable):
     """`[thermostat]`: a heat bath gives each disc a new velocity at random times, wherever it is.
 
     The velocity, and the spin of a disc that has one, are drawn from the distribution at the bath's temperature
@@ -32,43 +35,56 @@ class Thermostat(SteppedTable):
     rate: Positive = Field(description="rate of thermostat collisions of each disc > 0, 1/time")
 
 
-def _properties(tables: Tables) -> Properties:
-    first, *later = steps_of(tables.own.temperature)
-    return Properties(
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        drives_discs=True,
-        bath=first[1],
-        later_temperatures=tuple(temperature for _, temperature in later),
-        changes=tuple(time for time, _ in later),
-        varies=bool(later),
-        thermostat_rate=tables.own.rate,
-    )
+class ThermostatEffect(Effect[law.Thermostat]):
+    """A thermostat: a heat bath that gives discs new velocities at random times."""
+
+    name = "thermostat"
+    field = "thermostat"
+    key = "thermostat"
+    table = ThermostatTable
+    description = "[thermostat]: temperature, rate"
+    events = Kind.THERMOSTAT
+    shearable = True
+    samples = (Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),)
+
+    def properties(self, tables: Tables) -> Properties:
+        first, *later = steps_of(tables.own.temperature)
+        return Properties(
+            allows_monte_carlo=False,
+            allows_time_steps=False,
+            drives_discs=True,
+            bath=first[1],
+            later_temperatures=tuple(temperature for _, temperature in later),
+            changes=tuple(time for time, _ in later),
+            varies=bool(later),
+            thermostat_rate=tables.own.rate,
+        )
+
+    def make(self, tables: Tables, start: Start) -> law.Thermostat:
+        table, n = tables.own, len(start.gas)
+        temperature = value_at(table.temperature, 0.0)
+        thermostat = law.Thermostat(temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64))
+        law.draw_first_collisions(thermostat)
+        return thermostat
+
+    def disc_state(self, thermostat: law.Thermostat) -> Arrays:
+        return {
+            NEXT_THERMOSTAT_COLLISION: thermostat.time,
+            THERMOSTAT_COLLISION_NUMBER: thermostat.number,
+        }
+
+    def driving_speed(self, thermostat: law.Thermostat, gas: Gas) -> float:
+        fastest = math.sqrt(float((gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2).max()))
+        return max(math.sqrt(thermostat.temperature / float(gas.mass.min())) - fastest, 0.0)
+
+    def end_epoch(self, thermostat: law.Thermostat, length: float) -> None:
+        law.end_epoch(thermostat, length)
+
+    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+        return changes_of(tables.own.temperature, 0)
+
+    def change(self, thermostat: law.Thermostat, item: int, temperature: float) -> law.Thermostat:
+        return thermostat._replace(temperature=temperature)
 
 
-def _make(tables: Tables, start: Start) -> law.Thermostat:
-    table, n = tables.own, len(start.gas)
-    temperature = value_at(table.temperature, 0.0)
-    thermostat = law.Thermostat(temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64))
-    law.draw_first_collisions(thermostat)
-    return thermostat
-
-
-EFFECT = EffectSpec(
-    name="thermostat",
-    field="thermostat",
-    key="thermostat",
-    table=Thermostat,
-    description="[thermostat]: temperature, rate",
-    properties=_properties,
-    make=_make,
-    disc_state=lambda thermostat: {
-        NEXT_THERMOSTAT_COLLISION: thermostat.time,
-        THERMOSTAT_COLLISION_NUMBER: thermostat.number,
-    },
-    counted=THERMOSTAT_COLLISIONS,
-    schedule=lambda tables, start: changes_of(tables.own.temperature, 0),
-    change=lambda thermostat, item, temperature: thermostat._replace(temperature=temperature),
-    end_epoch=law.end_epoch,
-    samples=(Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),),  # a tenth of all collisions
-)
+EFFECT = ThermostatEffect()

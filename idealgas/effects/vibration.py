@@ -4,10 +4,11 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import SIDES
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.effect import Effect, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import vibration as law
+from idealgas.state import Gas
 from idealgas.toml.table import Positive, Table
 
 
@@ -34,37 +35,44 @@ def reach(side: object) -> float:
     return 2 * side.vibrating.amplitude if isinstance(side, VibratingSide) else 0.0
 
 
-def _properties(tables: Tables) -> Properties | None:
-    if not any(map(reach, tables.sides)):
-        return None
-    return Properties(
-        uniform=False,
-        fixed_walls=False,
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        is_scalable=False,
-        vibrates=True,
-        drives_discs=True,
-    )
+class VibrationEffect(Effect[np.recarray]):
+    """Vibrating sides of the box."""
+
+    name = "vibrating sides"
+    field = "vibration"
+    side = VibratingSide
+    side_text = "{ vibrating = { amplitude = A, frequency = f } }"
+    samples = (Sample(box=lambda side: "bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }\n"),)
+
+    def properties(self, tables: Tables) -> Properties | None:
+        if not any(map(reach, tables.sides)):
+            return None
+        return Properties(
+            uniform=False,
+            fixed_walls=False,
+            allows_monte_carlo=False,
+            allows_time_steps=False,
+            is_scalable=False,
+            vibrates=True,
+            drives_discs=True,
+        )
+
+    def make(self, tables: Tables, _: Start) -> np.recarray:
+        vibration = aligned(len(SIDES), law.VIBRATION)
+        for record, side in zip(vibration, tables.sides, strict=True):
+            if isinstance(side, VibratingSide):
+                record.amplitude, record.half = side.vibrating.amplitude, 0.5 / side.vibrating.frequency
+                record.acceleration = 8 * record.amplitude / record.half**2
+        return vibration
+
+    def gives_energy(self, vibration: np.recarray) -> bool:
+        return True
+
+    def driving_speed(self, vibration: np.recarray, gas: Gas) -> float:
+        return 0.5 * float((vibration.acceleration * vibration.half).max())
+
+    def begin_epoch(self, vibration: np.recarray, time: float, length: float) -> None:
+        law.begin_epoch(vibration, time, length)
 
 
-def _make(tables: Tables, _: Start) -> np.recarray:
-    vibration = aligned(len(SIDES), law.VIBRATION)
-    for record, side in zip(vibration, tables.sides, strict=True):
-        if isinstance(side, VibratingSide):
-            record.amplitude, record.half = side.vibrating.amplitude, 0.5 / side.vibrating.frequency
-            record.acceleration = 8 * record.amplitude / record.half**2
-    return vibration
-
-
-EFFECT = EffectSpec(
-    name="vibrating sides",
-    field="vibration",
-    side=VibratingSide,
-    side_text="{ vibrating = { amplitude = A, frequency = f } }",
-    properties=_properties,
-    make=_make,
-    gives_energy=lambda vibration: True,
-    begin_epoch=law.begin_epoch,
-    samples=(Sample(box=lambda side: "bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }\n"),),
-)
+EFFECT = VibrationEffect()

@@ -1,7 +1,7 @@
 """Walls inside the box, straight or arcs, which may be gates."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from typing import Annotated, ClassVar, Literal
@@ -11,7 +11,7 @@ from pydantic import Field
 
 from idealgas.columns import SIDES
 from idealgas.effects.arc import FLATTEST
-from idealgas.effects.effect import EffectSpec, Sample, Start, Tables
+from idealgas.effects.effect import Effect, Later, Sample, Start, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, Times, WallTemperature, as_times, description, times_key
 from idealgas.jit import aligned
@@ -24,7 +24,7 @@ SHORTEST = 1e-9
 """Shortest wall in units of the box's longer side; the ends of a shorter wall are not distinct in double precision."""
 
 
-class Wall(SteppedTable):
+class WallTable(SteppedTable):
     """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
 
     A gate is present until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then.
@@ -99,7 +99,7 @@ class Wall(SteppedTable):
         """Whether the wall lets discs of a species pass, from at least one side."""
         return self.is_permeable and (self.permeable_to is None or species in self.permeable_to)
 
-    def later(self, time: float) -> "Wall | None":
+    def later(self, time: float) -> "WallTable | None":
         """Return the wall for a scene whose clock starts at a later time; None if it has been removed for good."""
         absences = [(max(o - time, 0.0), c - time) for o, c in self.absences if c > time]
         if absences and absences[0] == (0.0, math.inf):
@@ -108,19 +108,27 @@ class Wall(SteppedTable):
         update = {"opens_at": times_key([] if opens == [0.0] else opens), "closes_at": times_key(closes)}
         return self.after(time).model_copy(update=update)
 
-    def is_there(self, time: float) -> bool:
+    def for_species(self, species: Container[str]) -> "WallTable":
+        """The wall in a gas of these species only; one that others alone pass is closed to all discs."""
+        if self.permeable_to is None:
+            return self
+        names = tuple(name for name in self.permeable_to if name in species)
+        update = {"permeable_to": names} if names else {"permeable_to": None, "permeable_from": None}
+        return self.model_copy(update=update)
+
+    def is_present(self, time: float) -> bool:
         """Whether the wall is present at a time."""
         return not any(opens <= time < closes for opens, closes in self.absences)
 
 
-class LastingWall:
+class PermanentWall:
     """A wall that is not declared in `[[wall]]`: always present, straight, not thermal and not permeable."""
 
     temperature = permeable_from = arc = None
     absences = ()
     is_permeable = absorbing = False
 
-    def is_there(self, _: float) -> bool:
+    def is_present(self, _: float) -> bool:
         """Whether the wall is present at a time."""
         return True
 
@@ -130,7 +138,7 @@ class LastingWall:
 
 
 @dataclass(frozen=True)
-class FixedDisc(LastingWall):
+class FixedDisc(PermanentWall):
     """A fixed disc: a wall around a point.
 
     Attributes:
@@ -164,41 +172,7 @@ class FixedDisc(LastingWall):
         return f"fixed disc, radius {self.radius:g}"
 
 
-def _properties(tables: Tables) -> Properties:
-    walls = [wall for wall in tables.own if wall is not None]
-    removed = (wall.absences[-1] if wall.absences else (math.inf, math.inf) for wall in walls)
-    times = {t for wall in walls for absence in wall.absences for t in absence}
-    return Properties(
-        uniform=False,
-        allows_monte_carlo=False,
-        allows_time_steps=False,
-        is_scalable=False,
-        last_wall_removed_at=max(opens if math.isinf(closes) else math.inf for opens, closes in removed),
-        changes=tuple(sorted(times - {0.0, math.inf})),
-    )
-
-
-def _check(tables: Tables) -> Iterator[Issue]:
-    """Yield issues of single walls, and of names that are taken."""
-    first: dict[str, int] = {}
-    for i, wall in enumerate(tables.own):
-        if wall is None:
-            continue
-        if isinstance(wall, FixedDisc):
-            if not all(0 <= x <= length for x, length in zip(wall.start, tables.size, strict=True)):
-                allowed = f"0 <= x <= {tables.size[0]} and 0 <= y <= {tables.size[1]}"
-                keys: tuple[Key, ...] = (("disc", wall.number, "position"), ("box", "size"))
-                yield Issue(keys, "fixed disc not in the box", str(list(wall.start)), allowed)
-            continue
-        yield from wall_issues(tables.size, i, wall)
-        if wall.name in (*SIDES, "piston"):
-            taken = "the piston" if wall.name == "piston" else "a side of the box"
-            yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
-        elif wall.name is not None and first.setdefault(wall.name, i) != i:
-            yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
-
-
-def wall_issues(size: tuple[float, float], i: int, wall: Wall) -> Iterator[Issue]:
+def wall_issues(size: tuple[float, float], i: int, wall: WallTable) -> Iterator[Issue]:
     """Yield issues of wall i, except for its name; size: width and height of the box, length."""
     keys: tuple[Key, ...] = (("wall", i, "from"), ("wall", i, "to"))
     ends = f"{list(wall.start)} to {list(wall.end)}"
@@ -258,23 +232,6 @@ def make_segments(
     return segments
 
 
-def _make(tables: Tables, _: Start) -> np.recarray:
-    start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
-    active, radius = [wall.is_there(0.0) for wall in tables.own], [wall.radius for wall in tables.own]
-    return make_segments(start, end, np.array(active), np.array(radius))
-
-
-def _schedule(tables: Tables, _: Start) -> Iterator[Change]:
-    for k, wall in enumerate(tables.own):
-        for times, active in zip(zip(*wall.absences, strict=True), (0.0, 1.0), strict=False):
-            yield from (Change(time, k, active) for time in times if 0 < time < math.inf)
-
-
-def _change(segments: np.recarray, segment: int, active: float) -> np.recarray:
-    segments.active[segment] = bool(active)
-    return segments
-
-
 def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> str:
     """Tables `[[wall]]` of a regular polygon with a radius (length), whose centre is at a height in the box."""
     turn = [2 * math.pi * k / corners for k in range(corners + 1)]
@@ -282,21 +239,70 @@ def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> s
     return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
 
 
-EFFECT = EffectSpec(
-    name="wall segments",
-    field="segments",
-    key="wall",
-    table=Wall,
-    many=True,
-    description="[[wall]] tables",
-    properties=_properties,
-    check=_check,
-    make=_make,
-    schedule=_schedule,
-    change=_change,
-    samples=(
+class WallEffect(Effect[np.recarray]):
+    """Walls inside the box, straight or arcs, which may be gates."""
+
+    name = "wall segments"
+    field = "segments"
+    key = "wall"
+    table = WallTable
+    many = True
+    description = "[[wall]] tables"
+    samples = (
         Sample("6", tables=lambda side: _polygon(side, 6, side / 2)),
         Sample("1000", tables=lambda side: _polygon(side, 1000, side / 2)),
-    ),
-    sample_together=Sample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n"),
-)
+    )
+    sample_together = Sample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n")
+
+    def properties(self, tables: Tables) -> Properties:
+        walls = [wall for wall in tables.own if wall is not None]
+        removed = (wall.absences[-1] if wall.absences else (math.inf, math.inf) for wall in walls)
+        times = {t for wall in walls for absence in wall.absences for t in absence}
+        return Properties(
+            uniform=False,
+            allows_monte_carlo=False,
+            allows_time_steps=False,
+            is_scalable=False,
+            last_wall_removed_at=max(opens if math.isinf(closes) else math.inf for opens, closes in removed),
+            changes=tuple(sorted(times - {0.0, math.inf})),
+        )
+
+    def check(self, tables: Tables) -> Iterator[Issue]:
+        """Yield issues of single walls, and of names that are taken."""
+        first: dict[str, int] = {}
+        for i, wall in enumerate(tables.own):
+            if wall is None:
+                continue
+            if isinstance(wall, FixedDisc):
+                if not all(0 <= x <= length for x, length in zip(wall.start, tables.size, strict=True)):
+                    allowed = f"0 <= x <= {tables.size[0]} and 0 <= y <= {tables.size[1]}"
+                    keys: tuple[Key, ...] = (("disc", wall.number, "position"), ("box", "size"))
+                    yield Issue(keys, "fixed disc not in the box", str(list(wall.start)), allowed)
+                continue
+            yield from wall_issues(tables.size, i, wall)
+            if wall.name in (*SIDES, "piston"):
+                taken = "the piston" if wall.name == "piston" else "a side of the box"
+                yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
+            elif wall.name is not None and first.setdefault(wall.name, i) != i:
+                yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
+
+    def continued(self, table: tuple[WallTable, ...], later: Later) -> tuple[WallTable, ...]:
+        walls = (wall.later(later.time) for wall in table)
+        return tuple(wall.for_species(later.species) for wall in walls if wall is not None)
+
+    def make(self, tables: Tables, _: Start) -> np.recarray:
+        start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
+        active, radius = [wall.is_present(0.0) for wall in tables.own], [wall.radius for wall in tables.own]
+        return make_segments(start, end, np.array(active), np.array(radius))
+
+    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+        for k, wall in enumerate(tables.own):
+            for times, active in zip(zip(*wall.absences, strict=True), (0.0, 1.0), strict=False):
+                yield from (Change(time, k, active) for time in times if 0 < time < math.inf)
+
+    def change(self, segments: np.recarray, segment: int, active: float) -> np.recarray:
+        segments.active[segment] = bool(active)
+        return segments
+
+
+EFFECT = WallEffect()

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from idealgas.effects.bundle import Effects
+from idealgas.effects.bundle import Effects, present
 from idealgas.physics.collision_rates import collisions_per_length
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import periodic_axes
@@ -23,7 +23,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     """Number of encounters of all discs per length that each disc moves, 1/length, by kinetic theory.
 
     It counts encounters with discs and with sides; sides that leave a disc less room than its diameter are treated by
-    `narrow_encounters`. periodic: whether the sides along x and along y are periodic.
+    `narrow_side_hit_rate`. periodic: whether the sides along x and along y are periodic.
     """
     n = len(gas)
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
@@ -31,7 +31,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     return collisions_per_length(n, mean_diameter, float(gas.radius.max()), phi, gas.box, periodic)
 
 
-def narrow_encounters(gas: Gas, periodic: Sequence[bool]) -> float:
+def narrow_side_hit_rate(gas: Gas, periodic: Sequence[bool]) -> float:
     """Estimated rate of hits, 1/time, on sides that leave the largest disc less room than its diameter.
 
     The rate follows from the velocities along that axis, because in a narrow box the direction of motion matters.
@@ -73,7 +73,7 @@ def epoch_length(
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
     fastest = float(speeds.max()) + extra_speed
-    other_events = narrow_encounters(gas, periodic) + thermostat_collisions
+    other_events = narrow_side_hit_rate(gas, periodic) + thermostat_collisions
     displacement = 2.0 * MAX_DISPLACEMENT * float(gas.radius.min())
     round_the_box = MOST_CROSSINGS * min(
         (length for length, on in zip(gas.box, periodic, strict=True) if on), default=math.inf
@@ -106,25 +106,5 @@ def fall_along_sides(effects: Effects) -> float:
 
 
 def driving_speed(gas: Gas, effects: Effects) -> float:
-    """Estimated increase of the mean speed of the discs by gravity, moving walls or a heat bath, length/time.
-
-    The estimate serves only to choose the length of an epoch.
-    """
-    speed = 0.0
-    if effects.gravity is not None:
-        speed += math.sqrt(math.hypot(*effects.gravity) * sum(gas.box))
-    if effects.piston is not None:
-        speed += float(np.abs(effects.piston["v"]).max())
-    if effects.vibration is not None:
-        speed += 0.5 * float((effects.vibration.acceleration * effects.vibration.half).max())
-    if effects.thermostat is not None:
-        fastest = math.sqrt(float((gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2).max()))
-        speed += max(math.sqrt(effects.thermostat.temperature / float(gas.mass.min())) - fastest, 0.0)
-    return speed
-
-
-def driving_energy(gas: Gas, effects: Effects) -> float:
-    """Largest energy that pistons with a mass can bring into the gas on their way across the box; 0 without pistons."""
-    if effects.piston is None:
-        return 0.0
-    return float(np.abs(effects.piston["m"] * effects.piston["a"]).sum()) * max(gas.box)
+    """Estimated increase of the mean speed of the discs by gravity, moving walls or a heat bath, length/time."""
+    return sum(effect.driving_speed(state, gas) for effect, state in present(effects))

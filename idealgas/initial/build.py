@@ -127,7 +127,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
     box, periodic = scene.box, scene.properties.periodic
     space = scene.room
-    walls = [wall for wall in scene.walls if wall.is_there(0.0)]
+    walls = [wall for wall in scene.walls if wall.is_present(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     room = make_room(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")

@@ -41,7 +41,7 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if accelerations.any():
         for k, wall in enumerate(scene.segments):
-            if wall.is_there(0.0):
+            if wall.is_present(0.0):
                 normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
                 touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
                 if wall.is_permeable and wall.permeable_from is None:

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
-from idealgas.columns import Column
+from idealgas.columns import COUNTED, Column
 from idealgas.files import HEAD, describe_file_type
 from idealgas.locks import is_locked
 from idealgas.log import schema
@@ -192,7 +192,7 @@ class LogFile:
         self._names: dict[str, list[str]] = {}
         for path in self.commit.tails:
             self._names.setdefault(table_of(path), []).append(path.partition("/")[2])
-        self.kinds = {kind for name, kind in schema.COUNTED.items() if name in self.names("checkpoints")}
+        self.kinds = {kind for kind, column in COUNTED.items() if column.name in self.names("checkpoints")}
         place = self._columns.get("checkpoints/piston_position")
         self.pistons = 0 if place is None else math.prod(place.chunk[1:])
         self.rules = self._rules(size)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 import numpy as np
 
 from idealgas.columns import (
+    COUNTED,
     EVENT_COLUMNS,
     IMAGE,
     MOST_SPECIES,
@@ -28,7 +29,6 @@ from idealgas.log.schema import (
     BOX,
     CHANGE_COLUMNS,
     CHECKPOINT_COLUMNS,
-    COUNTED,
     DISC_COLUMNS,
     ENDPOINTS,
     GRAVITY,
@@ -96,7 +96,7 @@ class Rules:
         """
         self._others = [PARTNERS[kind] for kind in kinds if kind in PARTNERS]
         self._escapes = Kind.ESCAPED in kinds
-        self._no_kinds = sorted(set(COUNTED.values()) - set(kinds))
+        self._no_kinds = sorted(set(COUNTED) - set(kinds))
         self.has_time_steps: Callable[[], bool] = lambda: False
         self._box = box
         self._ranges: dict[str, Range] = {

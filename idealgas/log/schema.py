@@ -64,8 +64,6 @@ CHANGE_COLUMNS = (Column("time", "f8", (), "time"), Column("setting", "S256"))
 """Columns with the changes that a program made to the scene during the run."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
 """Columns with the scene and command of the run, and of each run that resumed it."""
-COUNTED = {"thermostat_collisions": Kind.THERMOSTAT, "steered": Kind.STEERED, "escaped": Kind.ESCAPED}
-"""Optional kinds of events, by the column of checkpoints that counts them; other logs do not have these events."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
 """Columns of the summary, which has a row for each field; the values are JSON."""
 DISC_COLUMNS = (

@@ -1,7 +1,6 @@
 """Start another scene from a state of a log: read its discs, or write the scene that continues from it."""
 
 from collections import Counter
-from collections.abc import Container
 from pathlib import Path
 from typing import Any, Literal
 
@@ -9,7 +8,7 @@ import numpy as np
 
 from idealgas.errors import UserError
 from idealgas.log.reader import Log, open_log
-from idealgas.scene import Scene
+from idealgas.scene.changes import Later, effects_at
 from idealgas.scene.checks.overlaps import deepest_overlap
 from idealgas.scene.discs import make_discs
 from idealgas.scene.start import StartError
@@ -54,7 +53,7 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         "angular_velocity": spin[here],
         "species": [discs.species_names[k] for k in discs.species[here].tolist()],
     }
-    walls = [wall for wall in scene.segments if wall.is_there(time)]
+    walls = [wall for wall in scene.segments if wall.is_present(time)]
     return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
 
 
@@ -87,37 +86,16 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
         "species": tuple(
             s.model_copy(update={"count": numbers[s.name], "region": None}) for s in scene.species if numbers[s.name]
         ),
-        "wall": tuple(_known(later, numbers) for wall in scene.wall if (later := wall.later(time)) is not None),
     }
-    if scene.gravity is not None:
-        update["gravity"] = scene.gravity.after(time)
-    if scene.steering is not None:
-        update["steering"] = scene.steering.after(time)
-    if scene.thermostat is not None:
-        update["thermostat"] = scene.thermostat.after(time)
-    if scene.piston:
-        update["piston"] = _pistons_at(log, scene, time)
-    return dump_document(scene.model_copy(update=update))
+    later = Later(time, numbers, lambda column: _sampled(log, column, time))
+    return dump_document(scene.model_copy(update=update | effects_at(scene, later)))
 
 
-def _known(wall: Any, species: Container[str]) -> Any:
-    """Return a wall that refers only to the given species; if none of its species remains, no disc passes it."""
-    if wall.permeable_to is None:
-        return wall
-    names = tuple(name for name in wall.permeable_to if name in species)
-    update = {"permeable_to": names} if names else {"permeable_to": None, "permeable_from": None}
-    return wall.model_copy(update=update)
-
-
-def _pistons_at(log: Log, scene: Scene, time: float) -> tuple[Any, ...]:
-    """Return the tables of the pistons at a time; the log has to have a sample at this time."""
-    times, position = log.observables["piston_position"]
+def _sampled(log: Log, column: str, time: float) -> np.ndarray:
+    """Value of a column of the samples at the time of one."""
+    times, values = log.observables[column]
     k = int(np.abs(times - time).argmin()) if len(times) else 0
     if not len(times) or times[k] != time:
         nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
         raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
-    pistons, velocities = [], log.observables["piston_velocity"][1][k]
-    for piston, place, velocity in zip(scene.piston, position[k], velocities, strict=True):
-        motion = {"velocity": float(velocity)} if piston.mass is not None else {}
-        pistons.append(piston.after(time).model_copy(update={"position": float(place), **motion}))
-    return tuple(pistons)
+    return values[k]

@@ -299,7 +299,7 @@ class Painter:
 
     def _walls_at(self, time: float) -> list[Artist]:
         """Return the walls that are present at a time, as gates may be open, and the pistons at their positions."""
-        drawn = list(compress((*self._walls, *self._names), [wall.is_there(time) for wall in self._inside] * 2))
+        drawn = list(compress((*self._walls, *self._names), [wall.is_present(time) for wall in self._inside] * 2))
         for piston, (line, name) in zip(self._pistons, self._piston_lines, strict=True):
             place = piston.at(time)
             line.set(**{"ydata" if piston.axis else "xdata": [place] * 2})

@@ -135,18 +135,24 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 
 @inline
-def collide(a, b, a_id, b_id, restitution, rotation, periodic, images):
-    """Collide two discs whose records are at the time of contact; their velocities and spins change.
-
-    If sides are sheared, the velocities must be those in the common frame.
-    """
+def line_of_centres(a, b, periodic, images):
+    """Position (x, y) of a relative to the image of b that it touches, length; both are at the same time."""
     x, y = a.x - b.x, a.y - b.y
     if periodic is not None:
         x, y = shift_by_images(x, y, periodic, images)
         x, _ = less_offset(x, a.vx, a.t, periodic.shear, images)
-    if rotation is not None:
-        tangential_impulse(a, b, a_id, b_id, x, y, rotation)
-    factor = restitution_factor(restitution, a_id, b_id, a.t)
+    return x, y
+
+
+@inline
+def collide(a, b, a_id, b_id, images, effects):
+    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change.
+
+    Where sides are sheared, their velocities are those of the common frame.
+    """
+    x, y = line_of_centres(a, b, effects.periodic, images)
+    tangential_impulse(a, b, a_id, b_id, x, y, effects.rotation)
+    factor = restitution_factor(effects.restitution, a_id, b_id, a.t)
     a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, a.vx - b.vx, a.vy - b.vy, factor)
 
 

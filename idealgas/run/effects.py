@@ -9,7 +9,7 @@ from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects, inner_energy, present
 from idealgas.effects.effect import Start
-from idealgas.engine.epoch import driving_energy, driving_speed, encounters_per_length
+from idealgas.engine.epoch import driving_speed, encounters_per_length
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
@@ -27,10 +27,10 @@ def make_effects(scene: Scene, gas: Gas) -> Effects:
     scene = scene.resolved()
     start = _start(scene, gas)
     tables = ((effect, scene.tables_of(effect)) for effect in EFFECTS)
-    states = {e.field: e.make(table, start) for e, table in tables if e.make_always or e.find(table) is not None}
+    states = {effect.field: effect.state_at_start(table, start) for effect, table in tables}
     effects = Effects(**states, schedule=_schedule(scene, start))
     gives = any(effect.gives_energy(state) for effect, state in present(effects))
-    loses, inner = scene.properties.dissipative, inner_energy(effects, gas)
+    loses, inner = not scene.properties.collisions_conserve_energy, inner_energy(effects, gas)
     return with_sums(effects, scene, gas, gives_energy=gives, loses_energy=loses, inner_energy=inner)
 
 
@@ -73,9 +73,10 @@ def with_sums(
     gives_energy: whether walls give energy to discs, or take it. loses_energy: whether collisions lose energy.
     inner_energy: energy of the discs that collisions may turn into kinetic energy, mass length²/time².
     """
-    potentials_change = any(EFFECTS[k].energy for _, k, *_ in effects.schedule or ())
+    potentials_change = any(EFFECTS[k].energy_part for _, k, *_ in effects.schedule or ())
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
-    largest = max(0.5 * float(gas.mass.mean()) * speed**2, driving_energy(gas, effects), inner_energy)
+    driven = (effect.driving_energy(state, gas) for effect, state in present(effects))
+    largest = max(0.5 * float(gas.mass.mean()) * speed**2, inner_energy, *driven)
     energy = max(gas.kinetic_energy / len(gas), LEAST_SHARE * largest)
     return effects._replace(
         wall_energy=make_sums([energy] * walls) if gives_energy else None,

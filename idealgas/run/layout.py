@@ -113,7 +113,7 @@ def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
     """Values that a sample contains in addition to the diagnostics: energies, values of the effects, and sums."""
     energy = energy_of(gas, effects, local_time)
     sample: Values = {Column("energy", "f8", (), "energy"): energy.gas}
-    parts = {effect.energy.part: effect.energy.observed for effect, _ in bundle.present(effects) if effect.energy}
+    parts = {effect.energy_part: effect.energy_column for effect, _ in bundle.present(effects)}
     for part in Energy._fields:
         if (column := parts.get(part)) is not None:
             sample[column] = getattr(energy, part)

@@ -1,14 +1,14 @@
 """Scenes: their tables, checks and loader."""
 
-from idealgas.effects.gravity import Gravity
-from idealgas.effects.piston import Piston
-from idealgas.effects.restitution import Restitution
-from idealgas.effects.rotation import Rotation
-from idealgas.effects.steering import Steering
+from idealgas.effects.gravity import GravityTable
+from idealgas.effects.piston import PistonTable
+from idealgas.effects.restitution import RestitutionTable
+from idealgas.effects.rotation import RotationTable
+from idealgas.effects.steering import SteeringTable
 from idealgas.effects.thermal import ThermalSide
-from idealgas.effects.thermostat import Thermostat
+from idealgas.effects.thermostat import ThermostatTable
 from idealgas.effects.vibration import VibratingSide
-from idealgas.effects.wall import Wall
+from idealgas.effects.wall import WallTable
 from idealgas.scene.defaults import RestingDisc
 from idealgas.scene.loader import load_scene, parse_scene
 from idealgas.scene.scene import Scene
@@ -18,22 +18,22 @@ from idealgas.toml.issues import SceneError
 __all__ = [
     "Box",
     "Disc",
-    "Gravity",
+    "GravityTable",
     "Header",
     "Log",
-    "Piston",
+    "PistonTable",
     "RestingDisc",
-    "Restitution",
-    "Rotation",
+    "RestitutionTable",
+    "RotationTable",
     "Run",
     "Scene",
     "SceneError",
     "Species",
-    "Steering",
+    "SteeringTable",
     "ThermalSide",
-    "Thermostat",
+    "ThermostatTable",
     "VibratingSide",
-    "Wall",
+    "WallTable",
     "load_scene",
     "parse_scene",
 ]

@@ -1,7 +1,9 @@
-"""Changes that a program makes to a scene during its run: past steps are kept, and later steps are replaced."""
+"""Changes that a program makes to a scene during its run: past steps stay, later ones are replaced."""
 
 from typing import Any, NamedTuple
 
+from idealgas.effects import EFFECTS
+from idealgas.effects.effect import Later
 from idealgas.effects.schedule import SteppedTable, as_times, steps_of
 from idealgas.scene.scene import Scene, make_scene
 from idealgas.toml.issues import SceneError
@@ -50,6 +52,11 @@ def apply_change(document: dict[str, Any], change: SceneChange) -> None:
     else:
         allowed = ", ".join(sorted((*_STEPPED, OPEN)))
         raise OverrideError(f"not a value that can change (allowed {allowed}, if the scene has it)")
+
+
+def effects_at(scene: Scene, later: Later) -> dict[str, Any]:
+    """Tables of the effects, by key, of a scene that continues from a later time of another one."""
+    return {effect.key: effect.continued(getattr(scene, effect.key), later) for effect in EFFECTS if effect.key}
 
 
 _GATE = ("opens_at", "closes_at")

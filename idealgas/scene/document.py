@@ -10,8 +10,8 @@ import numpy as np
 from pydantic import Field, PrivateAttr, create_model
 
 from idealgas.effects import EFFECTS
-from idealgas.effects.effect import EffectSpec, Tables
-from idealgas.effects.piston import Piston, inner_pistons
+from idealgas.effects.effect import Effect, Tables
+from idealgas.effects.piston import PistonTable, inner_pistons
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
@@ -90,7 +90,7 @@ class Document(_DiscsAndEffects):
         return (*self.segments, *(inner_pistons(self.piston, self.box.size) if self.box else ()))
 
     @property
-    def pistons(self) -> tuple[Piston, ...]:
+    def pistons(self) -> tuple[PistonTable, ...]:
         """Valid tables [[piston]]."""
         return tuple(piston for piston in self.piston if piston is not None)
 
@@ -140,7 +140,7 @@ class Document(_DiscsAndEffects):
         """Accepted overlap of given discs in addition to rounding, length."""
         return self._given.update.get("overlap", self.start and self.start.overlap) or 0.0
 
-    def tables_of(self, effect: EffectSpec[Any]) -> Tables:
+    def tables_of(self, effect: Effect[Any]) -> Tables:
         """Return the part of the scene for an effect; while a scene is being checked, its box may be missing."""
         table = getattr(self, effect.key) if effect.key else None
         table = self.segments if effect.key == "wall" else table
@@ -181,14 +181,13 @@ class Document(_DiscsAndEffects):
         return triangular_lattice(number, self.box.size) if number else None
 
     @property
-    def body_force(self) -> Vector:
+    def pressing_acceleration(self) -> Vector:
         """Largest acceleration that presses discs against walls or walls against discs, along x and y, length/time²."""
         gravity = self.properties.strongest_pull
-        body_force = list(gravity)
+        pull = list(gravity)
         for piston in self.pistons:
-            pull = piston.acceleration(self.box.size, gravity)
-            body_force[piston.axis] = max(body_force[piston.axis], pull, key=abs)
-        return body_force[0], body_force[1]
+            pull[piston.axis] = max(pull[piston.axis], piston.acceleration(self.box.size, gravity), key=abs)
+        return pull[0], pull[1]
 
     @property
     def number_of_discs(self) -> int:
@@ -230,14 +229,14 @@ class Document(_DiscsAndEffects):
 
     def free_time_at(self, speed: float) -> float:
         """Expected time between two collisions of a disc, time; speed: mean speed before the fall, length/time."""
-        n, (left, bottom, right, top), body_force = self.number_of_discs, self.room, self.body_force
+        n, (left, bottom, right, top), pull = self.number_of_discs, self.room, self.pressing_acceleration
         size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
         diameter, largest = self._sum_of_diameters / n, self.largest_radius
         encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
         encounters *= size[0] * size[1] / area
         path = 1.0 / max(encounters, 1.0 / sum(size))
-        speed = math.sqrt(speed**2 + abs(body_force[0]) * size[0] + abs(body_force[1]) * size[1])
+        speed = math.sqrt(speed**2 + abs(pull[0]) * size[0] + abs(pull[1]) * size[1])
         return path / speed if speed > 0 else math.inf
 
     @property
@@ -275,7 +274,7 @@ class Document(_DiscsAndEffects):
             return 0.0
         if self.restitution.contact_duration is not None:
             return self.restitution.contact_duration
-        if any(self.body_force):
+        if any(self.pressing_acceleration):
             return DEFAULT_CONTACT * self.mean_free_time
         if self.mean_speed == 0:
             return math.inf
@@ -288,7 +287,7 @@ class Document(_DiscsAndEffects):
     @property
     def rest(self) -> RestingDisc | None:
         """Motion of discs that have come to rest; None without a constant force or if collisions lose no energy."""
-        force = math.hypot(*self.body_force)
+        force = math.hypot(*self.pressing_acceleration)
         if self.restitution is None or self.restitution.elastic or force == 0:
             return None
         duration, e = self.contact_duration, min(self.restitution.normal, self.restitution.wall)
@@ -299,4 +298,4 @@ class Document(_DiscsAndEffects):
     @property
     def collapse_risk(self) -> bool:
         """Whether roughness slows discs down under a constant force, so that their collision rate may diverge."""
-        return any(self.body_force) and loses(self.rotation) and self.thermostat is None
+        return any(self.pressing_acceleration) and loses(self.rotation) and self.thermostat is None

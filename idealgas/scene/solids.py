@@ -15,7 +15,7 @@ from idealgas.physics.arc import toggles
 from idealgas.physics.arc_geometry import NO_ARC, Point, bounds
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import FixedDisc, Wall
+    from idealgas.effects.wall import FixedDisc, WallTable
 
 
 class Solids(NamedTuple):
@@ -27,7 +27,7 @@ class Solids(NamedTuple):
         loose: numbers of the walls whose curves are not closed, each with the loose end.
     """
 
-    walls: dict[str, tuple[Wall, ...]]
+    walls: dict[str, tuple[WallTable, ...]]
     area: float
     loose: tuple[tuple[int, Point], ...]
 
@@ -42,7 +42,7 @@ NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
 
 
 @lru_cache(maxsize=4)
-def find_solids(walls: tuple[Wall | None, ...], box_area: float) -> Solids:
+def find_solids(walls: tuple[WallTable | None, ...], box_area: float) -> Solids:
     """Find the solids that tables [[wall]] form in a box; walls: None for invalid tables; box_area: length²."""
     numbered = [(k, wall) for k, wall in enumerate(walls) if wall is not None and wall.solid is not None]
     kinds = {kind: tuple(wall for _, wall in numbered if wall.solid == kind) for kind in ("inside", "outside")}
@@ -61,7 +61,7 @@ def find_solids(walls: tuple[Wall | None, ...], box_area: float) -> Solids:
     return Solids(kinds, covered, loose)
 
 
-def enclosed(points: np.ndarray, walls: Iterable[Wall]) -> np.ndarray:
+def enclosed(points: np.ndarray, walls: Iterable[WallTable]) -> np.ndarray:
     """Mask (M,) of the points (M, 2) that closed curves of walls enclose, by the even–odd rule."""
     inside = np.zeros(len(points), bool)
     for wall in walls:
@@ -70,13 +70,15 @@ def enclosed(points: np.ndarray, walls: Iterable[Wall]) -> np.ndarray:
     return inside
 
 
-def _rectangle(wall: Wall) -> tuple[float, float, float]:
+def _rectangle(wall: WallTable) -> tuple[float, float, float]:
     """Lower, right and upper edges of the rectangle around a wall."""
     (_, low), (right, high) = bounds(wall.start, wall.end, wall.arc)
     return low, right, high
 
 
-def _curves(walls: Sequence[tuple[int, Wall]]) -> tuple[list[list[tuple[Wall, bool]]], tuple[tuple[int, Point], ...]]:
+def _curves(
+    walls: Sequence[tuple[int, WallTable]],
+) -> tuple[list[list[tuple[WallTable, bool]]], tuple[tuple[int, Point], ...]]:
     """Closed curves, each a list of walls and whether the curve follows each from start to end; and the loose ends."""
     at: dict[tuple[str | None, Point], list[int]] = defaultdict(list)
     known = dict(walls)
@@ -99,7 +101,7 @@ def _curves(walls: Sequence[tuple[int, Wall]]) -> tuple[list[list[tuple[Wall, bo
     return curves, loose
 
 
-def _swept(wall: Wall, forwards: bool) -> float:
+def _swept(wall: WallTable, forwards: bool) -> float:
     """Area swept counterclockwise by the line from the origin to a point that moves along a wall, length²."""
     (x0, y0), (x1, y1) = wall.start, wall.end
     area = (x0 * y1 - x1 * y0) / 2

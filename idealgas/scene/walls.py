@@ -63,7 +63,7 @@ class NumberedWall(NamedTuple):
         """Whether discs pass the wall, at some time or if they are of some species."""
         return self.is_gate or self.is_permeable
 
-    def is_there(self, time: float) -> bool:
+    def is_present(self, time: float) -> bool:
         """Whether the wall is present at a time."""
         return not any(opens <= time < closes for opens, closes in self.absences)
 

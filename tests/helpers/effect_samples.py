@@ -10,7 +10,7 @@ from idealgas.columns import FIRST_SEGMENT
 from idealgas.effects import EFFECTS
 from idealgas.effects.arc import make_arcs
 from idealgas.effects.bundle import Effects
-from idealgas.effects.effect import EffectSpec, Start
+from idealgas.effects.effect import Effect, Start
 from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
@@ -110,7 +110,7 @@ def make_effects(names: set[str], gas: Gas, seed: int = 1) -> Effects:
     )
 
 
-def from_benchmark(effect: EffectSpec[Any], gas: Gas, seed: int) -> Any:
+def from_benchmark(effect: Effect[Any], gas: Gas, seed: int) -> Any:
     """State of an effect with no sample here: that of its scene of the benchmark, in this box."""
     scene = effect_scene(effect.name, 1)
     rest = np.zeros(len(gas))

@@ -224,7 +224,7 @@ class InvariantChecker(Paths):
             distance = radius + miss
         else:
             gate = self.gates[wall - 4]
-            assert gate.is_there(time), "an open gate"
+            assert gate.is_present(time), "an open gate"
             closed = any(closes <= time for _, closes in gate.absences)  # perhaps over a disc
             start, end = self.walls[wall - 4]
             share, away = self.near(place, gate)
@@ -266,7 +266,7 @@ class InvariantChecker(Paths):
         disc, wall = int(rows.disc[0]), -5 - int(rows.partner[0])
         gate, radius = self.gates[wall], self.gas.radius[disc]
         assert gate.absorbing
-        assert gate.is_there(time)
+        assert gate.is_present(time)
         assert self.passage[wall, disc] != OPEN
         _, away = self.near(rows.position[0], gate)
         distance = np.hypot(*away.T).min()

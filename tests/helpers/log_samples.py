@@ -14,8 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import idealgas.log.writer as log_writer
-from idealgas.columns import BLOCK, EventBatch, Kind
-from idealgas.effects.thermostat import THERMOSTAT_COLLISIONS
+from idealgas.columns import BLOCK, COUNTED, EventBatch, Kind
 from idealgas.log import Column, Log, LogError, LogLayout, LogWriter, box_walls, open_log
 from idealgas.state import Gas
 
@@ -23,7 +22,7 @@ DISCS = 25
 STEP = 2.0**-10
 OBSERVABLES = (Column("kinetic_energy", "f8", (), "energy"), Column("hits", "i8"))
 VALUES = (Column("hits", "i8"),)
-BATH_VALUES = (*VALUES, THERMOSTAT_COLLISIONS)
+BATH_VALUES = (*VALUES, COUNTED[Kind.THERMOSTAT])
 """Columns of checkpoints of a log with a heat bath."""
 
 
@@ -88,7 +87,7 @@ def filled(writer: LogWriter, most: int) -> tuple[EventBatch, int]:
 def write_checkpoint(writer: LogWriter) -> None:
     row = writer.rows
     writer.observe(row * STEP, row, {"kinetic_energy": row / 3, "hits": row})
-    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, THERMOSTAT_COLLISIONS.name: 0})
+    writer.checkpoint(row * STEP, row, checkpoint_arrays(row), {"hits": -row, COUNTED[Kind.THERMOSTAT].name: 0})
 
 
 def checkpoint_arrays(row: int) -> dict[str, np.ndarray]:

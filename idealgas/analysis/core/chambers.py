@@ -7,7 +7,7 @@ import numpy as np
 
 from idealgas.columns import SIDES, axis_of, sides_across
 from idealgas.log import Log
-from idealgas.scene import Piston, Scene
+from idealgas.scene import PistonTable, Scene
 from idealgas.scene.walls import walls_inside
 
 
@@ -51,7 +51,7 @@ class Chambers:
         return not (0 < k < len(there) and cuts[k] == place) or bool(there[k - 1] and there[k])
 
 
-def outward(log: Log, piston: Piston) -> float:
+def outward(log: Log, piston: PistonTable) -> float:
     """Direction from the gas to a piston along its axis, +1 or -1; 0 with gas on both its sides."""
     directions = set(piston.outward_from(log.discs.position, log.box).tolist())
     return directions.pop() if len(directions) == 1 else 0.0

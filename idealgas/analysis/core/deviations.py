@@ -91,7 +91,7 @@ def sensitivity(
 def must_have_tangent_map(log: Log) -> None:
     """Raise NotApplicableError unless the tangent map of all events of a log is known."""
     gas = log.scene.properties
-    plain = gas.lossless and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty
+    plain = gas.collisions_conserve_energy and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty
     if not plain or gas.spins or gas.varies or log.scene.run.method not in ("event_driven", "brute_force"):
         takes = "takes smooth elastic discs between plain sides, and an exact method"
         raise NotApplicableError(f"{log.path}: not applicable: growth of deviations {takes}")

@@ -103,16 +103,20 @@ def nonstationary_reason(log: Log) -> str:
     Such a gas is driven by a moving wall, or loses or gains energy without a balance.
     """
     scene, properties = log.scene, log.scene.properties
-    if properties.shear and not (properties.lossless and properties.isolated):
+    keeps_energy = properties.collisions_conserve_energy and properties.isolated
+    if properties.shear and not keeps_energy:
         return ""  # heat bath or collisions take out what shear brings
     if properties.driven:
         return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
-    if any(properties.falls) and (properties.frictionless or (properties.lossless and properties.isolated)):
+    if any(properties.free_fall_axes) and (properties.frictionless or keeps_energy):
         return "gravity along periodic sides accelerates or heats the gas"
-    if properties.vibrates and properties.lossless and properties.isolated:
+    if properties.vibrates and keeps_energy:
         return "a vibrating side heats the gas"
-    if not properties.lossless and properties.isolated and not (properties.vibrates or any(properties.falls)):
-        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
+    gains = properties.vibrates or any(properties.free_fall_axes) or properties.collisions_give_energy
+    if properties.dissipative and properties.isolated and not gains:
+        return f"the gas loses energy ({', '.join(scene.lacking('collisions_conserve_energy'))})"
+    if properties.collisions_give_energy and properties.isolated and not properties.dissipative:
+        return f"the gas gains energy ({', '.join(scene.lacking('collisions_conserve_energy'))})"
     return ""
 
 
@@ -123,7 +127,7 @@ def nonequilibrium_reason(log: Log) -> str:
     scene, properties = log.scene, log.scene.properties
     if properties.varies:
         return "values change in time"
-    if any(properties.falls):
+    if any(properties.free_fall_axes):
         return "gravity drives a flow along periodic sides"
     if properties.vibrates:
         return "a side vibrates"
@@ -134,8 +138,10 @@ def nonequilibrium_reason(log: Log) -> str:
     if len(properties.temperatures) > 1:
         sources = "walls" if properties.bath is None else "walls and heat bath"
         return f"{sources} have {len(properties.temperatures)} temperatures"
-    if not properties.lossless:
-        return f"the gas loses energy ({', '.join(scene.lacking('lossless'))})"
+    if properties.collisions_give_energy:
+        return f"collisions give energy ({', '.join(scene.lacking('collisions_conserve_energy'))})"
+    if properties.dissipative:
+        return f"the gas loses energy ({', '.join(scene.lacking('collisions_conserve_energy'))})"
     return ""
 
 

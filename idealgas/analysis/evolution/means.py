@@ -99,7 +99,12 @@ def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None
     properties, gas = log.scene.properties, log.discs
     ((name, place),) = pistons.items() if len(pistons) == 1 else (("", np.empty(0)),)
     piston, work = next(iter(log.scene.piston), None), given.get(name)
-    uniform = properties.straight_flight and properties.lossless and properties.empty and not properties.escapes
+    uniform = (
+        properties.straight_flight
+        and properties.collisions_conserve_energy
+        and properties.empty
+        and not properties.escapes
+    )
     if piston is None or work is None or piston.mass or not uniform or len(properties.temperatures) != 1:
         return None
     if properties.shear or len(gas.species_names) > 1 or gas.unlike or not outward(log, piston):

@@ -59,9 +59,16 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     """
     properties, gas = log.scene.properties, log.discs
     emits = [properties.emits[side] for side in sides_across(axis)]
-    plain = properties.lossless and properties.fixed_walls and properties.empty and not properties.spins
+    plain = (
+        properties.collisions_conserve_energy and properties.fixed_walls and properties.empty and not properties.spins
+    )
     alike = len(gas.species_names) == 1 and not gas.unlike
-    driven = properties.falls[1 - axis] and not log.gravity[axis] and not properties.varies and properties.bath is None
+    driven = (
+        properties.free_fall_axes[1 - axis]
+        and not log.gravity[axis]
+        and not properties.varies
+        and properties.bath is None
+    )
     if not (plain and alike and driven) or None in emits or len(properties.temperatures) > 1:
         return None
     temperature, mass, radius = min(properties.temperatures), float(gas.mass[0]), float(gas.radius[0])

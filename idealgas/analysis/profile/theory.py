@@ -87,7 +87,7 @@ class Expected:
 
 def flow_axis(log: Log) -> int | None:
     """Axis along which gravity drives a flow, 0 for x or 1 for y; None without one."""
-    falls = log.scene.properties.falls
+    falls = log.scene.properties.free_fall_axes
     return falls.index(True) if any(falls) else None
 
 
@@ -181,7 +181,7 @@ def conduction(log: Log, axis: int) -> "Conduction | None":
     properties, gas = log.scene.properties, log.discs
     low, high = (properties.emits[side] for side in sides_across(axis))
     others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))
-    alike = properties.straight_flight and properties.lossless and not properties.spins
+    alike = properties.straight_flight and properties.collisions_conserve_energy and not properties.spins
     if low is None or high is None or others or not alike or len(gas.species_names) > 1 or gas.unlike:
         return None
     return conduct(low, high, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))

@@ -122,7 +122,7 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     """Caveats of every average over time that follow from the start of a gas, `gas`."""
     found = []
-    if any(scene.properties.falls):
+    if any(scene.properties.free_fall_axes):
         found.append(
             "Gravity makes the gas flow along periodic sides: temperatures and speeds contain this motion, except for "
             "those of `profile`."

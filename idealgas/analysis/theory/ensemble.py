@@ -230,7 +230,12 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
     leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties = scene.properties
-    if any(properties.falls) or not properties.fixed_walls or not properties.lossless or properties.varies:
+    if (
+        any(properties.free_fall_axes)
+        or not properties.fixed_walls
+        or not properties.collisions_conserve_energy
+        or properties.varies
+    ):
         return None
     if len(gas) == 1:
         return None

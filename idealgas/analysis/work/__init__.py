@@ -82,7 +82,7 @@ class WorkAnalysis(Analysis):
             UserError: without a single piston, of given velocities, without a thermostat or thermal walls of one
                 temperature, or if no stroke lies in the window.
         """
-        must_apply(log, 0.0, ("elastic", "lossless"))
+        must_apply(log, 0.0, ("elastic", "collisions_conserve_energy"))
         temperatures = log.scene.properties.temperatures
         if [piston.mass for piston in log.scene.piston] != [None] or len(temperatures) != 1:
             needs = "one piston, of given velocities, and a heat bath or thermal walls of one temperature"

@@ -14,7 +14,7 @@ from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import Wall
+    from idealgas.effects.wall import WallTable
     from idealgas.scene.discs import Discs
     from idealgas.scene.document import Document
     from idealgas.scene.tables import Box
@@ -164,7 +164,7 @@ def _pairs(
         start = stop
 
 
-def deepest_overlap(discs: Discs, box: Box, walls: Sequence[Wall]) -> float:
+def deepest_overlap(discs: Discs, box: Box, walls: Sequence[WallTable]) -> float:
     """Deepest overlap of discs with each other, with sides or with walls, length; 0 if all overlaps are rounding."""
     radius = discs.radius
     depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
@@ -176,7 +176,7 @@ def deepest_overlap(discs: Discs, box: Box, walls: Sequence[Wall]) -> float:
 
 
 def wall_overlaps(
-    discs: Discs, box: Box, walls: Mapping[int, Wall], accepted: float = 0.0
+    discs: Discs, box: Box, walls: Mapping[int, WallTable], accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
     """Yield the index of a disc, the number of a wall and their distance if they overlap by more than is accepted."""
     owner, centre = images(discs.position, discs.radius, box)
@@ -198,7 +198,7 @@ def wall_overlaps(
 def discs_in_walls(scene: Document) -> Iterator[Issue]:
     """Check for given discs that overlap a wall present at the start; at most MOST_OVERLAPS are reported."""
     pairs: dict[tuple[int, int], float] = {}
-    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_there(0.0)}
+    box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_present(0.0)}
     walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
     for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
         pairs[k, i] = min(distance, pairs.get((k, i), math.inf))
@@ -214,13 +214,13 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
 
 
-def _distance_to_ends(points: np.ndarray, wall: Wall) -> np.ndarray:
+def _distance_to_ends(points: np.ndarray, wall: WallTable) -> np.ndarray:
     """Distances of discs at points (M, 2) from the ends of a wall that they pass; infinite if they pass both ways."""
     if wall.permeable_from is None:
         return np.full(len(points), np.inf)
     return np.min([np.hypot(*(points - end).T) for end in (wall.start, wall.end)], axis=0)
 
 
-def distance_to_wall(points: np.ndarray, wall: Wall) -> np.ndarray:
+def distance_to_wall(points: np.ndarray, wall: WallTable) -> np.ndarray:
     """Distances of points (M, 2) from a wall, or from the rim of a fixed disc, length."""
     return np.asarray(np.hypot(*(points - nearest_points(points, wall.start, wall.end, wall.arc)).T) - wall.radius)

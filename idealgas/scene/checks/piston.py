@@ -18,7 +18,7 @@ from idealgas.physics.arc_geometry import bounds
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.effects.piston import Piston
+    from idealgas.effects.piston import PistonTable
     from idealgas.scene.document import Document
 
 WAY = ", as one with a mass comes as near to the other side as the discs let it"
@@ -27,7 +27,7 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
-def piston_names(pistons: Sequence[Piston]) -> list[str]:
+def piston_names(pistons: Sequence[PistonTable]) -> list[str]:
     """Names of the pistons in messages: 'piston upper' or 'piston 0', or 'the piston' if there is only one."""
     return ["the piston"] if len(pistons) == 1 else [f"piston {p.name or k}" for k, p in enumerate(pistons)]
 
@@ -116,12 +116,12 @@ def _row_issues(scene: Document) -> Iterator[Issue]:
             yield Issue(keys, "pistons not in order", ", then ".join(texts), allowed)
 
 
-def _facing(piston: Piston) -> str:
+def _facing(piston: PistonTable) -> str:
     """Name of the side opposite the piston."""
     return SIDES[opposite(SIDES.index(piston.wall))]
 
 
-def _motion_issues(piston: Piston, k: int) -> Iterator[Issue]:
+def _motion_issues(piston: PistonTable, k: int) -> Iterator[Issue]:
     given = [key for key in ("velocity", "mass", "pressure") if getattr(piston, key) is not None]
     pressed = [] if piston.inner else ["pressure"]
     if given not in (["velocity"], ["mass", *pressed], ["velocity", "mass", *pressed]):
@@ -138,7 +138,7 @@ def _motion_issues(piston: Piston, k: int) -> Iterator[Issue]:
         yield Issue((key,), "steps of a piston with a mass", description(piston.velocity), "its velocity at the start")
 
 
-def _depth(scene: Document, piston: Piston, position: float) -> float:
+def _depth(scene: Document, piston: PistonTable, position: float) -> float:
     """Length of the gas at a position of the piston."""
     return position if piston.outward > 0 else scene.box.size[piston.axis] - position
 
@@ -177,7 +177,7 @@ def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
         yield Issue(keys, "leaves the box before the run ends", got, f"0 <= position <= {length}")
 
 
-def track(scene: Document, piston: Piston) -> list[tuple[float, float]]:
+def track(scene: Document, piston: PistonTable) -> list[tuple[float, float]]:
     """Pairs of time and position of a piston of given velocity, at the start, at velocity changes and at the end."""
     until, place = scene.run.until, piston.start(scene.box.size)
     if until is None:  # then it has no velocity

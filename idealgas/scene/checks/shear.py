@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from idealgas.effects import EFFECTS
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.scene.document import Document
 
-TOGETHER = ("periodic sides", "sheared sides", "rotation", "restitution", "thermostat")
+TOGETHER = tuple(effect.name for effect in EFFECTS if effect.shearable)
 """Effects that a scene with sheared sides may have; none of them depends on the position along y."""
 
 LEAST = 2.0

@@ -13,7 +13,7 @@ from idealgas.scene.checks.overlaps import MOST_OVERLAPS, disc_keys, distance_to
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import FixedDisc, Wall
+    from idealgas.effects.wall import FixedDisc, WallTable
     from idealgas.scene.document import Document
 
 
@@ -50,7 +50,7 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, f"{label(scene, number)}in a solid", str(discs.position[k].tolist()), "a place out of it")
 
 
-def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, Wall]) -> Iterator[Issue]:
+def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, WallTable]) -> Iterator[Issue]:
     """Check for fixed discs that protrude into a solid; at most MOST_OVERLAPS are reported.
 
     solid: walls of solids by number.

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from idealgas.effects.bundle import Effects, changed, next_change
-from idealgas.effects.gravity import Gravity
+from idealgas.effects.gravity import GravityTable
 from idealgas.effects.schedule import Change, changes_of, value_at, without_past
-from idealgas.effects.wall import Wall
+from idealgas.effects.wall import WallTable
 from idealgas.physics.gravity import Gravity as Acceleration
 
 pytestmark = pytest.mark.interpreted
@@ -34,7 +34,7 @@ def test_changes_are_those_after_time_0():
     ],
 )
 def test_a_later_clock_has_the_steps_after_it(time, left):
-    gravity = Gravity(acceleration=[[0.0, [0.0, -1.0]], [2.0, [0.0, -5.0]]])
+    gravity = GravityTable(acceleration=[[0.0, [0.0, -1.0]], [2.0, [0.0, -5.0]]])
     assert gravity.after(time).acceleration == (tuple(left) if isinstance(left, list) else left)
     assert without_past((1.0, 2.0, 4.0), 2.0) == 2.0
     assert without_past((1.0, 2.0), 2.0) is None
@@ -42,8 +42,8 @@ def test_a_later_clock_has_the_steps_after_it(time, left):
 
 @pytest.mark.parametrize(("time", "there"), [(0.0, True), (1.9, True), (2.0, False), (2.9, False), (3.0, True)])
 def test_a_gate_is_open_from_one_time_until_another(time, there):
-    gate = Wall.model_validate({"from": [1.0, 1.0], "to": [1.0, 2.0], "opens_at": 2.0, "closes_at": 3.0})
-    assert gate.is_there(time) == there
+    gate = WallTable.model_validate({"from": [1.0, 1.0], "to": [1.0, 2.0], "opens_at": 2.0, "closes_at": 3.0})
+    assert gate.is_present(time) == there
     assert gate.absences == ((2.0, 3.0),)
     assert gate.later(2.5).absences == ((0.0, 0.5),)
     assert gate.later(1.0).absences == ((1.0, 2.0),)

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from idealgas.effects import piston
 from idealgas.effects.bundle import Effects
 from idealgas.engine.epoch import (
     EVENTS_PER_DISC,
     MOST_CROSSINGS,
-    driving_energy,
     driving_speed,
     encounters_per_length,
     epoch_length,
@@ -136,5 +136,5 @@ def test_what_drives_the_discs():
     pistons.v, pistons.m, pistons.a = (-2.0, 1.0), (3.0, 4.0), (-0.5, 0.25)
     effects = Effects(gravity=Gravity(3.0, -4.0), piston=pistons)
     assert driving_speed(gas(), effects) == pytest.approx(np.sqrt(500.0) + 2.0, rel=1e-14)
-    assert driving_energy(gas(), effects) == (1.5 + 1.0) * 50
-    assert driving_speed(gas(), Effects()) == driving_energy(gas(), Effects()) == 0.0
+    assert piston.EFFECT.driving_energy(pistons, gas()) == (1.5 + 1.0) * 50
+    assert driving_speed(gas(), Effects()) == 0.0

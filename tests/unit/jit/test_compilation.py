@@ -57,7 +57,7 @@ def test_numba_has_what_it_does_not_document():
         return tuple(inspect.signature(function).parameters) == names
 
     compiled = numba.njit(lambda: 0, _nrt=False, no_cfunc_wrapper=True, no_cpython_wrapper=True, forceinline=True)
-    is_there = {
+    is_present = {
         "Dispatcher.compile": takes(dispatcher.Dispatcher.compile, "self", "sig"),
         "Dispatcher._cache": isinstance(compiled._cache, caching.NullCache),
         "load_overload of the cache": takes(caching.Cache.load_overload, "self", "sig", "target_context"),
@@ -67,7 +67,7 @@ def test_numba_has_what_it_does_not_document():
         "Dispatcher.overloads": hasattr(compiled.overloads, "items"),
         "serialize.dumps": takes(serialize.dumps, "obj"),
     }
-    changed = [name for name, unchanged in is_there.items() if not unchanged]
+    changed = [name for name, unchanged in is_present.items() if not unchanged]
     assert not changed, f"numba {numba.__version__} has changed {changed}"
 
 

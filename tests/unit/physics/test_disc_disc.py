@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.records import DISC
 from idealgas.jit import aligned, njit
 from idealgas.physics.disc_disc import collide, contact_time, random_contact
@@ -29,7 +30,7 @@ def contact_under_gravity(discs):
 
 @njit
 def collide_them(discs):
-    collide(discs[0], discs[1], 0, 1, None, None, None, (0, 0))
+    collide(discs[0], discs[1], 0, 1, (0, 0), Effects())
 
 
 def pair(a, b):
@@ -162,6 +163,6 @@ def test_the_line_of_centres_has_the_sine_of_the_offset(offset):
 def test_a_head_on_contact_of_equal_discs_exchanges_the_velocities():
     record = two_discs((2.0, 1.0), (-1.0, 0.5), masses=(1.0, 1.0))
     random_contact(record[0], record[1], 0.0)
-    collide(record[0], record[1], 0, 1, None, None, None, NO_IMAGES)
+    collide(record[0], record[1], 0, 1, NO_IMAGES, Effects())
     assert (record[0].vx, record[0].vy) == pytest.approx((-1.0, 0.5), abs=1e-15)
     assert (record[1].vx, record[1].vy) == pytest.approx((2.0, 1.0), abs=1e-15)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from idealgas import open_log, parse_scene, simulate
-from idealgas.effects.vibration import VibratingSide, _make
+from idealgas.effects.vibration import EFFECT, VibratingSide
 from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 from idealgas.physics.vibration import begin_epoch, height_on, parabola_at, vibrating_contact
@@ -21,7 +21,7 @@ LENGTH = 9.0
 
 def sides(amplitude, frequency, time=0.0):
     side = VibratingSide.model_validate({"vibrating": {"amplitude": amplitude, "frequency": frequency}})
-    vibration = _make(SimpleNamespace(sides=(side,) * 4), None)
+    vibration = EFFECT.make(SimpleNamespace(sides=(side,) * 4), None)
     begin_epoch(vibration, time, 0.0)
     return vibration
 

@@ -57,7 +57,7 @@ LACKING = {
     "uniform": {"gravity", "wall segments", "restitution", "piston"},
     "straight_flight": {"gravity"},
     "elastic": {"restitution"},
-    "lossless": {"restitution"},
+    "collisions_conserve_energy": {"restitution"},
     "fixed_walls": {"piston"},
     "isolated": {"thermal walls", "thermostat"},
     "conserves_energy": {"gravity", "restitution", "piston"},
@@ -119,7 +119,7 @@ def test_drives_accelerations_and_temperatures():
     assert found.temperatures == {2.0, 4.0}
     assert Properties().emits == (None,) * FIRST_SEGMENT
     assert properties("box.right={thermal=2}", *TABLES["thermostat"]).temperatures == {2.0, 3.0}
-    assert all("both" in entry.metadata for entry in fields(Properties))
+    assert all("combine" in entry.metadata for entry in fields(Properties))
     assert len(SIDES) == FIRST_SEGMENT == len(OUTWARD)
 
 
@@ -184,7 +184,7 @@ SPREAD = {"acceleration": (1.0, 0.0), "later_accelerations": ((-3.0, 0.5), (2.0,
         ({"periodic": (True, True), "acceleration": (0.0, -1.0)}, "conserves_momentum", (True, False)),
         ({"periodic": (True, True), "last_wall_removed_at": 3.0}, "conserves_momentum", (False, False)),
         (SPREAD, "strongest_pull", (-3.0, 0.5)),
-        ({"periodic": (False, True), **SPREAD}, "falls", (False, True)),
+        ({"periodic": (False, True), **SPREAD}, "free_fall_axes", (False, True)),
         ({"escapes": True}, "conserves_energy", False),
         ({"fixed_walls": False}, "conserves_energy", False),
         ({"inertia": 0.5}, "conserves_energy", True),
