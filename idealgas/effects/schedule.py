@@ -54,7 +54,7 @@ def _is_list_of_lists(value: Any) -> str:
 def _in_steps(number: Any, value: Any = None, kind: Callable[[Any], str] = _is_list) -> Any:
     """Type of a value that may change in time.
 
-    number: type of a constant value. value: type of a value in a step; that of a constant value if None. kind: function
+    number: type of a constant value. value: type of a value in a step; the same as `number` if None. kind: function
     that distinguishes steps from a constant value.
     """
     value = value or number

@@ -227,7 +227,7 @@ def _gsd(path: Path, time: Instant) -> State:
                 wanted = k
         if wanted is None:
             return moment.columns(), 0.0
-        for k in (wanted, 0):  # a frame that does not store its number of discs has that of the first frame
+        for k in (wanted, 0):  # a frame that does not store its number of discs has as many as the first frame
             if file.file.chunk_exists(frame=k, name="particles/N"):
                 _check_number(int(file.file.read_chunk(frame=k, name="particles/N")[0]))
         frame = file[wanted]

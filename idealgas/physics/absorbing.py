@@ -36,7 +36,7 @@ def mass_in_gas(disc, absorbing):
 
 @inline
 def leave_gas(disc, own, rotation):
-    """Mark a disc's record as that of a disc that has left the gas."""
+    """Mark a disc as having left the gas, in its record."""
     disc.x = disc.y = math.nan
     disc.vx = disc.vy = 0.0
     if rotation is not None:

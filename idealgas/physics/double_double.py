@@ -1,8 +1,8 @@
 """Numbers of about 32 digits as pairs (high, low) of floats, where `high` is the float nearest to their sum.
 
-Sums are exact by Knuth's algorithm and products by Dekker's, without a fused multiply-add. The arithmetic is that of
-Hida, Li & Bailey, Proc. 15th IEEE Symposium on Computer Arithmetic, 155 (2001); relative errors are a few times
-2^-104 = 5e-32.
+Rounding errors of sums and products are computed by the algorithms of Knuth and Dekker, without a fused multiply-add.
+The arithmetic follows Hida, Li & Bailey, Proc. 15th IEEE Symposium on Computer Arithmetic, 155 (2001); relative errors
+are a few times 2^-104 = 5e-32.
 """
 
 import math

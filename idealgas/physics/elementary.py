@@ -1,7 +1,7 @@
 """Logarithm, sine and cosine with the same bits on every machine; results of C libraries differ in the last bit.
 
 The functions use only + - * / in double precision, without a fused multiply-add, and their errors are below one unit in
-the last place. Polynomials and sums are those of fdlibm (Sun Microsystems, 1993: e_log.c, k_sin.c, k_cos.c).
+the last place. Polynomials and sums are taken from fdlibm (Sun Microsystems, 1993: e_log.c, k_sin.c, k_cos.c).
 """
 
 import numpy as np

@@ -23,7 +23,7 @@ WORD = 63
 """Bits of the lower of the two signed words in which a sum is stored, high * 2^63 + low."""
 
 DIGITS = 52
-"""Bits of a term of typical size: as many as a float has."""
+"""Bits of a term of typical size, about the precision of a float."""
 
 FARTHEST = 1000
 """Largest absolute value of the exponent k of a unit, so that 2^k and 2^-k are floats."""

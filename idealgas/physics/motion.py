@@ -13,8 +13,8 @@ MAX_DISPLACEMENT = 6144
 """Longest path of the fastest disc in an epoch, in diameters of the smallest, unless 4 events per disc take longer.
 
 The rounding of the clock then adds at most 2⁻⁵⁴ of this path per disc to the error of a contact. A few discs in a wide
-box have longer epochs, of about 500 events in all; after as many crossings of a box of length L, the rounding of the
-clock adds about 2⁻⁴⁵ L.
+box have longer epochs, of about 500 events in all; if the path is 500 box lengths L, the rounding of the clock adds
+about 2⁻⁴⁵ L.
 """
 
 

@@ -56,7 +56,7 @@ def end_epoch(pistons: np.ndarray, length: float) -> None:
 def height_over_piston(disc, piston, gravity):
     """Later local time of the records of a disc and the piston, and the disc's relative motion at that time.
 
-    Returns (time, height, velocity, acceleration) away from the piston along the axis; the height is that of the disc's
+    Returns (time, height, velocity, acceleration) away from the piston along the axis; the height refers to the disc's
     edge.
     """
     along_y = piston.axis == 1

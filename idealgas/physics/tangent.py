@@ -1,6 +1,6 @@
 """Tangent map of a gas: how small deviations of positions and velocities grow in flights and collisions.
 
-The method is that of Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. Deviations
+The method follows Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. Deviations
 are K columns of an array (N, 4, K) with δx, δy (length), δvx, δvy (length/time) of each disc. The shift of the time of
 a collision is taken into account to first order.
 """

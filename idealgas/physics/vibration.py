@@ -1,8 +1,8 @@
 """A vibrating side of the box: it moves on parabolas between the side and twice the amplitude inside the box.
 
-The acceleration has a constant magnitude and changes sign at the mean height, so that contact times are those of a
-fall. The motion is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, that is 1.03 A, 0.04 A, … At time
-0 it is at rest at the side.
+The acceleration has a constant magnitude and changes sign at the mean height, so contact times can be computed as for a
+free fall. The motion is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, that is 1.03 A, 0.04 A, …
+At time 0 it is at rest at the side.
 """
 
 import math

@@ -41,7 +41,7 @@ class _Discs(Table):
 
 
 def _fields_of_effects() -> dict[str, Any]:
-    """Fields for the tables of the effects; arrays of tables come first, after those of the discs."""
+    """Fields for the tables of the effects; arrays of tables come first, next to the arrays of discs."""
     fields: dict[str, Any] = {}
     for effect in sorted(EFFECTS, key=lambda effect: not effect.many):
         if effect.table is not None and effect.many:

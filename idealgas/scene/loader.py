@@ -19,6 +19,9 @@ def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scen
         overrides: changes, each as "table.key=value" with a TOML value, such as "run.until=100" or
             "species.0.count=500"; without a value, the key is removed.
 
+    Returns:
+        The checked scene.
+
     Raises:
         SceneError: the file cannot be read or the scene is invalid; the error has a line for each mistake.
     """
@@ -41,6 +44,9 @@ def parse_scene(
         overrides: as in `load_scene`.
         discs: discs from which the scene of a log starts.
         changes: changes that a program made during the run.
+
+    Returns:
+        The checked scene.
 
     Raises:
         SceneError: the scene is invalid.
