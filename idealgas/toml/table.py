@@ -41,7 +41,13 @@ Rectangle = tuple[float, float, float, float]
 class Table(BaseModel):
     """A TOML table: immutable, with strict types and without unknown keys."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        strict=True,
+        allow_inf_nan=False,
+        model_title_generator=lambda table: table.__name__.removesuffix("Table"),  # as users of the schema see it
+    )
 
 
 def _key_of(table: type[Table]) -> str:
