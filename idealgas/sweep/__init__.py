@@ -1,1 +1,1 @@
-"""A scene at many points, on all cores or a cluster, and the results in one table."""
+"""Run a scene at many points, on all cores or on a cluster, and collect the results in one table."""

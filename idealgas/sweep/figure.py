@@ -1,4 +1,4 @@
-"""Figure of one quantity of a sweep against one of its axes."""
+"""Draw a quantity of a sweep against one of its axes."""
 
 import os
 from collections.abc import Iterable
@@ -57,19 +57,19 @@ QUANTITY_UNITS = {
     "temperature.species.*.both": "energy",
     "transport.diffusion.*.coefficient": "length²/time",
 }
-"""Units of quantities of results.csv, by patterns of their names; the other quantities that are drawn have none."""
+"""Units of quantities of results.csv, by patterns of their names; all other quantities that are drawn have no unit."""
 
 
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
-    """Return the figure of a quantity against an axis, with one curve for each combination of the other axes' values.
+    """Return a figure of a quantity against an axis, with one curve for each combination of values of the other axes.
 
-    Measured values and theory are averages over the replicates. The theory is evaluated for the runs only, so it has
-    markers at the points of the sweep; the straight lines that join them are there to guide the eye.
+    Measured values and theory are averages over the replicates. Theory is evaluated only at the points of the sweep,
+    where it has markers; the straight lines between them are a guide to the eye.
 
     Args:
         folder: folder of the sweep.
-        quantity: its name in results.csv; None for the headline of the first analysis that has one, or else the first
-            number with an error bar.
+        quantity: name of the quantity in results.csv; None for the main quantity of the first analysis that has one,
+            or otherwise the first quantity with a standard error.
         axis: key of an axis with numbers; None for the first one.
 
     Raises:
@@ -85,8 +85,8 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
     curves: dict[str, dict[float, list[Row]]] = {}
     for row in rows:
         if row["quantity"] == quantity:
-            others = ", ".join(f"{key} = {_value(row[key])}" for key in _axes(rows) if key != axis)
-            curves.setdefault(others, {}).setdefault(float(row[axis]), []).append(row)
+            label = ", ".join(f"{key} = {_value(row[key])}" for key in _axes(rows) if key != axis)
+            curves.setdefault(label, {}).setdefault(float(row[axis]), []).append(row)
             group = row["group"]
     figure, (ax,) = panels(1)
     for k, (label, points) in enumerate(curves.items()):
@@ -95,7 +95,7 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
         colour, _, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         known = [(place, *theory) for place in places if (theory := _theory(points[place]))]
-        if known:  # one entry of the legend for all curves: a line goes through the points that it belongs to
+        if known:  # theory has only one entry in the legend, as each line passes through the points of its curve
             x, theories, theory_errors = np.array(known).T
             ax.theory(x, theories, theory_errors, label="theory, at the points", marker="x")
     ax.set(xlabel=_axis_name(axis), ylabel=_quantity_name(quantity, group))
@@ -104,13 +104,13 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
 
 
 def say_missing(figure: Figure, folder: str | os.PathLike[str]) -> Figure:
-    """Write above the picture of a sweep how many of its runs have no results yet, if any, and return the picture."""
+    """Write above the figure of a sweep how many of its runs have no results yet, if any, and return the figure."""
     missing, total = missing_runs(folder)
     return add_title(figure, f"{missing:,} of {total:,} runs are missing") if missing else figure
 
 
 def _theory(rows: list[Row]) -> tuple[float, float] | None:
-    """Average over replicates of a theory and of its error, which its replicates share; None if it is not known."""
+    """Return the averages over replicates of a theory and of its error, which is common to all; None without theory."""
     known = [row for row in rows if row.get("theory") is not None]
     if not known:
         return None
@@ -122,7 +122,7 @@ def _value(value: Any) -> str:
 
 
 def _axis_name(key: str) -> str:
-    """Name of an axis in words, with its unit if it has one, such as "temperature of 'gas' (energy)"."""
+    """Return the name of an axis in words, with its unit if it has one, such as "temperature of 'gas' (energy)"."""
     if key == PHI:
         return "packing fraction φ"
     *owner, name = key.split(".")
@@ -134,7 +134,7 @@ def _axis_name(key: str) -> str:
 
 
 def _quantity_name(quantity: str, group: str) -> str:
-    """Name of a quantity in words, with its unit, such as "temperature: species: 'gas': both (energy)"."""
+    """Return the name of a quantity in words with its unit, such as "temperature: species: 'gas': both (energy)"."""
     unit = next((unit for pattern, unit in QUANTITY_UNITS.items() if fnmatchcase(quantity, pattern)), None)
     groups = {identifier(word): f"'{word}'" for word in (*group.split(", "), group)}
     return ": ".join(groups.get(part) or _words(part) for part in quantity.split(".")) + _unit(unit)
@@ -156,9 +156,9 @@ def _all_numbers(values: Iterable[Any]) -> bool:
     return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
 
 
-def _choice(what: str, asked: str | None, allowed: list[str]) -> str:
+def _choice(what: str, requested: str | None, allowed: list[str]) -> str:
     if not allowed:
         raise UserError(f"no {what} with numbers to draw")
-    if asked is not None and asked not in allowed:
-        raise unknown(what, asked, allowed)
-    return asked or allowed[0]
+    if requested is not None and requested not in allowed:
+        raise unknown(what, requested, allowed)
+    return requested or allowed[0]

@@ -1,4 +1,7 @@
-"""Folder of a sweep: one process at a time runs a sweep in it, and finished points keep their numbers and seeds."""
+"""The folder of a sweep, in which only one process at a time runs a sweep.
+
+Finished points keep their numbers and seeds when a sweep is continued.
+"""
 
 import errno
 import json
@@ -22,7 +25,7 @@ from idealgas.sweep.results import done_points, plan_path, stored_scene, table_p
 from idealgas.toml.dump import dump_document
 
 LOCK = ".lock"
-"""Name of the lock file, by whose contents a folder is that of a sweep."""
+"""Name of the lock file, whose contents mark a folder as the folder of a sweep."""
 
 MARK = b"idealgas sweep\n"
 """Contents of the lock file."""
@@ -32,13 +35,13 @@ Entry = TypeVar("Entry")
 
 @contextmanager
 def hold_folder(folder: Path) -> Iterator[None]:
-    """Create the folder of a sweep if it is missing and lock it until the block ends.
+    """Create the folder of a sweep if it is missing, and lock it until the block ends.
 
-    Unfinished files that no process is writing are removed at the beginning and at the end of the block. Nothing in a
-    folder is opened for writing before its lock file shows that it is the folder of a sweep.
+    Unfinished files that no process is writing are removed at the beginning and at the end of the block. No file in an
+    existing folder is opened for writing unless a lock file marks it as the folder of a sweep.
 
     Raises:
-        UserError: if another process has locked it, or if it contains other files.
+        UserError: if another process has locked the folder, or if it contains other files.
         OutputError: if it cannot be written.
     """
     try:
@@ -63,7 +66,7 @@ def hold_folder(folder: Path) -> Iterator[None]:
 
 
 def _remove_unfinished(folder: Path) -> None:
-    """Remove the files that processes left when they failed or were killed, as far as the file system lets it."""
+    """Remove files that processes left behind when they failed or were killed, if the file system allows it."""
     with suppress(OSError):
         for part in (*temporaries(folder), *temporaries(points_folder(folder)), *unfinished_logs(folder)):
             if not is_locked(part):  # a worker of a cluster may still be writing it
@@ -71,7 +74,7 @@ def _remove_unfinished(folder: Path) -> None:
 
 
 def _is_marked(folder: Path) -> bool:
-    """Whether a folder has the lock file of a sweep."""
+    """Return whether a folder has the lock file of a sweep."""
     try:
         with open_regular(folder / LOCK) as file:
             return file.read(len(MARK) + 1) == MARK
@@ -80,7 +83,12 @@ def _is_marked(folder: Path) -> bool:
 
 
 def check_outputs(folder: Path, points: Iterable[int]) -> None:
-    """Raise UserError if another file has the name of one that the sweep writes. points: numbers of open points."""
+    """Raise UserError if a file that the sweep would write exists but was not written by it.
+
+    Args:
+        folder: folder of the sweep.
+        points: numbers of the points that have not finished.
+    """
     for path, kind in zip((plan_path(folder), *table_paths(folder)), (".toml", "results.csv", ".parquet"), strict=True):
         if os.path.lexists(path):
             check_output(path, kind, force=True)
@@ -93,32 +101,32 @@ def check_outputs(folder: Path, points: Iterable[int]) -> None:
 
 
 def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
-    """The sweep with the point numbers and seeds of a folder; writes the file of the sweep there.
+    """Return the sweep with the point numbers and seeds of a folder, and write the file of the sweep there.
 
-    Finished points keep their numbers, wherever new values are inserted among the old ones; all others get the free
-    numbers in order, so a new sweep is unchanged and a stopped one resumes as it began.
+    Finished points keep their numbers, even if new values are inserted between the old ones. All other points get the
+    free numbers in order. Therefore a new sweep is unchanged, and a stopped sweep resumes as it began.
 
     Raises:
         UserError: if a finished point is not part of this sweep.
         OutputError: if the folder cannot be written.
     """
-    done = dict(_labelled((found["values"], found["replicate"], found) for found in done_points(folder)))
+    done = dict(_labelled((stored["values"], stored["replicate"], stored) for stored in done_points(folder)))
     planned = dict(_labelled((point.values, point.replicate, point) for point in sweep.points))
-    numbers = {planned[label].combination: found["combination"] for label, found in done.items() if label in planned}
-    free, free_indices = _free(numbers.values()), _free(found["point"] for found in done.values())
+    numbers = {planned[label].combination: stored["combination"] for label, stored in done.items() if label in planned}
+    free, free_indices = _free(numbers.values()), _free(stored["point"] for stored in done.values())
     points = []
     for label, point in planned.items():
-        found = done.pop(label, None)
+        stored = done.pop(label, None)
         if point.combination not in numbers:
             numbers[point.combination] = next(free)
         combination = numbers[point.combination]
         scene = with_seed(point.scene, seed_of(sweep.seed, combination, point.replicate))
-        if found and not _matches(folder, found, scene, sweep):
-            raise _foreign_point(folder, found)
-        index = found["point"] if found else next(free_indices)
+        if stored and not _matches(folder, stored, scene, sweep):
+            raise _foreign_point(folder, stored)
+        index = stored["point"] if stored else next(free_indices)
         points.append(replace(point, index=index, combination=combination, scene=scene))
-    for found in done.values():
-        raise _foreign_point(folder, found)
+    for stored in done.values():
+        raise _foreign_point(folder, stored)
     check_outputs(folder, (p.index for p in points if not result_path(folder, p.index).exists()))
     with replacing(plan_path(folder)) as part:
         part.write_text(sweep.text, encoding="utf-8", newline="\n")
@@ -132,7 +140,7 @@ def check_folder(folder: Path) -> None:
 
 
 def _labelled(entries: Iterable[tuple[dict[str, Any], int, Entry]]) -> Iterator[tuple[tuple[str, int], Entry]]:
-    """Label entries by their values, their replicate and a counter of equal labels."""
+    """Yield entries with a label made of their values, their replicate and a counter of equal labels."""
     seen: Counter[str] = Counter()
     for values, replicate, entry in entries:
         text = json.dumps([values, replicate], sort_keys=True)
@@ -145,16 +153,16 @@ def _free(taken: Iterable[int]) -> Iterator[int]:
     return (k for k in count() if k not in used)
 
 
-def _foreign_point(folder: Path, found: dict[str, Any]) -> UserError:
-    where = ", ".join(f"{key} = {value}" for key, value in found["values"].items()) or "base scene"
+def _foreign_point(folder: Path, stored: dict[str, Any]) -> UserError:
+    where = ", ".join(f"{key} = {value}" for key, value in stored["values"].items()) or "base scene"
     return UserError(
-        f"{folder}: holds another sweep: point {found['point']} ({where}) is not part of this one; "
+        f"{folder}: holds another sweep: point {stored['point']} ({where}) is not part of this one; "
         "use another folder or remove it"
     )
 
 
-def _matches(folder: Path, found: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
-    """Whether stored results belong to this scene and contain the analyses of the sweep."""
-    if set(found["analyses"]) != set(sweep.analyses):
+def _matches(folder: Path, stored: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
+    """Return whether stored results belong to this scene and contain the analyses of the sweep."""
+    if set(stored["analyses"]) != set(sweep.analyses):
         return False
-    return found["scene"] == dump_document(scene) or stored_scene(folder, found) == scene
+    return stored["scene"] == dump_document(scene) or stored_scene(folder, stored) == scene

@@ -1,4 +1,4 @@
-"""Plan of a sweep: a base scene, axes of values that change it, and the resulting points, each with its scene."""
+"""The plan of a sweep: a base scene, axes whose values change it, and the resulting points, each with its scene."""
 
 import copy
 import math
@@ -34,10 +34,14 @@ from idealgas.toml.text import Origin, parse_document, read_text
 
 @dataclass(frozen=True)
 class Point:
-    """One point of a sweep: one run.
+    """A point of a sweep, that is a single run.
 
-    index: number of the point. combination: number of its combination of values. replicate: number of its replicate.
-    values: value of each axis, by its key, in the order of the axes. scene: the scene to run.
+    Attributes:
+        index: number of the point.
+        combination: number of its combination of values.
+        replicate: number of its replicate.
+        values: value of each axis, by its key, in the order of the axes.
+        scene: the scene to run.
     """
 
     index: int
@@ -49,10 +53,15 @@ class Point:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A whole sweep.
+    """A sweep.
 
-    analyses: names of the analyses of each point. keep_logs: whether logs are kept. points: all runs. seed: from which
-    their seeds follow. text: the file of the sweep, for its folder. published: values of papers.
+    Attributes:
+        analyses: names of the analyses of each point.
+        keep_logs: whether logs are kept.
+        points: all runs.
+        seed: seed from which the seeds of all points follow.
+        text: text of the file of the sweep, which is copied to its folder.
+        published: values of papers.
     """
 
     analyses: tuple[str, ...]
@@ -72,12 +81,13 @@ def load_sweep(
 
     Args:
         path: path of the file.
-        overrides: changes, each as "table.key=value": of a table of the file ("sweep.replicates=2"),
-            or else of every base scene ("run.events=1000").
-        on_progress: called with the number of combinations of values that have been checked, and that of all.
+        overrides: changes "table.key=value" of a table of the file ("sweep.replicates=2") or of every base scene
+            ("run.events=1000").
+        on_progress: function that is called with the number of combinations of values that have been checked, and the
+            number of all combinations.
 
     Raises:
-        SceneError: with all errors of the file, of its base scenes and of its points.
+        SceneError: with all errors in the file, in its base scenes and in its points.
     """
     text, name = read_text(path).replace("\r\n", "\n"), str(path)
     document = parse_document(text, name)
@@ -88,19 +98,19 @@ def load_sweep(
         tables = Tables.model_validate(document)
     except ValidationError as error:
         raise SceneError(origin.report(as_issues(error.errors(include_url=False), Tables))) from None
-    if found := list(table_errors(tables)) or list(size_errors(tables)):
-        raise SceneError(origin.report(found))
+    if issues := list(table_errors(tables)) or list(size_errors(tables)):
+        raise SceneError(origin.report(issues))
     points = tuple(_points(tables, _bases(tables, Path(path), origin, of_scene), origin, on_progress))
     head = [f"# sweep of {len(points)} points by idealgas", *(f"# --set {toml_value(text)}" for text in overrides)]
     settings, text = tables.sweep, "\n".join([*head, text])
     combinations = points[-1].combination + 1
-    if found := list(published_errors(tables.published, combinations)):
-        raise SceneError(origin.report(found))
+    if issues := list(published_errors(tables.published, combinations)):
+        raise SceneError(origin.report(issues))
     return Sweep(settings.analyses, settings.keep_logs, points, settings.seed, text, tables.published)
 
 
 def _override(document: dict[str, Any], overrides: Iterable[str]) -> dict[Key, str]:
-    """Change a document by overrides, and return them by the keys that they set. Raises SceneError."""
+    """Apply overrides to a document, and return them by the keys that they set. Raises SceneError."""
     places: dict[Key, str] = {}
     for override in overrides:
         place = f"--set {override}"
@@ -112,7 +122,7 @@ Base = tuple[dict[str, Any], Origin]
 
 
 def _bases(tables: Tables, path: Path, origin: Origin, overrides: Sequence[str]) -> dict[Value | None, Base]:
-    """Base scenes, with overrides, by their value of the axis "base"; a single base scene has the key None."""
+    """Return the base scenes, with overrides, by their value of the axis "base"; a single one has the key None."""
     bases: dict[Value | None, Base]
     if tables.base is not None:
         places = {key[1:]: place for key, place in origin.overridden.items() if key[0] == "base"}
@@ -136,10 +146,10 @@ def _read_base(path: Path) -> Base:
 def _points(
     tables: Tables, bases: dict[Value | None, Base], origin: Origin, on_progress: Callable[[int, int], None]
 ) -> Iterator[Point]:
-    """Points in the order of the axes, the last axis changing fastest, with replicates of a point together."""
+    """Return the points in the order of the axes; the last axis changes fastest, and replicates are consecutive."""
     settings, groups = tables.sweep, axis_groups(tables.axis)
     total = math.prod(map(len, groups))
-    errors: dict[str, None] = {}  # each line once
+    errors: dict[str, None] = {}  # a dict, so that each line occurs only once
     points: list[Point] = []
     for combination, steps in enumerate(product(*groups)):
         on_progress(combination, total)
@@ -161,7 +171,7 @@ def _points(
 def _scene(
     axes: Sequence[Axis], pairs: Sequence[tuple[int, Value]], bases: dict[Value | None, Base], origin: Origin
 ) -> Scene:
-    """Scene of a combination of values, each with the number of its axis. Raises SceneError."""
+    """Return the scene of a combination of values, each given with the number of its axis. Raises SceneError."""
     base, base_origin = bases[next((value for i, value in pairs if axes[i].key == BASE), None)]
     document = copy.deepcopy(base)
     places: dict[Key, str] = {}
@@ -175,20 +185,20 @@ def _scene(
             places[("box", "size")] = place
             continue
         changed = _apply(f"{key}={toml_value(value)}", document, place)
-        for other, by in (*base_origin.overridden.items(), *places.items()):
-            if other[: len(changed)] == changed:
+        for earlier, by in (*base_origin.overridden.items(), *places.items()):
+            if earlier[: len(changed)] == changed:
                 raise SceneError([f"{place}: replaces the value of {by}"])
         places[changed] = place
     return make_scene(document, _placed(base_origin, places))
 
 
 def _placed(origin: Origin, places: Mapping[Key, str]) -> Origin:
-    """Origin of a document in which keys have been changed at other places."""
+    """Return the origin of a document in which keys have been changed at the given places."""
     return Origin(origin.text, origin.name, {**origin.overridden, **places}, origin.above)
 
 
 def _apply(override: str, document: dict[str, Any], place: str) -> Key:
-    """Change a document and return the key. Raises SceneError."""
+    """Apply an override to a document, and return its key. Raises SceneError."""
     before = _seed(document)
     try:
         key = apply(override, document)
@@ -206,12 +216,12 @@ def _seed(document: dict[str, Any]) -> Any:
 
 
 def with_seed(scene: Scene, seed: int) -> Scene:
-    """The scene with another seed."""
+    """Return the scene with another seed."""
     return scene.model_copy(update={"scene": scene.scene.model_copy(update={"seed": seed})})
 
 
 def seed_of(seed: int, combination: int, replicate: int) -> int:
-    """Seed of the scene of one point; it depends neither on other points nor on the worker that runs it."""
+    """Return the seed of the scene of a point; it depends neither on other points nor on the worker that runs it."""
     drawn = np.random.SeedSequence(seed, spawn_key=(combination, replicate)).generate_state(1, np.uint64)
     return int(drawn[0]) >> 1
 
@@ -219,8 +229,14 @@ def seed_of(seed: int, combination: int, replicate: int) -> int:
 def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
     """Scale the box of a document so that its discs have the packing fraction phi.
 
+    Args:
+        document: the document to change.
+        scene: its scene.
+        phi: packing fraction.
+        place: place of the value of phi, with which error messages begin.
+
     Raises:
-        SceneError: if phi is not a packing fraction, or if the scene has parts with positions in the box.
+        SceneError: if phi is not a packing fraction, or if parts of the scene have positions in the box.
     """
     fixed = ["start" if scene.start else "disc"] if len(scene.given) else []
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]

@@ -1,4 +1,4 @@
-"""One point of a sweep, run by a worker: its log, its analyses, and the file of its results."""
+"""Run a point of a sweep on a worker: write its log, analyse it, and write the file of its results."""
 
 import json
 import os
@@ -15,22 +15,22 @@ COMMAND = "idealgas sweep"
 
 
 def points_folder(folder: str | os.PathLike[str]) -> Path:
-    """Folder of the files of all points of a sweep."""
+    """Return the folder of the files of all points of a sweep."""
     return Path(folder) / "points"
 
 
 def result_path(folder: str | os.PathLike[str], index: int) -> Path:
-    """Path of the result file of a point, which exists when the point is done."""
+    """Return the path of the result file of a point, which exists once the point is done."""
     return points_folder(folder) / f"{index:04d}.json"
 
 
 def log_path(folder: str | os.PathLike[str], index: int) -> Path:
-    """Path of the log of a point."""
+    """Return the path of the log of a point."""
     return points_folder(folder) / f"{index:04d}.h5"
 
 
 def unfinished_log(folder: str | os.PathLike[str], index: int) -> Path:
-    """Path of the log of a point until it is complete."""
+    """Return the path of the log of a point while it is not complete."""
     return points_folder(folder) / f"{index:04d}.h5.part"
 
 
@@ -42,7 +42,7 @@ def unfinished_logs(folder: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: bool) -> None:
-    """Simulate and analyse a point; its files get their names when they are complete, the result file last."""
+    """Simulate and analyse a point. Files appear under their names when they are complete, the result file last."""
     from idealgas.log import open_log
     from idealgas.run.simulate import simulate
 
@@ -50,7 +50,7 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
     if done.exists():
         return
     scene = point.scene
-    if not keep_log:  # the log is removed, so compression would only cost time
+    if not keep_log:  # the log will be removed, so that compression would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
     part = unfinished_log(folder, point.index)
     simulate(scene, part, force=True, command=COMMAND)
@@ -61,7 +61,7 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
         part.replace(log)
     else:
         part.unlink()
-    found = {
+    contents = {
         "point": point.index,
         "seed": scene.scene.seed,
         "combination": point.combination,
@@ -71,6 +71,6 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
         "summary": summary,
         "analyses": results,
     }
-    text = json.dumps(found, indent=1, allow_nan=False)
+    text = json.dumps(contents, indent=1, allow_nan=False)
     with replacing(done) as unfinished:
         unfinished.write_text(text, encoding="utf-8", newline="\n")

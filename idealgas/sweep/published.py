@@ -1,4 +1,4 @@
-"""Values of sweeps next to those that papers publish for the same points."""
+"""Compare the values of sweeps with the values that papers publish for the same points."""
 
 import json
 import math
@@ -18,13 +18,18 @@ if TYPE_CHECKING:
 HEADS = ("", "value", "± s.e.", "published", "± error", "deviation (σ)")
 
 FARTHEST = 6.0
-"""Largest deviation with a place of its own in the figure, σ; the figure names larger ones."""
+"""Largest deviation that is drawn to scale, σ; larger deviations are drawn at the edge with their values."""
 
 
 class Comparison(NamedTuple):
-    """A published value and that of a sweep, which is the average over its replicates.
+    """A published value and the value of a sweep, which is the average over its replicates.
 
-    point: values of the axes, as text. value, error: of the sweep. published, published_error: of the paper.
+    Attributes:
+        point: values of the axes, as text.
+        value: value of the sweep.
+        error: its standard error.
+        published: published value.
+        published_error: its standard error.
     """
 
     point: str
@@ -35,16 +40,16 @@ class Comparison(NamedTuple):
 
     @property
     def deviation(self) -> float:
-        """Difference in units of both errors together, σ; infinite for two exact values that differ."""
+        """Difference in units of the combined standard error; infinite for two exact values that differ."""
         off, both = self.value - self.published, math.hypot(self.error, self.published_error)
         return off / both if both else math.copysign(math.inf, off) if off else 0.0
 
 
 def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[Published, list[Comparison]]]:
-    """Yield each table `[[published]]` of a sweep with its values at the points that have results.
+    """Yield each table `[[published]]` of a sweep with the comparisons at all points that have results.
 
     Raises:
-        UserError: if the sweep has no such quantity, or no results.
+        UserError: if the sweep has no such quantity or no results.
     """
     rows: dict[str, list[dict[str, Any]]] = {}
     for point in read_points(folder):
@@ -56,43 +61,43 @@ def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[
             raise unknown("quantity", paper.quantity, names)
         lines = []
         for label, value, error in zip(labels, paper.values, paper.errors or (0.0,) * len(labels), strict=True):
-            if found := [row for row in rows.get(label, ()) if row["quantity"] == paper.quantity]:
-                lines.append(Comparison(label, *average(found), value, error))
+            if replicates := [row for row in rows.get(label, ()) if row["quantity"] == paper.quantity]:
+                lines.append(Comparison(label, *average(replicates), value, error))
         yield paper, lines
 
 
 def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[Table]:
-    """Yield a table of each paper: own and published values, and their deviation in units of both errors together.
+    """Yield a table for each paper: values of the sweep, published values, and deviations in units of both errors.
 
     Raises:
-        UserError: if the sweep has no such quantity, or no results.
+        UserError: if the sweep has no such quantity or no results.
     """
-    for paper, found in comparisons(sweep, folder):
+    for paper, compared in comparisons(sweep, folder):
         lines = [
             (
-                one.point,
-                *with_error(one.value, one.error),
-                *with_error(one.published, one.published_error),
-                Number(one.deviation, "+.2f"),
+                comparison.point,
+                *with_error(comparison.value, comparison.error),
+                *with_error(comparison.published, comparison.published_error),
+                Number(comparison.deviation, "+.2f"),
             )
-            for one in found
+            for comparison in compared
         ]
         yield Table(paper.source, HEADS, lines, notes=tuple(filter(None, (paper.quantity, paper.note))))
 
 
 def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> "Figure":
-    """Figure of the deviations of all values of sweeps, each with its folder, from published ones: a row per paper."""
+    """Return a figure of the deviations from published values, a row per paper. sweeps: sweeps with their folders."""
     from idealgas.analysis.core.style import COLOURS, GREY, WIDTH, name_rows, panels
 
     papers: dict[str, list[Comparison]] = {}
     for sweep, folder in sweeps:
-        for paper, found in comparisons(sweep, folder):
-            papers.setdefault(paper.source, []).extend(found)
+        for paper, compared in comparisons(sweep, folder):
+            papers.setdefault(paper.source, []).extend(compared)
     figure, (ax,) = panels(1)
     figure.set_size_inches(1.6 * WIDTH, 1.2 + 0.4 * len(papers))
-    for k, found in enumerate(papers.values()):
-        for j, one in enumerate(found):
-            row, off = k + 0.6 * ((j + 0.5) / len(found) - 0.5), one.deviation
+    for k, compared in enumerate(papers.values()):
+        for j, comparison in enumerate(compared):
+            row, off = k + 0.6 * ((j + 0.5) / len(compared) - 0.5), comparison.deviation
             if abs(off) <= FARTHEST:
                 ax.plot(off, row, "o", ms=4, color=COLOURS[0])
             else:
@@ -106,11 +111,11 @@ def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> 
         ax.axvspan(-width, width, color=GREY, alpha=alpha, linewidth=0, label=f"±{width}σ")
     ax.set(xlim=(-1.08 * FARTHEST, 1.08 * FARTHEST), ylim=(len(papers) - 0.4, -0.6))
     ax.set_xlabel("own value - published value (σ, both errors together)")
-    name_rows(ax, [f"{source} ({len(found)})" for source, found in papers.items()], fontsize=8)
+    name_rows(ax, [f"{source} ({len(compared)})" for source, compared in papers.items()], fontsize=8)
     ax.legend()
     return figure
 
 
 def _label(values: dict[str, Any]) -> str:
-    """Values of the axes of a point, as text; those of the file of a sweep and those of results have the same."""
+    """Return the values of the axes of a point as text, which is the same for values from a plan and from results."""
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items()) or "base scene"

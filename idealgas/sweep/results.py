@@ -1,4 +1,4 @@
-"""Results of a sweep as one table, with a row for each number from an analysis of a point."""
+"""Collect the results of a sweep in one table, with a row for each number from an analysis of a point."""
 
 import csv
 import io
@@ -46,7 +46,7 @@ class _StoredResult(BaseModel):
 
 
 class _Caveats(BaseModel):
-    """The part that the results of all analyses have in common."""
+    """The part that is common to the results of all analyses."""
 
     caveats: list[str]
 
@@ -54,22 +54,22 @@ class _Caveats(BaseModel):
 _estimate = TypeAdapter(dict[str, float | None], config=ConfigDict(allow_inf_nan=False))
 
 RESULT = ("quantity", "group", *ESTIMATE, "caveats")
-"""Columns of results.csv after those that identify the point."""
+"""Columns of results.csv after the columns that identify the point."""
 
 
 def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read the result files of a sweep in the order of its points.
 
     Raises:
-        UserError: if there are none, or if one cannot be read.
+        UserError: if there are no results, or if a file cannot be read.
     """
-    if found := done_points(folder):
-        return found
+    if points := done_points(folder):
+        return points
     raise UserError(f"{folder}: contains no results of a sweep")
 
 
 def missing_runs(folder: str | os.PathLike[str]) -> tuple[int, int]:
-    """Return how many runs of the sweep in a folder have no results yet, and how many it has; 0, 0 if unknown."""
+    """Return the number of runs of a sweep that have no results yet, and the number of all runs; 0, 0 if unknown."""
     done = sum(path.stem.isdecimal() for path in points_folder(folder).glob("*.json"))
     try:
         with open(plan_path(folder), encoding="utf-8", opener=regular) as file:
@@ -80,29 +80,29 @@ def missing_runs(folder: str | os.PathLike[str]) -> tuple[int, int]:
 
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """Like `read_points`, but an empty list if the sweep has no results yet."""
+    """Return the same as `read_points`, but an empty list if the sweep has no results yet."""
     try:
         paths = sorted(path for path in points_folder(folder).glob("*.json") if path.stem.isdecimal())
     except OSError as error:
         raise UserError(f"{folder}: cannot be read: {error.strerror}") from None
-    return sorted(map(_read_point, paths), key=lambda found: found["point"])
+    return sorted(map(_read_point, paths), key=lambda contents: contents["point"])
 
 
 def _read_point(path: Path) -> dict[str, Any]:
-    """Contents of the result file of a point. Raises UserError if they are not those of a finished point."""
+    """Return the contents of the result file of a point. Raises UserError if they are damaged."""
     try:
         with open(path, "rb", opener=regular) as file:
             text = file.read(MOST_BYTES + 1)
         if len(text) > MOST_BYTES:
             raise ValueError(f"more than {MOST_BYTES:,} bytes")
-        found = json.loads(text.decode(), parse_constant=_refuse_constant)
-        _StoredResult.model_validate(found)
-        for result in found["analyses"].values():
+        contents = json.loads(text.decode(), parse_constant=_refuse_constant)
+        _StoredResult.model_validate(contents)
+        for result in contents["analyses"].values():
             _Caveats.model_validate(result)
             for row in rows(result, ""):
                 _estimate.validate_python(row.values)
-        if path.name != result_path("", found["point"]).name:
-            raise ValueError(f"point {found['point']} under another name")
+        if path.name != result_path("", contents["point"]).name:
+            raise ValueError(f"point {contents['point']} under another name")
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"])) or "contents"
@@ -110,7 +110,7 @@ def _read_point(path: Path) -> dict[str, Any]:
     except (OSError, ValueError, OverflowError, RecursionError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error).splitlines()[0]
         raise UserError(f"{path}: damaged results ({reason})") from None
-    return found
+    return contents
 
 
 def _refuse_constant(name: str) -> None:
@@ -118,7 +118,7 @@ def _refuse_constant(name: str) -> None:
 
 
 def stored_scene(folder: str | os.PathLike[str], found: dict[str, Any]) -> Scene:
-    """Scene of a stored point. Raises UserError if it is invalid."""
+    """Return the scene of a stored point. Raises UserError if it is invalid."""
     try:
         return parse_scene(found["scene"], f"{result_path(folder, found['point'])}: scene")
     except SceneError as error:
@@ -126,10 +126,12 @@ def stored_scene(folder: str | os.PathLike[str], found: dict[str, Any]) -> Scene
 
 
 def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
-    """Yield the label (the values of the axes), the stored result of an analysis and the run of each point of a sweep.
+    """Yield the label, the stored result of an analysis and the origin of each point of a sweep.
+
+    The label consists of the values of the axes.
 
     Raises:
-        UserError: if the sweep does not have this analysis.
+        UserError: if the sweep does not include this analysis.
     """
     for point in read_points(folder):
         if analysis not in point["analyses"]:
@@ -140,40 +142,40 @@ def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tu
 
 
 def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """The rows of `results.csv`: one for each number of each point, by the names of the columns.
+    """Return the rows of `results.csv`: one for each number of each point, by the names of the columns.
 
     Raises:
-        UserError: if there are no results, or if one cannot be read.
+        UserError: if there are no results, or if a file cannot be read.
     """
     return [row for point in read_points(folder) for row in rows_of(point)]
 
 
 def plan_path(folder: str | os.PathLike[str]) -> Path:
-    """Path of the copy of the file of a sweep, whose first line has its number of runs."""
+    """Return the path of the copy of the file of a sweep, whose first line contains the number of runs."""
     return Path(folder) / "sweep.toml"
 
 
 def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
-    """Paths of `results.csv` and `results.parquet`."""
+    """Return the paths of `results.csv` and `results.parquet`."""
     return Path(folder) / "results.csv", Path(folder) / "results.parquet"
 
 
 def write_tables(folder: str | os.PathLike[str]) -> tuple[list[Path], list[str]]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files.
 
-    A `results.csv` with a line that is not of these results is kept under another name.
+    An existing `results.csv` with a line that is not in the new table is kept under another name.
 
     Returns:
-        paths of the tables, and a sentence on each table that was kept.
+        Paths of the tables, and a sentence about each table that was kept.
     """
-    found = result_rows(folder)
-    names = list(dict.fromkeys(name for row in found for name in row))
+    all_rows = result_rows(folder)
+    names = list(dict.fromkeys(name for row in all_rows for name in row))
     identify = [name for name in names if name not in RESULT]
     names = [*identify, *(name for name in RESULT if name in names)]
     text = io.StringIO()
     writer = csv.DictWriter(text, names, restval="")
     writer.writeheader()
-    writer.writerows(found)
+    writer.writerows(all_rows)
     table, columnar = table_paths(folder)
     tables, notices = [table], list(_set_aside(table, text.getvalue()))
     with replacing(table) as part:
@@ -183,14 +185,14 @@ def write_tables(folder: str | os.PathLike[str]) -> tuple[list[Path], list[str]]
         from pyarrow import parquet
 
         tables.append(columnar)
-        columns = {name: [row.get(name) for row in found] for name in names}
+        columns = {name: [row.get(name) for row in all_rows] for name in names}
         with replacing(columnar) as part:
             parquet.write_table(pyarrow.table(columns), part)
     return tables, notices
 
 
 def _set_aside(table: Path, text: str) -> Iterator[str]:
-    """Rename a table that contains a line that is not in its new text, and yield a sentence that says so."""
+    """Rename a table if it contains a line that is not in its new text, and yield a sentence about it."""
     try:
         lines = table.read_bytes().splitlines(keepends=True)
     except FileNotFoundError:
@@ -201,13 +203,16 @@ def _set_aside(table: Path, text: str) -> Iterator[str]:
             names = (table.with_name(f"{table.stem}.previous-{k}{table.suffix}") for k in count(1))
             kept = next(path for path in names if not os.path.lexists(path))
             table.rename(kept)
-            why = "edited, or of other points"
-            yield f"{table}:{number}: not a row of this sweep ({why}); the file is kept as {kept.name}"
+            reason = "edited, or of other points"
+            yield f"{table}:{number}: not a row of this sweep ({reason}); the file is kept as {kept.name}"
             return
 
 
 def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
-    """Average over replicates, and its standard error: from theirs, or without them from their scatter."""
+    """Return the average over replicates and its standard error.
+
+    The standard error follows from the errors of the replicates, or from their scatter if they have none.
+    """
     values = np.array([row["value"] for row in rows], float)
     errors = [row.get("standard_error") for row in rows]
     if None not in errors:
@@ -216,14 +221,14 @@ def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
 
 
 def rows_of(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The rows of a point of `read_points`."""
+    """Yield the rows of a point, given as in `read_points`."""
     labels = {name: point[name] for name in ("point", "replicate", "seed")}
     labels |= {key: json.dumps(v) if isinstance(v, list) else v for key, v in point["values"].items()}
     for name, value in point["summary"].items():
         if isinstance(value, bool | int | float):
             yield {**labels, "quantity": f"run.{name}", "group": "", "value": float(value)}
-    for analysis, found in point["analyses"].items():
-        caveats = {"caveats": " ".join(found["caveats"])}
-        for row in rows(found, analysis.replace("-", "_")):
+    for analysis, result in point["analyses"].items():
+        caveats = {"caveats": " ".join(result["caveats"])}
+        for row in rows(result, analysis.replace("-", "_")):
             if row.entry is None:
                 yield {**labels, "quantity": row.quantity, "group": row.group, **row.values, **caveats}

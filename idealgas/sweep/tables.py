@@ -1,4 +1,4 @@
-"""Tables of the file of a sweep, and what is wrong in them."""
+"""Tables of the file of a sweep, and checks of their contents."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,11 +14,11 @@ from idealgas.toml.issues import Issue
 from idealgas.toml.table import NotNegative, Number, Positive, Table
 
 PHI, BASE = "phi", "base"
-"""Further keys of an axis: the packing fraction, for which the box is scaled, and the path of the base scene."""
+"""Keys of an axis that are not keys of a scene: the packing fraction, which scales the box, and the base scene."""
 
 
 MOST_POINTS = 100_000
-"""Largest number of runs of a sweep, which the replicates of all points add up to."""
+"""Largest number of runs of a sweep, counting all replicates of all points."""
 
 Value = bool | int | float | str | tuple[Any, ...]
 Count = Annotated[int, Field(ge=1, le=100_000)]
@@ -37,7 +37,7 @@ class Settings(Table):
 
 
 class Axis(Table):
-    """Table `[[axis]]`: one key and its values; axes are combined with each other, those of the same `zip` in step."""
+    """Table `[[axis]]`: a key and its values. All axes are combined; axes with the same `zip` vary together."""
 
     key: str = Field(description='a key of the scene, as for --set, or "phi" or "base"')
     values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1)] | None = Field(
@@ -53,7 +53,7 @@ class Axis(Table):
 
     @property
     def steps(self) -> list[Value]:
-        """Values of the axis in order; whole numbers of a range are integers, which keys such as `count` need."""
+        """Values of the axis in order; whole numbers in a range are integers, as keys such as `count` require."""
         if self.range:
             steps = np.linspace(*self.range).tolist()
         elif self.log_range:
@@ -64,7 +64,7 @@ class Axis(Table):
 
 
 class Published(Table):
-    """Table `[[published]]`: values of a quantity in a paper, one for each combination of the axes, in their order."""
+    """Table `[[published]]`: values of a quantity in a paper, one for each combination of the axes, in order."""
 
     source: str = Field(description="the paper")
     quantity: str = Field(description='its name in results.csv, such as "run.events"')
@@ -89,7 +89,10 @@ class Tables(Table):
 
 
 def axis_groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]]]:
-    """Groups of axes that are combined; each is a list of steps that give one or more axes (by number) a value."""
+    """Return the groups of axes that vary together.
+
+    Each group is a list of steps, and each step is a tuple of axes, by their numbers, and their values.
+    """
     together: dict[Any, list[int]] = {}
     for i, axis in enumerate(axes):
         together.setdefault(axis.zip or i, []).append(i)
@@ -100,7 +103,7 @@ def axis_groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]
 
 
 def table_errors(tables: Tables) -> Iterator[Issue]:
-    """Errors that concern several tables."""
+    """Yield errors that involve several tables."""
     along = [i for i, axis in enumerate(tables.axis) if axis.key == BASE]
     given = ["sweep.scene"] * (tables.sweep.scene is not None) + ["[base]"] * (tables.base is not None)
     given += ["an axis base"] * bool(along)
@@ -130,7 +133,7 @@ def table_errors(tables: Tables) -> Iterator[Issue]:
 
 
 def size_errors(tables: Tables) -> Iterator[Issue]:
-    """Error of a sweep with more runs than allowed, before any of them is made."""
+    """Yield an error if a sweep has too many runs; called before the points are made."""
     numbers = [len(group) for group in axis_groups(tables.axis)]
     total = math.prod(numbers) * tables.sweep.replicates
     if total > MOST_POINTS:
@@ -140,9 +143,9 @@ def size_errors(tables: Tables) -> Iterator[Issue]:
 
 
 def published_errors(published: Sequence[Published], combinations: int) -> Iterator[Issue]:
-    """Errors of lists of published values that are not as long as the sweep has points without replicates."""
-    for i, one in enumerate(published):
-        for name, numbers in (("values", one.values), ("errors", one.errors)):
+    """Yield errors of lists of published values that do not have a number for each combination of the axes."""
+    for i, paper in enumerate(published):
+        for name, numbers in (("values", paper.values), ("errors", paper.errors)):
             if len(numbers) != combinations and (numbers or name == "values"):
                 got = f"{len(numbers)} numbers"
                 yield Issue((("published", i, name),), "not one for each point", got, f"{combinations}")
