@@ -1,4 +1,4 @@
-"""Command `idealgas sweep`: many runs of a scene, on this machine or on a cluster."""
+"""Command `idealgas sweep`: run a scene at many points, on this machine or on a cluster."""
 
 import json
 import os
@@ -38,21 +38,22 @@ Example: idealgas sweep temperatures.toml -o temperatures --plot pressure.png"""
 @click.argument("paths", type=FILE, metavar="SWEEP.toml...", nargs=-1)
 @click.option(
     "-o", "--output", type=FILE, metavar="DIR",
-    help="Folder for logs and results, or for a folder of each of several sweeps; an existing one is continued.",
+    help="Folder for logs and results, in which several sweeps have a folder each; an existing sweep is continued.",
 )  # fmt: skip
 @click.option(
-    "--workers", type=click.IntRange(1), metavar="N", help="Number of processes on this machine.  [default: its cores]"
-)
-@overrides_option(" A key of a table of SWEEP.toml (sweep.replicates=2) changes the sweep.")
+    "--workers", type=click.IntRange(1), metavar="N",
+    help="Number of processes on this machine.  [default: one per core]",
+)  # fmt: skip
+@overrides_option(" A key of a table in SWEEP.toml (sweep.replicates=2) changes the sweep.")
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
-@click.option("--dry-run", is_flag=True, help="Show the points and a cost estimate (time and disk space); run nothing.")
+@click.option("--dry-run", is_flag=True, help="Only list the points and estimate the cost (time and disk space).")
 @plot_option
 @click.option(
     "--of", "quantity", metavar="QUANTITY",
     help="Quantity to plot, by its name in results.csv.  [default: deviations from published values, if there are any, "
-    "or else the main one of the first analysis]",
+    "or otherwise the main quantity of the first analysis]",
 )  # fmt: skip
-@click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first one]")
+@click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first axis]")
 @click.option("--list", "listing", is_flag=True, help="List the quantities of all analyses; * stands for any group.")
 @force_option
 @json_option
@@ -74,7 +75,7 @@ def sweep(
     """Run scenes at many points and collect the results of their analyses in DIR/results.csv.
 
     The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
-    twice more and then reported; the other points run. With --plot it draws a figure at the end.
+    twice more and then reported, while the other points continue. With --plot, a figure is drawn at the end.
     """
     if listing:
         _list_quantities()
@@ -88,8 +89,8 @@ def sweep(
     with progress_bar("checking the points") as show:
         plans = [load_sweep(path, overrides, show) for path in paths]
     if dry_run:
-        found = [_planned(path, plan, workers, as_json) for path, plan in zip(paths, plans, strict=True)]
-        _print_json(found, as_json)
+        planned = [_planned(path, plan, workers, as_json) for path, plan in zip(paths, plans, strict=True)]
+        _print_json(planned, as_json)
         return
     if output is None:
         raise UserError("-o DIR: missing (the folder for logs and results)")
@@ -107,7 +108,7 @@ def sweep(
             for plan, folder in zip(plans, folders, strict=True):
                 outcomes.append(_run(plan, folder, workers, scheduler, interrupted, as_json))
         except BaseException:
-            if not interrupted():  # otherwise an error caused by the interruption
+            if not interrupted():  # after an interruption, libraries may raise any error
                 raise
         if interrupted():
             echo("interrupted; run the same command again to continue", err=True)
@@ -126,7 +127,7 @@ def sweep(
 
 
 def _folders(paths: tuple[str, ...], output: str) -> list[str]:
-    """Folder of each sweep: the only one's is that for the output, several have one by their names in it."""
+    """Return the folder of each sweep: the output folder of a single sweep, or folders in it with the sweeps' names."""
     if len(paths) == 1:
         return [output]
     names = [Path(path).stem for path in paths]
@@ -135,10 +136,10 @@ def _folders(paths: tuple[str, ...], output: str) -> list[str]:
     return [str(Path(output) / name) for name in names]
 
 
-def _print_json(found: list[dict[str, Any]], as_json: bool) -> None:
-    """Print what was found of one sweep, or the list of it of several, if JSON is asked for."""
+def _print_json(results: list[dict[str, Any]], as_json: bool) -> None:
+    """Print the result of a single sweep, or the list of the results of several sweeps, if JSON is requested."""
     if as_json:
-        data(json.dumps(found[0] if len(found) == 1 else found, indent=2, allow_nan=False))
+        data(json.dumps(results[0] if len(results) == 1 else results, indent=2, allow_nan=False))
 
 
 def _run(
@@ -149,7 +150,7 @@ def _run(
     interrupted: Callable[[], int],
     as_json: bool,
 ) -> dict[str, Any]:
-    """Run a sweep, print its outcome unless as JSON, and return it as plain values."""
+    """Run a sweep, print its outcome unless JSON is requested, and return the outcome as plain values."""
     from idealgas.sweep.published import published_tables
     from idealgas.sweep.results import result_rows
     from idealgas.sweep.run import run_sweep
@@ -193,7 +194,7 @@ def _list_quantities() -> None:
 
 
 def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> dict[str, Any]:
-    """Points of a sweep and their cost as plain values; print them unless as JSON."""
+    """Print the points of a sweep and their cost unless JSON is requested, and return them as plain values."""
     from rich.filesize import decimal
 
     from idealgas.analysis.core.tables import Cell, Number, Table
@@ -205,9 +206,9 @@ def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> di
     seconds = total_seconds(costs, workers)
     labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)
     points = [label | cost._asdict() for label, cost in zip(labels, costs, strict=True)]
-    found = {"points": points, "workers": workers, "seconds": seconds}
+    result = {"points": points, "workers": workers, "seconds": seconds}
     if as_json:
-        return found
+        return result
     rows: list[tuple[Cell, ...]] = [
         (
             str(point.index),
@@ -224,4 +225,4 @@ def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> di
     size = sum(cost.bytes for cost in costs)
     kept = decimal(int(size)) if plan.keep_logs else f"nothing ({decimal(int(size))} of logs written and removed)"
     echo(f"{path}: {len(plan.points)} points, about {seconds:.3g} s on {workers} workers, disk: {kept}")
-    return found
+    return result

@@ -1,4 +1,4 @@
-"""Run of a sweep: one task for each point on dask.distributed, on this machine or on a cluster.
+"""Run a sweep with one dask.distributed task for each point, on this machine or on a cluster.
 
 A point is done when its result file exists. If a process is killed, at most the points that were running are lost, and
 the next start continues from the files. The files of a point do not depend on the worker that ran it.
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from distributed import Client
 
 RETRIES = 2
-"""Number of further attempts for a point that failed, or whose worker died."""
+"""Number of further attempts for a point that failed or whose worker died."""
 
 IGNORE_SIGINT = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""First command of a local worker: ignore Ctrl-C, which the main process handles."""
+"""First statement of a local worker: ignore Ctrl-C, which the main process handles."""
 
 LOCAL = {
     "distributed.scheduler.allowed-failures": RETRIES,
@@ -45,7 +45,7 @@ LOCAL = {
 
 CONTINUE = "; run the same command again to continue"
 
-TIMEOUT = 10.0  # seconds in which a scheduler must answer
+TIMEOUT = 10.0  # time limit for the answer of a scheduler, s
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,14 @@ class Progress:
 class Outcome:
     """Outcome of a sweep.
 
-    ran: number of points run now. before: number of points that were done before. failures: reasons by point index.
-    seconds: time taken. estimated: estimated time, seconds; None where the machines are unknown or a point cannot be
-    estimated. files: paths of the tables of all results; none if no point is done. notices: sentences for the user.
+    Attributes:
+        ran: number of points that were run now.
+        before: number of points that were done before.
+        failures: reasons of failures, by the index of the point.
+        seconds: time taken, s.
+        estimated: estimated time, s; None if the machines are unknown or a point could not be estimated.
+        files: paths of the tables of all results; empty if no point is done.
+        notices: sentences for the user.
     """
 
     ran: int
@@ -94,10 +99,11 @@ def run_sweep(
 
     Args:
         sweep: the sweep to run.
-        folder: folder of logs and results; created, or resumed even if axes have new values.
+        folder: folder of logs and results; it is created, or resumed even if the axes have new values.
         workers: number of processes on this machine; None for one per core.
-        scheduler: address of a dask scheduler, instead of local workers; its workers see the folder at the same path.
-        on_progress: called when a point has finished or failed.
+        scheduler: address of a dask scheduler, instead of local workers; its workers have to see the folder at the
+            same path.
+        on_progress: function that is called when a point has finished or failed.
         on_estimate: called before, with the number of combinations of values whose cost is estimated, and that of all.
 
     Raises:
@@ -138,8 +144,8 @@ def _estimate(sweep: Sweep, workers: int, on_estimate: Callable[[int, int], None
 
 
 def _lost(folder: Path, points: Iterable[int]) -> dict[int, str]:
-    """Reasons of failure of points that ended well, but without a result file in the folder of the sweep."""
-    lost, deadline = [*points], time.monotonic() + TIMEOUT  # a network file system may show new files late
+    """Return a reason of failure for each point that ended without an error but has no result file in the folder."""
+    lost, deadline = [*points], time.monotonic() + TIMEOUT  # a network file system may show new files with a delay
     while lost := [index for index in lost if not result_path(folder, index).exists()]:
         check_folder(folder)
         if time.monotonic() > deadline:
@@ -150,7 +156,7 @@ def _lost(folder: Path, points: Iterable[int]) -> dict[int, str]:
 
 
 def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, str | None]]:
-    """Yield the index of each point when it ends, with the reason of its failure or None."""
+    """Yield the index of each point when it ends, with the reason of its failure, or None if it succeeded."""
     from distributed import as_completed
 
     run = partial(run_point, folder=folder, analyses=sweep.analyses, keep_log=sweep.keep_logs)
@@ -170,17 +176,18 @@ def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, st
 
 
 def _key(point: Point, sweep: Sweep, folder: Path) -> str:
-    """Key of the task of a point, by all that determines what it does.
+    """Return the key of the task of a point, which is a digest of everything that determines what the task does.
 
-    Two sweeps at once on a scheduler, even equal ones in two folders, so have no task in common; but a sweep that is
-    started again takes over those of its tasks that are still running, as no file may have two writers.
+    Therefore two sweeps that run on a scheduler at the same time have no task in common, even if they are equal sweeps
+    in two folders. A sweep that is started again takes over its tasks that are still running, as a file must not have
+    two writers.
     """
     what = str(folder), point.index, point.scene.scene.seed, dump_document(point.scene), sweep.analyses, sweep.keep_logs
     return f"point-{point.index}-{sha256(repr(what).encode()).hexdigest()[:32]}"
 
 
 def _reason(error: Any) -> str:
-    """Reason why a point failed, in one line."""
+    """Return the reason why a point failed, on one line."""
     from distributed.scheduler import KilledWorker
 
     if isinstance(error, KilledWorker):
@@ -198,7 +205,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
 
     if scheduler is not None:
         with silence_logging_cmgr(logging.CRITICAL):
-            asyncio.run(_check_scheduler(scheduler))  # a client that finds no scheduler cannot be closed cleanly
+            asyncio.run(_check_scheduler(scheduler))  # a client without a scheduler could not be closed cleanly
             with Client(scheduler, timeout=TIMEOUT, set_as_default=False) as client:
                 yield client
         return
@@ -208,7 +215,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
-                dashboard_address=":0",  # no fixed port for the HTTP server, which runs also without a dashboard
+                dashboard_address=":0",  # any free port for the HTTP server, which runs even without a dashboard
                 scheduler_kwargs={"dashboard": False},
                 memory_limit=0,
                 silence_logs=logging.CRITICAL,
@@ -222,7 +229,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
 
 
 async def _check_scheduler(address: str) -> None:
-    """Raise UserError if there is no scheduler at an address, or none that this process may speak to."""
+    """Raise UserError if there is no scheduler at an address, or if this process cannot communicate with it."""
     from distributed import rpc
     from distributed.security import Security
 
