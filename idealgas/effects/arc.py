@@ -22,7 +22,7 @@ def make_arcs(found: list[Arc | None]) -> np.recarray:
 
 
 def _circle(side: float) -> str:
-    """Table `[[wall]]` of a circle in a square box; side: of the box, length."""
+    """Table `[[wall]]` of a circle in a square box; side: side length of the box."""
     low, high, middle = 0.1 * side, 0.9 * side, 0.5 * side
     return f"[[wall]]\nfrom = [{low}, {middle}]\nto = [{low}, {middle}]\nvia = [{high}, {middle}]\n"
 

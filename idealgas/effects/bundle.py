@@ -78,13 +78,13 @@ def present(effects: Effects) -> Iterator[tuple[Effect[Any], Any]]:
 
 
 def begin_epoch(effects: Effects, time: float, length: float) -> None:
-    """Prepare all effects for an epoch that begins at a time of the run; length: of the epoch, time."""
+    """Prepare all effects for an epoch that begins at a time of the run; length: duration of the epoch."""
     for effect, state in present(effects):
         effect.begin_epoch(state, time, length)
 
 
 def end_epoch(effects: Effects, length: float) -> None:
-    """Finish an epoch: let the local times of all effects count from its end; length: of the epoch, time."""
+    """Finish an epoch: let the local times of all effects count from its end; length: duration of the epoch."""
     for effect, state in present(effects):
         effect.end_epoch(state, length)
 

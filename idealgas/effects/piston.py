@@ -147,7 +147,7 @@ class InnerPiston(PermanentWall):
 
 
 def inner_pistons(tables: Sequence[PistonTable | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
-    """Return the inner pistons among the tables, which are None if invalid; size: of the box, length."""
+    """Return the inner pistons among the tables, which are None if invalid; size: width and height of the box."""
     pistons = []
     for k, table in enumerate(tables):
         if table is not None and table.inner is not None:

@@ -93,5 +93,5 @@ class Method(ABC):
         """
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap of two discs of a gas, divided by the sum of their radii; effects: at the time of the gas."""
+        """Deepest overlap of two discs, divided by the sum of their radii; effects: effects at the time of the gas."""
         return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

@@ -36,7 +36,7 @@ U = np.uintp
 
 @inline
 def faces_arc(x, y, distance, arc):
-    """Whether the point of the circle nearest to (x, y) is on the arc; distance: of (x, y) from the centre, length."""
+    """Whether the point of the circle nearest to (x, y) is on the arc; distance: distance of (x, y) from the centre."""
     return x * arc.mx + y * arc.my > distance * arc.cosine
 
 

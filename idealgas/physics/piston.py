@@ -46,7 +46,7 @@ def piston_motion(piston, time):
 
 
 def end_epoch(pistons: np.ndarray, length: float) -> None:
-    """Move all pistons to the end of an epoch, from which their local times count; length: of the epoch, time."""
+    """Move all pistons to the end of an epoch, from which their local times count; length: duration of the epoch."""
     for piston in pistons:
         advance_piston(piston, length)
         piston.t = 0.0

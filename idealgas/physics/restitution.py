@@ -28,7 +28,7 @@ class Restitution(NamedTuple):
 
 
 def end_epoch(restitution: Restitution, length: float) -> None:
-    """Let the local times of the last collisions count from the end of the epoch; length: of the epoch, time."""
+    """Let the local times of the last collisions count from the end of the epoch; length: duration of the epoch."""
     restitution.last[:] -= length
 
 

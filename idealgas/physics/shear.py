@@ -42,7 +42,7 @@ def make_shear(rate: float, size: tuple[float, float]) -> Shear:
 
 
 def begin_epoch(shear: Shear, time: float, length: float) -> None:
-    """Let local times count from a time of the run; length: of the epoch, time. The offset is exact."""
+    """Let local times count from a time of the run; the offset is exact. length: duration of the epoch."""
     ahead = float(Fraction(shear.speed) * Fraction(time) % Fraction(shear.Lx))
     shear.offset[:] = ahead, ahead + shear.speed * length
 

@@ -77,5 +77,5 @@ def andersen_collision(disc, own, thermostat, rotation):
 
 
 def end_epoch(thermostat: Thermostat, length: float) -> None:
-    """Let the local times of the next collisions count from the end of the epoch; length: of the epoch, time."""
+    """Let the local times of the next collisions count from the end of the epoch; length: duration of the epoch."""
     thermostat.time[:] -= length

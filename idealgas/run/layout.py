@@ -44,7 +44,7 @@ DIAGNOSTICS = (
 def layout_of(
     scene: Scene, gas: Gas, effects: Effects, has_positions: bool, extra_state: Iterable[Column] = ()
 ) -> LogLayout:
-    """Return the layout of the log of a scene; gas, effects: at time 0.
+    """Return the layout of the log of a scene; gas, effects: state at time 0.
 
     has_positions: whether discs have positions. extra_state: values of the method that checkpoints store.
     """

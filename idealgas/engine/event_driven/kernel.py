@@ -136,7 +136,7 @@ def resolve_event(record, ids, state, i, other, at_contact, time, batch, rows, c
 
 @inline
 def resolve_event_of_piston(record, ids, state, leaf, at_contact, time, batch, rows, clock, piston, effects):
-    """Resolve the next event of the piston with a leaf of the schedule; the other arguments are as in `resolve_event`.
+    """Resolve the next event of the piston at a leaf of the schedule; the other arguments are as in `resolve_event`.
 
     Returns the number of rows, and the index of the disc that the piston hits; -1 if it has met a side of the box or
     its contact is stale.
