@@ -85,10 +85,10 @@ class Later(NamedTuple):
 
 
 class Effect(Generic[State]):
-    """One effect. A subclass has its tables, its state in a run and what the log keeps of it; its law is elsewhere.
+    """An effect. A subclass defines its tables, its state in a run and its columns in the log; its law is in `physics`.
 
-    The state is what `make` returns: arrays and numbers, which the engine changes. Most methods take it as their first
-    argument. What an effect does not override leaves the gas as it is.
+    The state consists of arrays and numbers, which `make` returns and the engine changes. Most methods take it as their
+    first argument. Methods that an effect does not override leave the gas unchanged.
 
     Attributes:
         name: name in output and messages.
@@ -96,16 +96,16 @@ class Effect(Generic[State]):
         key: key of its table in a scene; empty if the effect is only a kind of side, or a key of other tables.
         table: its table, a Pydantic model.
         many: whether the scene has an array of such tables.
-        description: description of the table, for the JSON Schema.
-        side: a kind of side of the box: a word, or a table with one key.
-        side_text: how such a side is written.
-        energy_part: field of `idealgas.run.energy.Energy` that `energy` is; empty if the effect adds none.
-        energy_column: column of this energy in the samples; None if they have none.
+        description: description of the table for the JSON Schema.
+        side: kind of side of the box: a word, or a table with a single key.
+        side_text: form in which such a side is written.
+        energy_part: field of `idealgas.run.energy.Energy` for `energy`; empty if the effect adds no energy.
+        energy_column: column of this energy in the samples; None if the samples do not contain it.
         energy_is_inner: whether this energy belongs to the discs and collisions may turn it into kinetic energy.
-        events: kind of the events that only this effect has, which are counted; None if it has none.
-        shearable: whether the effect acts in the same way everywhere, so that the gas may be sheared.
-        samples: scenes of the benchmark.
-        sample_together: part of the effect in the scene of all effects together; the first of the samples if None.
+        events: kind of events that only this effect causes, which are counted; None if it causes none.
+        shearable: whether the effect is the same everywhere, so that the gas may be sheared.
+        samples: additions to the scene of the benchmark.
+        sample_together: addition to the scene with all effects; the first of the samples if None.
     """
 
     name: ClassVar[str]
@@ -125,15 +125,15 @@ class Effect(Generic[State]):
     sample_together: ClassVar[Sample | None] = None
 
     def properties(self, tables: Tables) -> Properties | None:
-        """Return how the tables, or sides of the box, change the gas; None if they change nothing."""
+        """Return the properties of a gas with these tables, or sides of the box; None if they change nothing."""
         raise NotImplementedError
 
     def check(self, tables: Tables) -> Iterable[Issue]:
-        """Issues of the table that need the box or the walls; called if the scene has the effect and a valid box."""
+        """Return issues of the table that depend on the box or the walls; called if the scene has the effect."""
         return ()
 
     def continued(self, table: Any, later: Later) -> Any:
-        """Table, or tuple of tables, of a scene that continues from a later time."""
+        """Return the table, or tuple of tables, of a scene that continues from a later time."""
         return table.after(later.time) if hasattr(table, "after") else table
 
     def make(self, tables: Tables, start: Start) -> State | None:
@@ -145,58 +145,58 @@ class Effect(Generic[State]):
         return self.make(tables, start) if self.find(tables) is not None else None
 
     def disc_state(self, state: State) -> Arrays:
-        """Arrays of the state with an entry for each disc, which checkpoints store.
+        """Return the arrays of the state with an entry for each disc, which checkpoints store.
 
-        Those that are columns of events are in event rows and snapshots too.
+        Arrays that are columns of events are also in event rows and snapshots.
         """
         return {}
 
     def constants(self, state: State) -> Arrays:
-        """Values for each disc that the log stores once, at the start."""
+        """Return the values for each disc that the log stores once, at the start."""
         return {}
 
     def values(self, state: State, local_time: float) -> Values:
-        """Values of the effect as a whole at a local time, which checkpoints and samples store."""
+        """Return the values that do not belong to a disc, at a local time, which checkpoints and samples store."""
         return {}
 
     def restore(self, state: State, arrays: Mapping[str, np.ndarray]) -> None:
-        """Set the state to the values of a checkpoint, by name, except for those of each disc."""
+        """Set the state to the values of a checkpoint, by name, except for arrays with an entry for each disc."""
 
     def energy(self, state: State, gas: Gas, local_time: float) -> float:
-        """Energy that the effect adds, at a local time; under gravity the gas has unwrapped positions."""
+        """Return the energy that the effect adds, at a local time; under gravity the positions are unwrapped."""
         return 0.0
 
     def gives_energy(self, state: State) -> bool:
-        """Whether walls give energy to discs, or take some."""
+        """Whether walls give energy to discs, or take it."""
         return False
 
     def own_walls(self, state: State) -> tuple[int, ...]:
-        """Numbers of the walls whose energy is part of the energy account, so that they give none from outside."""
+        """Numbers of the walls whose energy is part of the energy account, so that they add none from outside."""
         return ()
 
     def driving_speed(self, state: State, gas: Gas) -> float:
-        """Estimated increase of the mean speed of the discs, length/time; for epoch lengths and units of sums only."""
+        """Estimated increase of the mean speed of the discs, length/time, for epoch lengths and units of sums."""
         return 0.0
 
     def driving_energy(self, state: State, gas: Gas) -> float:
-        """Largest energy that the effect can bring to a disc on its way across the box."""
+        """Largest energy that the effect can give to a disc on its way across the box."""
         return 0.0
 
     def begin_epoch(self, state: State, time: float, length: float) -> None:
-        """Prepare the state for an epoch of some length (time) that begins at a time of the run."""
+        """Prepare the state for an epoch that begins at a time of the run; length: duration of the epoch."""
 
     def end_epoch(self, state: State, length: float) -> None:
-        """Make local times count from the end of an epoch of some length (time)."""
+        """Let local times count from the end of the epoch; length: duration of the epoch."""
 
     def reverse(self, state: State) -> None:
-        """Turn the velocities of the state around, at the start of an epoch."""
+        """Reverse the velocities in the state, at the start of an epoch."""
 
     def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
-        """Changes in time of values of the state, after time 0."""
+        """Return the changes in time of values of the state, after time 0."""
         return ()
 
     def change(self, state: State, item: int, value: float) -> State:
-        """Return the state with another value of an item."""
+        """Return the state with a new value of an item."""
         return state
 
     def find(self, tables: Tables) -> ActiveEffect | None:

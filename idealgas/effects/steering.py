@@ -49,7 +49,7 @@ class SteeringEffect(Effect[tuple[float, ...]]):
             yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
 
     def state_at_start(self, tables: Tables, start: Start) -> tuple[float, ...] | None:
-        """Return the times of the reversals; a tuple without times if only changes of gravity steer the discs."""
+        """Return the times of the reversals: an empty tuple if only gravity steers discs, None if nothing does."""
         if tables.own is None:
             return () if start.later_accelerations else None
         return as_times(tables.own.reversed_at)

@@ -109,7 +109,7 @@ class WallTable(SteppedTable):
         return self.after(time).model_copy(update=update)
 
     def for_species(self, species: Container[str]) -> "WallTable":
-        """The wall in a gas of these species only; one that others alone pass is closed to all discs."""
+        """Return the wall for a gas of these species only; if none of them passes it, it is closed to all discs."""
         if self.permeable_to is None:
             return self
         names = tuple(name for name in self.permeable_to if name in species)

@@ -136,7 +136,7 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 @inline
 def line_of_centres(a, b, periodic, images):
-    """Position (x, y) of a relative to the image of b that it touches, length; both are at the same time."""
+    """Position (x, y) of disc a relative to the image of disc b that it touches, length; both are at the same time."""
     x, y = a.x - b.x, a.y - b.y
     if periodic is not None:
         x, y = shift_by_images(x, y, periodic, images)
@@ -146,9 +146,9 @@ def line_of_centres(a, b, periodic, images):
 
 @inline
 def collide(a, b, a_id, b_id, images, effects):
-    """Exchange momentum between two discs whose records are at the time of contact; velocities and spins change.
+    """Collide two discs whose records are at the time of contact; their velocities and spins change.
 
-    Where sides are sheared, their velocities are those of the common frame.
+    If sides are sheared, the velocities must be those in the common frame.
     """
     x, y = line_of_centres(a, b, effects.periodic, images)
     tangential_impulse(a, b, a_id, b_id, x, y, effects.rotation)

@@ -1,4 +1,4 @@
-"""Changes that a program makes to a scene during its run: past steps stay, later ones are replaced."""
+"""Changes that a program makes to a scene during its run: past steps are kept, and later steps are replaced."""
 
 from typing import Any, NamedTuple
 
@@ -55,7 +55,7 @@ def apply_change(document: dict[str, Any], change: SceneChange) -> None:
 
 
 def effects_at(scene: Scene, later: Later) -> dict[str, Any]:
-    """Tables of the effects, by key, of a scene that continues from a later time of another one."""
+    """Return the tables of the effects, by key, for a scene that continues from a later time of another scene."""
     return {effect.key: effect.continued(getattr(scene, effect.key), later) for effect in EFFECTS if effect.key}
 
 
