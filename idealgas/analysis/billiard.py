@@ -1,7 +1,7 @@
-"""Measure the mean path of discs between two hits of walls.
+"""Measure the mean path of discs between two wall hits.
 
-Theory is exact for any shape of the box whose paths come everywhere: π times the area that the centres can reach over
-its perimeter (Chernov, J. Stat. Phys. 88, 1 (1997), after Santaló).
+Theory is exact for any shape of the box if the paths reach every point in every direction: π times the area that the
+centres can reach, divided by its perimeter (Chernov, J. Stat. Phys. 88, 1 (1997), after Santaló).
 """
 
 import math
@@ -29,25 +29,26 @@ UNMIXED = (
     "Discs hardly meet: theory needs walls that mix all paths, such as those of Sinai's billiard or of a stadium; in a "
     "circle or a rectangle each path has a mean of its own."
 )
-"""Caveat of discs that walls alone divert."""
+"""Caveat for discs that only walls deflect."""
 
 SPARSE = 1e-6
-"""Packing fraction up to which other discs do not change the density at the walls by any digit that is shown."""
+"""Packing fraction up to which other discs do not change any printed digit of the density at the walls."""
 
 ROW = "mean path between wall hits (length)"
 
 
 @dataclass(frozen=True)
 class Billiard(Result):
-    """Paths of discs between hits of walls.
+    """Paths of discs between wall hits.
 
     Attributes:
-        window: the time that was used.
-        hits: number of wall hits in it.
-        path: mean length of the path of a disc between two of its wall hits, length.
+        window: window of time that was used.
+        hits: number of wall hits in the window.
+        path: mean path of a disc between two of its wall hits, length.
         reach: area and perimeter that the centres of the discs can reach; None without theory.
-        reason: why there is no theory; None if there is one.
-        time: (B,), middles of blocks of time. series: (B,), path flown so far over the wall hits so far, length.
+        reason: why theory is not available; None if it is.
+        time: (B,), middles of the blocks of time.
+        series: (B,), path flown up to each block over the number of wall hits up to it, length.
     """
 
     window: Window
@@ -64,7 +65,7 @@ class Billiard(Result):
 
 
 class BilliardAnalysis(Analysis):
-    """Mean path between hits of walls."""
+    """Mean path between wall hits."""
 
     position = 108
     headline = "path"
@@ -75,10 +76,11 @@ class BilliardAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Billiard:
-        """Measure the mean path of discs between two hits of walls, next to π A/P of the area A that centres can reach.
+        """Measure the mean path of discs between two wall hits, and compare it with π A/P.
 
-        Collisions with other discs do not end a path. Theory is given for discs of one radius that fly straight between
-        walls at rest; its error is 2φ, for the density at the walls.
+        A is the area that the centres of the discs can reach and P its perimeter. Collisions with other discs do not
+        end a path. Theory is available for discs of one radius that fly straight between walls at rest; its relative
+        error is 2φ, which allows for the density at the walls.
 
         Raises:
             UserError: if no disc hits a wall.
@@ -108,7 +110,7 @@ class BilliardAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Billiard) -> list[Table]:
-        """Tables of the mean path, and of the area and the perimeter that give its theory."""
+        """Return the tables of the mean path, and of the area and perimeter from which its theory follows."""
         notes = [describe(result.window), f"{result.hits:,} wall hits"]
         if result.reason:
             notes.append(f"Theory is not available: {result.reason}.")
@@ -123,13 +125,13 @@ class BilliardAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Billiard) -> str:
-        """Mean path between wall hits, and whether it agrees with π A/P."""
-        said = agreement([("path", result.path)], "π A/P", result.reason)
-        return f"The mean path between two wall hits is {format_estimate(result.path)}; {said}."
+        """Return the mean path between wall hits and whether it agrees with π A/P."""
+        verdict = agreement([("path", result.path)], "π A/P", result.reason)
+        return f"The mean path between two wall hits is {format_estimate(result.path)}; {verdict}."
 
     @staticmethod
     def figure(result: Billiard) -> "Figure":
-        """Picture of the mean path up to each time, beside theory."""
+        """Draw the mean path up to each time, with theory."""
         from idealgas.analysis.core.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
@@ -143,7 +145,11 @@ class BilliardAnalysis(Analysis):
 
 
 def _theory(log: Log) -> tuple[Theory, Reach]:
-    """Mean path π A/P between wall hits, length, and the area and perimeter. Raises NoTheoryError without one."""
+    """Return the mean path π A/P between wall hits, length, with the area and the perimeter.
+
+    Raises:
+        NoTheoryError: if theory does not apply.
+    """
     properties, gas = log.scene.properties, log.discs
     if np.ptp(gas.radius) > 0:
         raise NoTheoryError("the discs have several radii")

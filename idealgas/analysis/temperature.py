@@ -34,18 +34,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CONSERVED = 1e-9
-"""Largest relative change of a conserved energy by rounding; chance changes that of fewer than 10¹⁸ discs by more."""
+"""Largest relative change of a conserved energy by rounding. Fluctuations of fewer than 10¹⁸ discs are larger."""
 
 LEAST_RANGE = 0.05
-"""Smallest relative range of the temperature axis, so that rounding of a conserved quantity is not visible."""
+"""Smallest relative range of the temperature axis, so that rounding errors of a conserved energy are not visible."""
 
 
 @dataclass(frozen=True)
 class SpeciesTemperature:
     """Temperatures of the discs of one species (energy, k_B = 1), compared with equipartition.
 
-    species: name. number: of its discs. x, y, both: mean of m vx², m vy² and m v²/2. directions: (B, 2), mean m vx² and
-    m vy² in every block that was read, including those before the window.
+    Attributes:
+        species: name of the species.
+        number: number of its discs.
+        x: mean of m vx².
+        y: mean of m vy².
+        both: mean of m v²/2.
+        directions: (B, 2), means of m vx² and m vy² in every block that was read, also before the window.
     """
 
     species: str
@@ -58,17 +63,19 @@ class SpeciesTemperature:
     @property
     @reported
     def history(self) -> np.ndarray:
-        """Mean m v²/2 (B,) in every block that was read, energy."""
+        """Mean of m v²/2 in every block that was read, (B,), energy."""
         return self.directions.mean(axis=1)
 
 
 @dataclass(frozen=True)
 class Temperature(Result):
-    """Temperatures of each species, and of several last of all discs.
+    """Temperatures of each species; if there are several, the last entry is for all discs.
 
-    window: the time that was used. expected: mean m v²/2 of all discs in equilibrium, energy; None if it is not known
-    beforehand. law: equipartition of this gas in words; None where it is not known. species: temperatures of each
-    species and, of several, of all discs.
+    Attributes:
+        window: window of time that was averaged.
+        expected: mean of m v²/2 over all discs in equilibrium, energy; None if it is not known in advance.
+        law: equipartition of this gas in words; None if it is not known.
+        species: temperatures of each species, followed by those of all discs if there are several species.
     """
 
     window: Window
@@ -79,17 +86,17 @@ class Temperature(Result):
     @property
     @reported
     def block_edges(self) -> np.ndarray:
-        """Times (B + 1,) between the blocks that were read."""
+        """Times between the blocks that were read, (B + 1,)."""
         return self.window.edges
 
 
 def temperature(
     log: Log, start: float | None = None, end: float | None = None, progress: Callable[[int, int], None] | None = None
 ) -> Temperature:
-    """Measure the temperature of every direction of motion, species by species, between two times of a log.
+    """Measure the temperature of each species and direction of motion between two times of a log.
 
-    By equipartition m⟨v²⟩ of a disc is the same along both axes, T = 2E/D with k_B = 1 and D degrees of freedom, and
-    T(1 - m/M) along an axis whose total momentum is conserved, with the mass M of all discs.
+    By equipartition m⟨v²⟩ of a disc is the same along both axes: T = 2E/D with k_B = 1 and D degrees of freedom. Along
+    an axis whose total momentum is conserved it is T(1 - m/M), where M is the mass of all discs.
 
     Raises:
         UserError: if there are no events in the window, or if no start is given and the gas has no equilibrium.
@@ -109,14 +116,14 @@ def temperature(
     sums, shared = moments.flights[:, :, 1:3] / window.width, is_ergodic(log.scene, log.discs)
 
     def entry(name: str, chosen: slice) -> SpeciesTemperature:
-        """Temperatures of the discs of some species."""
+        """Return the temperatures of the discs of the chosen species."""
         members = discs.number[chosen]
         number = int(members.sum())
         means = sums[:, chosen].sum(axis=1) / number
         x, y = means[window.first :].T
         along_x = along_y = both = None
         axes = np.zeros(2) if equilibrium is None else members @ equilibrium.of_axes[chosen] / number
-        if axes.any():  # not of fixed discs
+        if axes.any():  # fixed discs have no temperature
             of_axes = [Theory(t, relative * t, "equipartition") for t in (*axes.tolist(), float(axes.mean()))]
             along_x, along_y = of_axes[:2] if shared else (None, None)
             both = of_axes[2]
@@ -126,7 +133,7 @@ def temperature(
             for series, theory in ((x, along_x), (y, along_y), ((x + y) / 2, both))
         )
         if isolated and number == len(log.discs) and np.ptp(x + y) < CONSERVED * (x + y).mean():
-            energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, but for rounding
+            energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, except for rounding
         return SpeciesTemperature(name, number, of_x, of_y, energy, means)
 
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
@@ -137,10 +144,11 @@ def temperature(
 
 
 def _column(log: Log) -> tuple[Ensemble, float] | None:
-    """Ensemble of an isolated column under gravity, and the relative error of its temperature; None if unknown.
+    """Return the ensemble of an isolated column under gravity and the relative error of its temperature.
 
-    Its energy is that of a dilute gas. Discs of a finite size stand higher: by hydrostatics their potential energy is
-    N T ⟨Z⟩, so that T is lower by half the packing fraction of the lowest layer, relative to it.
+    The temperature is that of a dilute gas with the same energy. Discs of finite size stand higher: by hydrostatics
+    their potential energy is N T ⟨Z⟩, so T is lower by a fraction of half the packing fraction of the lowest layer.
+    Return None if the ensemble is not known.
     """
     gas = composition(log.discs)
     axis = int(log.gravity[1] != 0)
@@ -154,7 +162,7 @@ def _column(log: Log) -> tuple[Ensemble, float] | None:
 
 
 def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
-    """Equipartition of a gas in words: T, where it comes from, and along which axes momentum is conserved."""
+    """Describe equipartition in words: T, the source of its value, and the axes along which momentum is conserved."""
     source = f"2E/D with D = {equilibrium.dof}"
     if relative:
         source = "of a dilute column at fixed energy"
@@ -166,7 +174,7 @@ def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
 
 
 def _rows(result: Temperature) -> list[tuple[str, Estimate]]:
-    """Temperature of every degree of freedom of each species, by its name."""
+    """Return the name and the temperature of each direction of motion of each species."""
     return [
         (f"{entry.species}: {direction}", estimate)
         for entry in result.species
@@ -175,19 +183,19 @@ def _rows(result: Temperature) -> list[tuple[str, Estimate]]:
 
 
 def temperature_tables(result: Temperature) -> list[Table]:
-    """Table of the temperature of every degree of freedom of each species."""
+    """Return the table with the temperature of each direction of motion of each species."""
     notes = (describe(result.window), f"theory: {result.law or 'none for this scene'}")
     return [estimates("Temperatures (energy, k_B = 1)", _rows(result), notes)]
 
 
 def temperature_summary(result: Temperature) -> str:
-    """Kinetic energy per disc, and whether all degrees of freedom agree with equipartition."""
-    found = f"The kinetic energy per disc is {format_estimate(result.species[-1].both)} (k_B = 1)"
-    return f"{found}; {agreement(_rows(result), 'equipartition')}."
+    """Return the kinetic energy per disc and whether all temperatures agree with equipartition."""
+    energy = f"The kinetic energy per disc is {format_estimate(result.species[-1].both)} (k_B = 1)"
+    return f"{energy}; {agreement(_rows(result), 'equipartition')}."
 
 
 def temperature_figure(result: Temperature) -> "Figure":
-    """Picture of the temperature against time: of every species, or along x and y; before the window it is shaded."""
+    """Draw the temperature of each species, or along x and y, against time; the time before the window is shaded."""
     from idealgas.analysis.core.style import GREY, curve_style, panels
 
     figure, (ax,) = panels(1)
@@ -200,7 +208,9 @@ def temperature_figure(result: Temperature) -> "Figure":
     for k, (name, (values, _)) in enumerate(curves.items()):
         colour, line, _ = curve_style(k)
         ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
-    theories = sorted({(found.theory, found.theory_error) for _, found in curves.values() if found.theory is not None})
+    theories = sorted(
+        {(estimate.theory, estimate.theory_error) for _, estimate in curves.values() if estimate.theory is not None}
+    )
     for k, (theory, error) in enumerate(theories):
         ax.theory(None, theory, error, "theory" if k == 0 else None)
     if result.window.first:
@@ -215,7 +225,7 @@ def temperature_figure(result: Temperature) -> "Figure":
 
 
 class TemperatureAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `temperature`."""
+    """Declaration of the analysis `temperature`; users see the docstring of that function."""
 
     position = 10
     headline = "species.*.both"

@@ -1,8 +1,8 @@
 """Measure the distribution of a quantity and test it against theory.
 
-Velocities and energies are weighted with the time that discs spend at them. A waiting time is that between successive
-events of the whole gas. Impact parameters are those of collisions, and collisions are counted disc by disc in ten mean
-free times. The Kolmogorov-Smirnov tests use independent samples.
+Velocities and energies are weighted with the time that discs spend at them. Waiting times are those between successive
+events of the whole gas. Impact parameters are those of collisions. Collisions are counted disc by disc in ten mean free
+times. The Kolmogorov-Smirnov tests use independent samples.
 """
 
 from dataclasses import dataclass
@@ -56,15 +56,20 @@ INVERSE = {"length/time": "time/length", "no unit": "no unit"}
 OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, "collisions": collision_counts}
 """Functions that measure the distribution of one quantity each."""
 
-LINES = 24  # of the histogram in characters; bins are put together
+LINES = 24  # lines of the histogram in characters; bins are merged to fit
 SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
 
 
 @dataclass(frozen=True)
 class Histogram(Result):
-    """Distributions of one quantity (with its unit) in a window of time, one for each species.
+    """Distributions of one quantity in a window of time, one for each species.
 
-    no_law: why no law holds, as part of a sentence; None if one does.
+    Attributes:
+        quantity: name of the quantity.
+        unit: its unit.
+        window: window of time.
+        distributions: distribution of each species, or of the whole gas.
+        no_law: why theory gives no distribution, as part of a sentence; None if it does.
     """
 
     quantity: str
@@ -116,14 +121,14 @@ class HistogramAnalysis(Analysis):
         end: float | None = None,
         progress: Progress | None = None,
     ) -> Histogram:
-        """Measure a distribution between two times of a log, species by species, and test it against its laws.
+        """Measure a distribution between two times of a log, species by species, and test it against theory.
 
         Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
-        flights with a dilute gas, waiting times with an exponential distribution, impact parameters with a uniform one,
-        and numbers of collisions with Boltzmann's equation of one disc in a dilute gas of equal discs; `law_error` is
-        how far a law is off. The p-values are those of the Kolmogorov-Smirnov test of independent samples. Under
-        gravity or a piston the temperature of the law is the measured one. A gas that never reaches equilibrium has no
-        law, and its window is the whole log by default.
+        flights with the law of a dilute gas, waiting times with an exponential distribution, impact parameters with a
+        uniform one, and numbers of collisions with Boltzmann's equation for one disc in a dilute gas of equal discs.
+        `law_error` is the error of the theory itself. The p-values are those of the Kolmogorov-Smirnov test of
+        independent samples. Under gravity or with a piston, the law is evaluated at the measured temperature. For a gas
+        that never reaches equilibrium theory is not available, and the window is the whole log by default.
 
         Raises:
             UserError: if no disc moves, or if the window has too few events.
@@ -131,26 +136,28 @@ class HistogramAnalysis(Analysis):
         if start is None and nonstationary_reason(log):
             start = log.start_time
         if quantity in VELOCITY_QUANTITIES:
-            window, found, no_law = _velocities(log, quantity, start, end, progress)
+            window, distributions, no_law = _velocities(log, quantity, start, end, progress)
         elif quantity in ("free-path", "free-time"):
-            window, found, no_law = free_flights(log, quantity, start, end, progress)
+            window, distributions, no_law = free_flights(log, quantity, start, end, progress)
         else:
-            window, found, no_law = OTHERS[quantity](log, start, end, progress)
-        rows = sum(len(each.tests) for each in found)
-        judged = tuple(each.judged(rows) for each in found)
+            window, distributions, no_law = OTHERS[quantity](log, start, end, progress)
+        rows = sum(len(each.tests) for each in distributions)
+        judged = tuple(each.judged(rows) for each in distributions)
         return Histogram(quantity, QUANTITIES[quantity], window, judged, no_law or None)
 
     @staticmethod
     def tables(result: Histogram) -> list[Table]:
-        """Tables of the means, and of Kolmogorov-Smirnov distances between samples and laws."""
+        """Return the tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
         tests: list[tuple[Cell, ...]] = []
-        for found in result.distributions:
-            spacing = Number(found.correlation_time, ".4g")
-            for test in found.tests:
+        for distribution in result.distributions:
+            spacing = Number(distribution.correlation_time, ".4g")
+            for test in distribution.tests:
                 distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
-                p, samples = Number(test.p_value, ".3g"), Number(found.samples, "d")
-                tests.append((found.name, test.law_name, distance, error, p, samples, spacing, VERDICTS[test.agrees]))
-        means = [(found.name, found.mean) for found in result.distributions]
+                p, samples = Number(test.p_value, ".3g"), Number(distribution.samples, "d")
+                tests.append(
+                    (distribution.name, test.law_name, distance, error, p, samples, spacing, VERDICTS[test.agrees])
+                )
+        means = [(distribution.name, distribution.mean) for distribution in result.distributions]
         notes = (
             describe(result.window),
             *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
@@ -158,9 +165,9 @@ class HistogramAnalysis(Analysis):
         )
         tables = [estimates(f"Mean {_in_words(result.quantity)} ({result.unit})", means, notes)]
         cumulants = [
-            (f"{found.name}: {name.replace('_', ' ')}", one)
-            for found in result.distributions
-            for name, one in found.cumulants.items()
+            (f"{distribution.name}: {name.replace('_', ' ')}", estimate)
+            for distribution in result.distributions
+            for name, estimate in distribution.cumulants.items()
         ]
         tables += [estimates("Cumulants (no unit)", cumulants)] if cumulants else []
         if tests:
@@ -170,70 +177,75 @@ class HistogramAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Histogram) -> str:
-        """Which law the values of each species follow; the mean of those without one."""
-        found = [_follows(result, one) for one in result.distributions]
-        return " ".join([*found, *([f"No law here: {result.no_law}."] if result.no_law else [])])
+        """Return the mean of each species and the laws that its values follow."""
+        sentences = [_follows(result, distribution) for distribution in result.distributions]
+        return " ".join([*sentences, *([f"No law here: {result.no_law}."] if result.no_law else [])])
 
     @staticmethod
     def text(result: Histogram) -> str:
-        """Histogram of each species in characters, with the first of its laws."""
+        """Return a histogram of each species in characters, with the first of its laws."""
         lines = []
-        for found in result.distributions:
-            groups, widths = np.array_split(np.arange(len(found.density)), LINES), np.diff(found.edges)
-            curves = [found.density, *(test.law.pdf(found.middles) for test in found.tests[:1])]
+        for distribution in result.distributions:
+            groups, widths = np.array_split(np.arange(len(distribution.density)), LINES), np.diff(distribution.edges)
+            curves = [distribution.density, *(test.law.pdf(distribution.middles) for test in distribution.tests[:1])]
             measured, *law = [
                 [float(np.average(curve[group], weights=widths[group])) for group in groups] for curve in curves
             ]
-            mark = f"; │ {found.tests[0].law_name}" if found.tests else ""
-            lows = [float(found.edges[group[0]]) for group in groups]
+            mark = f"; │ {distribution.tests[0].law_name}" if distribution.tests else ""
+            lows = [float(distribution.edges[group[0]]) for group in groups]
             lines += [
-                f"{found.name}: {result.quantity} ({result.unit}){mark}",
+                f"{distribution.name}: {result.quantity} ({result.unit}){mark}",
                 bars(lows, measured, law[0] if law else None),
             ]
         return "\n".join(lines)
 
     @staticmethod
     def figure(result: Histogram) -> "Figure":
-        """Picture of the measured density with its error band and of the laws; one panel for each species."""
+        """Draw the measured density with its error bars and the laws, in one panel for each species."""
         from idealgas.analysis.core.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(result.distributions))
-        for ax, found in zip(axes, result.distributions, strict=True):
-            name = f"{found.name} (no law)" if result.no_law else found.name
-            ax.stairs(found.density, found.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
-            ax.errorbar(found.middles, found.density, found.error, fmt="none", ecolor=GREY, elinewidth=0.8)
-            x = np.linspace(found.edges[0], found.edges[-1], 600)
-            for test, colour, style in zip(found.tests, COLOURS, ("-", "--"), strict=False):
+        for ax, distribution in zip(axes, result.distributions, strict=True):
+            name = f"{distribution.name} (no law)" if result.no_law else distribution.name
+            ax.stairs(distribution.density, distribution.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
+            ax.errorbar(
+                distribution.middles, distribution.density, distribution.error, fmt="none", ecolor=GREY, elinewidth=0.8
+            )
+            x = np.linspace(distribution.edges[0], distribution.edges[-1], 600)
+            for test, colour, style in zip(distribution.tests, COLOURS, ("-", "--"), strict=False):
                 ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
-            last = np.flatnonzero(found.density >= 1e-3 * found.density.max())[-1]
-            ax.set_xlim(found.edges[0], found.edges[last + 1])
+            last = np.flatnonzero(distribution.density >= 1e-3 * distribution.density.max())[-1]
+            ax.set_xlim(distribution.edges[0], distribution.edges[last + 1])
             ax.set_xlabel(f"{result.quantity} ({result.unit})")
             ax.set_ylabel(f"density ({INVERSE.get(result.unit, f'1/{result.unit}')})")
             ax.legend()
         ends, heights = (np.array([getattr(ax, of)() for ax in axes]) for of in ("get_xlim", "get_ylim"))
-        for ax in axes:  # species are compared by eye
+        for ax in axes:  # common axes, so that species can be compared by eye
             ax.set(xlim=(ends[:, 0].min(), ends[:, 1].max()), ylim=(0, heights[:, 1].max()))
         return figure
 
 
 def _in_words(quantity: str) -> str:
-    """Quantity in the singular."""
+    """Return the name of a quantity in the singular."""
     return "number of collisions" if quantity == "collisions" else quantity.replace("-", " ")
 
 
-def _follows(result: Histogram, found: Distribution) -> str:
-    """Sentence on the mean of a distribution and its laws."""
-    whose = "All discs" if found.name == ALL_DISCS else f"Species '{found.name}'"
-    mean = f"{whose}: mean {_in_words(result.quantity)} {format_estimate(found.mean)}"
+def _follows(result: Histogram, distribution: Distribution) -> str:
+    """Return a sentence on the mean of a distribution and the laws that it follows."""
+    whose = "All discs" if distribution.name == ALL_DISCS else f"Species '{distribution.name}'"
+    mean = f"{whose}: mean {_in_words(result.quantity)} {format_estimate(distribution.mean)}"
     words = {
         True: ("its distribution agrees with ", " and with "),
         False: ("its distribution differs from ", " and from "),
-        None: (f"too few samples ({found.samples}) to tell whether its distribution agrees with ", " or "),
+        None: (f"too few samples ({distribution.samples}) to tell whether its distribution agrees with ", " or "),
     }
     verdicts = [
-        begin + between.join(f"{test.law_name} (p = {test.p_value:.2g})" for test in found.tests if test.agrees is said)
-        for said, (begin, between) in words.items()
-        if any(test.agrees is said for test in found.tests)
+        begin
+        + between.join(
+            f"{test.law_name} (p = {test.p_value:.2g})" for test in distribution.tests if test.agrees is verdict
+        )
+        for verdict, (begin, between) in words.items()
+        if any(test.agrees is verdict for test in distribution.tests)
     ]
     return f"{'; '.join([mean, *verdicts])}."
 
@@ -247,13 +259,13 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     low = -high if quantity in ("vx", "vy") else np.zeros_like(high)
     members = [np.flatnonzero(gas.species == s) for s in range(len(thermal))]
     members = [ids[np.argsort(gas.mass[ids], kind="stable")] for ids in members]
-    members = [ids[:: -(-len(ids) // SAMPLED)] for ids in members]  # of all masses
+    members = [ids[:: -(-len(ids) // SAMPLED)] for ids in members]  # discs of all masses
     tally = VelocityHistogram(quantity, low, high, BINS, np.concatenate(members), log.gravity)
     moments = [Moments(log.gravity)] if known.needs_temperature else []
     window = measure(log, [tally, *moments], start, end, progress)
     measured = None
     if moments:
-        energy = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean())  # twice
+        energy = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean())  # twice the kinetic energy
         measured = ensemble_at(log.scene, gas, energy / degrees_of_freedom(log), np.inf)
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
@@ -271,8 +283,8 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
 
 
 def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:
-    """Mean of a series of values of magnitude `scale`; confined: of velocities between walls."""
-    if np.ptp(series) < 1e-12 * scale:  # conserved but for rounding
+    """Return the mean of a series of values of magnitude `scale`; confined: for velocities between walls."""
+    if np.ptp(series) < 1e-12 * scale:  # conserved, except for rounding
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
     if confined:
         return mean_of_flux(series, np.zeros(len(series)), expected)

@@ -1,4 +1,4 @@
-"""Distribution of one quantity in bins with their errors, and its tests against laws."""
+"""Distribution of one quantity in bins with error bars, and its tests against laws."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -16,20 +16,23 @@ BINS = 120
 """Number of bins of a quantity that is not a whole number."""
 
 ALL_DISCS = "all discs"
-"""Name of a distribution that is not that of a species."""
+"""Name of a distribution that belongs to all discs and not to one species."""
 
 FEWEST_BLOCKS = 10
-"""Effective number of blocks of time with a value in a bin from which on the error of the bin is known."""
+"""Smallest effective number of blocks of time with values in a bin for which the bin has an error bar."""
 
 
 @dataclass(frozen=True)
 class Test:
     """Kolmogorov-Smirnov test of samples against a law.
 
-    law_name: name of the law. law: the distribution. distance: largest difference of the distribution functions (no
-    unit). law_error: largest error of the law's own distribution function, no unit. p_value: probability of at least
-    this distance by chance and that error. agrees: whether the samples follow the law; None if they are too few to
-    tell.
+    Attributes:
+        law_name: name of the law.
+        law: the law.
+        distance: largest difference of the distribution functions, no unit.
+        law_error: largest error of the distribution function of the law, no unit.
+        p_value: probability of at least this distance by chance, given that error.
+        agrees: whether the samples follow the law; None if they are too few for a verdict.
     """
 
     law_name: Annotated[str, Key("law")]
@@ -44,11 +47,17 @@ class Test:
 class Distribution:
     """Distribution of one quantity for one species, or for the whole gas.
 
-    name: of the species. edges: (bins + 1,), edges of the bins, in the unit of the quantity. density, error: (bins,),
-    probability density and its standard error, 1/unit; nan for a bin with values in few blocks. mean: of the quantity.
-    samples: number of independent samples. correlation_time: time between the instants of independent samples; None for
-    intervals. tests: one for each law. counted_in: time in which collisions are counted; None for other quantities.
-    cumulants: of the number of collisions, over its mean, by name (no unit).
+    Attributes:
+        name: name of the species.
+        edges: (bins + 1,), edges of the bins, in the unit of the quantity.
+        density: (bins,), probability density, 1/unit.
+        error: (bins,), standard error of the density, 1/unit; nan for a bin with values in few blocks.
+        mean: mean of the quantity.
+        samples: number of independent samples.
+        correlation_time: time between the instants of independent samples; None for intervals.
+        tests: a test against each law.
+        counted_in: time in which collisions are counted; None for other quantities.
+        cumulants: cumulants of the number of collisions over its mean, by name (no unit).
     """
 
     name: str
@@ -64,18 +73,18 @@ class Distribution:
 
     @property
     def middles(self) -> np.ndarray:
-        """Middles (bins,) of the bins, in the unit of the quantity."""
+        """Middles of the bins, (bins,), in the unit of the quantity."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def judged(self, rows: int) -> "Distribution":
-        """Return the distribution with the verdicts of its tests, in a comparison of so many rows."""
+        """Return the distribution with the verdicts of its tests, in a comparison of `rows` rows."""
         verdicts = (replace(test, agrees=PValue(test.p_value, self.samples).agrees(rows)) for test in self.tests)
         return replace(self, tests=tuple(verdicts))
 
     @property
     @reported
     def laws(self) -> dict[str, np.ndarray]:
-        """Probability density (bins,) by each law in the middle of the bins, 1/unit."""
+        """Probability density of each law in the middles of the bins, (bins,), 1/unit."""
         return {test.law_name: test.law.pdf(self.middles) for test in self.tests}
 
 
@@ -89,7 +98,21 @@ def distribution_of(
     possible: Mapping[str, distributions.Law],
     law_error: float = 0.0,
 ) -> Distribution:
-    """Distribution from counts (B, bins + 2) of B blocks; the first and last bin count values outside the edges."""
+    """Return a distribution from its counts and samples.
+
+    Args:
+        name: name of the species or of the whole gas.
+        edges: (bins + 1,), edges of the bins.
+        counts: (B, bins + 2), counts in B blocks of time; the first and last bin count values outside the edges.
+        average: mean of the quantity.
+        samples: (n,), independent samples.
+        correlation_time: time between the instants of the samples; None for intervals.
+        possible: laws by name.
+        law_error: largest error of their distribution functions.
+
+    Raises:
+        UserError: if there are no counts or no samples.
+    """
     if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
         raise UserError(f"too few events in the window for a distribution of {name}")
     share = counts[:, 1:-1].sum(axis=0) / total.sum()
@@ -104,7 +127,10 @@ def distribution_of(
 
 
 def _error(count: np.ndarray, total: np.ndarray) -> float:
-    """Standard error of the share of a bin from its counts (B,) and those of all bins; nan if few blocks make it up."""
+    """Return the standard error of the share of a bin from its counts (B,) and the total counts (B,).
+
+    The result is nan if the counts come from few blocks.
+    """
     part = count / total.sum()
     known = part.sum() ** 2 > FEWEST_BLOCKS * (part**2).sum()
     return ratio(count, total).standard_error if known else np.nan

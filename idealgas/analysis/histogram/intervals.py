@@ -1,4 +1,4 @@
-"""Distributions of what happens between events and in them: free flights, waiting times, collisions."""
+"""Distributions of free flights, waiting times, impact parameters and numbers of collisions."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -31,20 +31,20 @@ from idealgas.log import Log
 
 INTERVALS = 10_000  # approximate number of intervals that are tested
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
-TAIL = 12  # mean free times before the end of a window from which no flight is counted, as long ones would be cut off
+TAIL = 12  # flights that start in the last 12 mean free times are not counted, as long ones would be cut off
 
 COUNTED = 10.0
-"""Time in which collisions are counted, in mean free times; in short logs it is a 64th of the log."""
+"""Time in which collisions are counted, in mean free times; in short logs a 64th of the log if that is less."""
 
 MOST_COUNTED = 24
-"""Number of bins of the numbers of collisions."""
+"""Number of bins for the number of collisions."""
 
 Found = tuple[Window, list[Distribution], str]
-"""Window, distributions, and why no law holds; this text is empty if one does."""
+"""Window, distributions, and the reason if theory gives no law (empty if it does)."""
 
 
 def free_flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    """Distribution of the free paths or free times of each species."""
+    """Measure the distribution of the free paths or free times of each species."""
     discs, path = classes(log.discs), quantity == "free-path"
     temperature, rates, errors, speed, why_not = free_flight_rates(log, discs, start, end)
     per_disc = rates.sum(axis=1)
@@ -58,20 +58,20 @@ def free_flights(log: Log, quantity: str, start: float | None, end: float | None
     blocks = slice(window.first, max(last, (window.first + len(tally.counts)) // 2))
     finite = FINITE_NUMBER / len(log.discs)
     law = distributions.FreePathLaw if path else distributions.FreeTimeLaw
-    found = []
+    by_species = []
     for s, name in enumerate(log.discs.species_names):
         kinds = np.flatnonzero(discs.species == s)
         laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
-        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more of them
+        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more flights
         dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
         possible = {} if why_not else {"dilute gas": dilute}
         expected = None if why_not else Theory(float(average[s]), float(average[s] * relative[s]), "kinetic theory")
-        found.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
-    return window, found, why_not
+        by_species.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
+    return window, by_species, why_not
 
 
 def waiting_times(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    """Distribution of the times between events of the whole gas."""
+    """Measure the distribution of the times between events of the whole gas."""
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
     tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
@@ -86,9 +86,9 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Pr
 
 
 def impact_parameters(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    """Distribution of |b| over the sum of the radii in collisions of all discs.
+    """Measure the distribution of |b| over the sum of the radii in collisions of all discs.
 
-    Velocities in equilibrium do not depend on positions, so that it is even, at any density.
+    In equilibrium velocities do not depend on positions, so that the distribution is uniform at any density.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: discs without positions have no impact parameters")
@@ -105,7 +105,7 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
 
 
 def collision_counts(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
-    """Distribution of the number of collisions of a disc in a time, with its cumulants."""
+    """Measure the distribution of the number of collisions of a disc in a given time, and its cumulants."""
     discs = classes(log.discs)
     _, rates, errors, _, why_not = free_flight_rates(log, discs, start, end)
     if len(discs.mass) > 1:
@@ -114,26 +114,26 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
         why_not = why_not or f"above φ = {DENSEST_COUNTS:g} none is known for numbers of collisions"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
     rate = discs.shares @ per_disc
-    fewest, most = 64, max(len(log), 64)  # times: no more than rows, even if hardly anything happens in most of them
+    fewest, most = 64, max(len(log), 64)  # at most one interval per row of the log, even if most are empty
     time = float(np.clip(COUNTED / rate.max(), (last - first) / most, (last - first) / fewest))
     tally = CollisionCounts(time, MOST_COUNTED, max(STRIDE, int((last - first) / time * len(log.discs) / INTERVALS)))
     window = measure(log, [tally], start, end, progress)
     begin = int(tally.begins.searchsorted(window.start))
     error, *of_cumulants = count_errors(log)
-    edges, found = np.arange(MOST_COUNTED + 1) - 0.5, []
+    edges, by_species = np.arange(MOST_COUNTED + 1) - 0.5, []
     mean = law = None
     cumulants: list[Theory | None] = [None, None]
     if not why_not:
         mean = Theory(float(rate[0]) * time, float(rate[0] * errors[0, 0]) * time, "kinetic theory")
         law = CollisionCountLaw(float(rate[0]) * time)
-        cumulants = [Theory(*one, "dilute gas") for one in zip(law.cumulants, of_cumulants, strict=True)]
+        cumulants = [Theory(*value, "dilute gas") for value in zip(law.cumulants, of_cumulants, strict=True)]
     for s, name in enumerate(log.discs.species_names):
         chosen = (tally.sample_species == s) & (tally.sample_index >= begin)
         even = np.random.default_rng(0).uniform(-0.5, 0.5, int(chosen.sum()))
         sums = tally.sums[begin:, s].T
         collided = float(sums[1].sum())
         average = of_events(ratio(sums[1], sums[0], theory=mean), collided)
-        one = distribution_of(
+        distribution = distribution_of(
             name,
             edges,
             tally.counts[begin:, s],
@@ -147,18 +147,18 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
             "variance_over_mean": of_events(estimate(_variance, *sums[:3], theory=cumulants[0]), collided),
             "third_cumulant_over_mean": of_events(estimate(_third, *sums, theory=cumulants[1]), collided),
         }
-        found.append(replace(one, counted_in=time, cumulants=measured))
-    return window, found, why_not
+        by_species.append(replace(distribution, counted_in=time, cumulants=measured))
+    return window, by_species, why_not
 
 
 def _variance(number: float, first: float, second: float) -> float:
-    """Variance over mean, from sums of powers."""
+    """Return the variance over the mean, from sums of powers."""
     mean = first / number
     return (second / number - mean**2) / mean
 
 
 def _third(number: float, first: float, second: float, third: float) -> float:
-    """Third cumulant over mean, from sums of powers."""
+    """Return the third cumulant over the mean, from sums of powers."""
     mean = first / number
     return (third / number - 3 * mean * second / number + 2 * mean**3) / mean
 
@@ -173,7 +173,7 @@ def _intervals(
     expected: Theory | float | None,
     law_error: float,
 ) -> Distribution:
-    """Distribution of the intervals of species s in some blocks of time."""
+    """Return the distribution of the intervals of species s in a range of blocks of time."""
     counts = tally.counts[blocks, s].astype(float)
     chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
     average = of_events(ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected), float(counts.sum()))

@@ -1,4 +1,4 @@
-"""Laws of velocities, energies and free flights that a gas has to follow, and why others have none."""
+"""Laws of velocities, energies and free flights, and the reasons for which a gas has none."""
 
 from dataclasses import dataclass
 
@@ -15,34 +15,35 @@ from idealgas.log import Log
 MAXWELL = "Maxwell-Boltzmann"
 
 FEWEST_DOF = 3
-"""Degrees of freedom of a gas of fixed energy up to which its velocities have no density that is bounded."""
+"""Largest number of degrees of freedom at which the velocity density of a gas of fixed energy is unbounded."""
 
 FEW = 30
-"""Number of discs below which free paths and waiting times do not follow the law of many."""
+"""Number of discs below which free paths and waiting times deviate from the law of many discs."""
 
 RECOLLISIONS = 0.011
-"""Largest error of the distribution function of free flights in many discs, where two discs may collide again soon.
+"""Largest error of the distribution function of free flights in many discs, where two discs may soon collide again.
 
-Largest of equal discs at φ = 0.02 to 0.6: 0.0105(10) at φ = 0.2 with 1000 discs in a periodic box.
+Among equal discs at φ = 0.02 to 0.6, it is largest at φ = 0.2: 0.0105(10) with 1000 discs in a periodic box.
 """
 
 FINITE_NUMBER = 0.16
-"""Number of discs times the largest error of the distribution functions of free flights and waiting times of few discs.
+"""Largest error of the distribution functions of free flights and waiting times times the number of discs.
 
-Waiting times of 30 discs are off by 0.0046(5), and free times of 64 by 0.002 more than those of 1000.
+The waiting times of 30 discs are off by 0.0046(5), and the free times of 64 discs by 0.002 more than those of 1000.
 """
 
 DENSEST_COUNTS = 0.5
-"""Packing fraction up to which the law of the number of collisions is compared; denser gases have cages."""
+"""Packing fraction up to which the law of the number of collisions is tested; in denser gases discs are caged."""
 
 
 def count_errors(log: Log) -> tuple[float, float, float]:
-    """Errors of the dilute law of the number of collisions in ten mean free times.
+    """Return the errors of the dilute law of the number of collisions in ten mean free times.
 
-    Of its distribution function (the largest), and of the second and third cumulant over the mean. In denser gases
-    collisions are more regular. Measured with 1000 discs at φ = 0.003, 0.03, 0.1, 0.2, 0.3 and 0.5: 0.003, 0.004,
-    0.010, 0.014, 0.017 and 0.011; variances are too small by 0.004(7), 0.035(6), 0.064(7), 0.111(6), 0.122(9) and
-    0.043(8); with 100 discs at 0.03 and 0.1 by 0.079(8) and 0.150(7).
+    The three errors are that of the distribution function (its largest value) and those of the second and third
+    cumulant over the mean. In denser gases collisions are more regular. With 1000 discs at φ = 0.003, 0.03, 0.1, 0.2,
+    0.3 and 0.5 the distribution function is off by 0.003, 0.004, 0.010, 0.014, 0.017 and 0.011, and the variance is too
+    small by 0.004(7), 0.035(6), 0.064(7), 0.111(6), 0.122(9) and 0.043(8). With 100 discs at φ = 0.03 and 0.1 the
+    variance is too small by 0.079(8) and 0.150(7).
     """
     phi, number = log.discs.packing_fraction * log.has_positions, len(log.discs)
     return 0.1 * phi + 1 / number, 0.8 * phi + 5 / number, phi + 10 / number
@@ -50,10 +51,12 @@ def count_errors(log: Log) -> tuple[float, float, float]:
 
 @dataclass(frozen=True)
 class Expectation:
-    """What is known before the events of a log are read: its ensemble, or whether it reaches an equilibrium.
+    """What is known of a gas before the events of its log are read.
 
-    ensemble: of a gas of known temperature; None if it must be measured, or no law holds. scale: temperature that sets
-    the range of histograms, energy. why_not: why no law holds, as part of a sentence; empty if one does.
+    Attributes:
+        ensemble: ensemble of a gas of known temperature; None if the temperature must be measured, or if no law holds.
+        scale: temperature that sets the range of histograms, energy.
+        why_not: why no law holds, as part of a sentence; empty if one does.
     """
 
     ensemble: Ensemble | None
@@ -67,7 +70,7 @@ class Expectation:
 
 
 def expectation(log: Log, start: float | None, end: float | None) -> Expectation:
-    """What is known of the gas of a log between two times before its events are read.
+    """Return what is known of the gas of a log between two times before its events are read.
 
     Raises:
         UserError: if no disc moves.
@@ -90,7 +93,7 @@ def expectation(log: Log, start: float | None, end: float | None) -> Expectation
 
 
 def _highest(log: Log, start: float | None, end: float | None) -> float:
-    """Highest kinetic energy per disc among the samples between two times, relative to the centre of mass."""
+    """Return the highest kinetic energy per disc between two times, relative to the centre of mass."""
     time, kinetic = log.observables["kinetic_energy"]
     first, last = log.start_time if start is None else start, log.end_time if end is None else end
     inside = (time >= first) & (time <= last)
@@ -104,9 +107,15 @@ def _highest(log: Log, start: float | None, end: float | None) -> float:
 def velocity_laws(
     quantity: str, known: Expectation, species: int, measured: Ensemble | None
 ) -> dict[str, distributions.Law]:
-    """Laws of a velocity quantity of one species by name: Maxwell-Boltzmann's, and that of a gas at fixed energy.
+    """Return the laws of a velocity quantity of one species by name.
 
-    measured: ensemble at the measured temperature, if it was measured.
+    They are the Maxwell-Boltzmann distribution and, for a gas at fixed energy, the distribution of its ensemble.
+
+    Args:
+        quantity: name of the quantity.
+        known: what is known of the gas.
+        species: number of the species.
+        measured: ensemble at the measured temperature; None if it was not measured.
     """
     ensemble = known.ensemble or measured
     if known.why_not or ensemble is None or not ensemble.of_axes[species].any():  # fixed discs have no law
@@ -122,12 +131,19 @@ def velocity_laws(
 def free_flight_rates(
     log: Log, discs: Composition, start: float | None, end: float | None
 ) -> tuple[float, np.ndarray, np.ndarray, np.ndarray, str]:
-    """Temperature, collision rates and their relative errors (K, K), and mean speeds (S,) of free flights.
+    """Return the rates that determine the free flights of K kinds of discs of S species.
 
-    The last is why no law holds, empty if one does.
+    If no law holds, the rates and speeds are means over the gas that only set the range of the histogram.
 
-    discs: the K kinds of discs of the S species. Without a law rates and speeds are means over the gas that only set
-    the range of the histogram.
+    Returns:
+        temperature: energy.
+        rates: (K, K), collision rates, 1/time.
+        errors: (K, K), their relative errors.
+        speeds: (S,), mean speeds, length/time.
+        why_not: why no law holds; empty if one does.
+
+    Raises:
+        UserError: if no disc moves, or if there are too few collisions.
     """
     known = expectation(log, start, end)
     why_not = known.why_not

@@ -10,17 +10,17 @@ from idealgas.analysis.core.ensemble import ROUNDING
 GROUPS = 16
 """Number of groups of discs that are sampled in turn.
 
-A sixteenth of the discs hardly correlates with itself by the energy and momentum that all discs share, nor a disc with
-itself sixteen statistical inefficiencies later, even where it is confined between walls.
+The discs share energy and momentum, but a sixteenth of them hardly correlates with itself for this reason. A disc
+hardly correlates with itself sixteen statistical inefficiencies later, even if it is confined between walls.
 """
 
 
 def independent_samples(values: np.ndarray) -> tuple[np.ndarray, int]:
-    """Independent samples (n,) of values (B, M) of M discs at B instants, and the number of instants between samples.
+    """Return independent samples (n,) of values (B, M) of M discs at B instants, and the spacing of the samples.
 
-    It is the largest statistical inefficiency of single discs and of their mean, which fluctuates slowly where walls or
-    a thermostat exchange energy with the gas; and of squares, as a light disc among heavy ones keeps its speed for
-    longer than its direction.
+    The spacing, in instants, is the largest statistical inefficiency of single discs and of their mean, which
+    fluctuates slowly if walls or a thermostat exchange energy with the gas. The squares of the values are also
+    considered, as a light disc among heavy ones keeps its speed for longer than its direction.
     """
     memory = 1.0
     for x in (values, values**2):

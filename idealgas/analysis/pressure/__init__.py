@@ -1,9 +1,10 @@
-"""Measure the pressure from the walls and from the virial, and compare Z = PA/NT with 1 and with hard discs.
+"""Measure the pressure by walls and virial, and compare Z = PA/NT with the ideal gas and hard discs.
 
-Collision rates and mean free paths come from the same events. Several logs, or the folder of a sweep with the
-analysis "pressure", give the equation of state: Z against the packing fraction, and the virial coefficients in it.
-Under gravity, with a piston or walls inside, losses or heat of several temperatures there is no such Z: it is then
-the mechanical pressure of every wall, the momentum that discs give to it per time and length.
+Collision rates and mean free paths come from the same events. Several logs, or the folder of a sweep with the analysis
+"pressure", give the equation of state: Z against the packing fraction, and its virial coefficients. Z is not defined
+under gravity, with a piston or walls inside the box, with collisions that lose energy or with several temperatures. The
+result is then the mechanical pressure on every wall, that is, the momentum that the discs give to it per time and
+length.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class PressureAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `pressure`."""
+    """Declaration of the analysis `pressure`; users see the docstring of that function."""
 
     position = 0
     headline = "routes.pairs_virial*.compressibility_factor"
@@ -39,7 +40,7 @@ class PressureAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
+        """Draw the result; matplotlib is imported only here."""
         from idealgas.analysis.pressure.figure import pressure_figure
 
         return pressure_figure(result)

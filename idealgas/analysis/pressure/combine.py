@@ -1,4 +1,4 @@
-"""Equation of state from the pressures of several logs, or of the points of a sweep."""
+"""Equation of state from the pressures of several logs or of the points of a sweep."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,23 +11,23 @@ from idealgas.errors import UserError
 
 
 def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:
-    """Pressure of a single log, or the equation of state of several logs or of a sweep.
+    """Return the pressure of a single log, or the equation of state of several logs or points of a sweep.
 
     Raises:
         UserError: if one of several gases is a mixture.
     """
     if len(results) == 1 and isinstance(results[0], Pressure):
         return results[0]
-    return equation_of_state([sample_of(found) if isinstance(found, Pressure) else found for found in results])
+    return equation_of_state([sample_of(result) if isinstance(result, Pressure) else result for result in results])
 
 
-def restore_pressure(found: dict[str, Any], label: str) -> Sample:
-    """Compressibility factor of one point of a sweep, whose name is `label`.
+def restore_pressure(stored: dict[str, Any], label: str) -> Sample:
+    """Return the compressibility factor of the point of a sweep that is named `label`, from its stored values.
 
     Raises:
         UserError: if the gas has no equation of state.
     """
-    if not found["routes"]:
-        raise UserError(f"{label}: {found['no_theory']}")
-    pairs = next(route["compressibility_factor"] for route in found["routes"] if route["route"] == PAIRS)
-    return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))
+    if not stored["routes"]:
+        raise UserError(f"{label}: {stored['no_theory']}")
+    pairs = next(route["compressibility_factor"] for route in stored["routes"] if route["route"] == PAIRS)
+    return Sample(stored["packing_fraction"], stored["number"], Estimate.from_dict(pairs))

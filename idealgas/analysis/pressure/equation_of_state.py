@@ -24,15 +24,15 @@ RESUMMED = "virial series, resummed"
 """Name of the theory of a fluid."""
 
 FREE_TERMS = 3
-"""Number of fitted virial coefficients, from B2 on; higher coefficients have their known values.
+"""Number of virial coefficients that are fitted, from B2 on; the higher ones are set to their known values.
 
-The fit takes one packing fraction more than that.
+The fit requires one packing fraction more than that.
 """
 
 
 @dataclass(frozen=True)
 class Sample(Result):
-    """Compressibility factor of one run; its theory is that of the same number of discs in the same box."""
+    """Compressibility factor of one run, with the theory for the same number of discs in the same box."""
 
     packing_fraction: float
     number: int
@@ -43,14 +43,20 @@ class Sample(Result):
 class State:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
-    name: φ, N, seeds and kind of gas in words. packing_fraction: φ. number: of discs. kind: kind of gas in words; empty
-    if unknown. runs: number of runs. seeds: of the runs.
-    compressibility_factor: mean of Z over the runs; its theory is that of the same number of discs in the same box.
-    infinite: up to φ = 0.62 Z extrapolated to an infinite gas, by the ratio of the theories, next to the resummed
-    virial series; above, and where the ratio is not known, Z as it is, next to published simulations or, for a crystal,
-    free-volume theory, or nothing.
-    source: which theory this is; None without one. virial: virial series to B10. henderson:
-    Henderson (1975); both None above φ = 0.62.
+    Attributes:
+        name: φ, N, seeds and kind of gas in words.
+        packing_fraction: packing fraction φ.
+        number: number of discs.
+        kind: kind of gas in words; empty if unknown.
+        runs: number of runs.
+        seeds: seeds of the runs.
+        compressibility_factor: mean of Z over the runs, with the theory for the same number of discs in the same box.
+        infinite: Z of an infinite gas up to φ = 0.62, extrapolated by the ratio of the theories and compared with the
+            resummed virial series. Above, or if the ratio is not known, Z as measured, compared with published
+            simulations or, for a crystal, with free-volume theory, if there is one.
+        source: name of the theory of `infinite`; None without one.
+        virial: virial series to B10; None above φ = 0.62.
+        henderson: equation of state of Henderson (1975); None above φ = 0.62.
     """
 
     name: str
@@ -70,7 +76,10 @@ class State:
 class EquationOfState(Result):
     """Equation of state: states in order of φ, and fitted virial coefficients (no unit).
 
-    b2: B2 over the area of a disc; theory gives 2. b3: B3/B2². Both are None if there are too few states for the fit.
+    Attributes:
+        states: compressibility factors in order of φ.
+        b2: B2 over the area of a disc, which is 2 by theory; None if there are too few states for the fit.
+        b3: B3/B2²; None if there are too few states for the fit.
     """
 
     states: tuple[State, ...]
@@ -78,7 +87,7 @@ class EquationOfState(Result):
     b3: Annotated[Estimate | None, Key("B3")]
 
     def check(self) -> CheckResult:
-        """Check that Z agrees with theory in every state that has one."""
+        """Check that Z agrees with theory in every state that has a theory."""
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
         why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"
@@ -91,7 +100,7 @@ class EquationOfState(Result):
 
 
 def sample_of(measured: Pressure) -> Sample:
-    """Compressibility factor of a run from the virial of its pair collisions.
+    """Return the compressibility factor of a run from the virial of its pair collisions.
 
     Raises:
         UserError: if the gas has no equation of state.
@@ -101,7 +110,7 @@ def sample_of(measured: Pressure) -> Sample:
 
 
 def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
-    """Equation of state of many runs; runs of one kind of gas, number of discs and packing fraction are averaged.
+    """Return the equation of state of many runs, averaged over runs of the same kind of gas, number of discs and φ.
 
     Raises:
         UserError: if one of the runs is of a mixture.
@@ -113,22 +122,22 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
         )
     states = tuple(_state(kind, runs) for kind, runs in by_state(samples))
     b2, b3 = _virial_coefficients(states)
-    found = EquationOfState(states, b2, b3)
-    if len(found.kinds) == 1:
-        return found
-    sentence = f"The states are of different gases, each in a row of its own: {'; '.join(found.kinds)}."
-    return replace(found, caveats=(sentence,))
+    result = EquationOfState(states, b2, b3)
+    if len(result.kinds) == 1:
+        return result
+    sentence = f"The states are of different gases, each in a row of its own: {'; '.join(result.kinds)}."
+    return replace(result, caveats=(sentence,))
 
 
 def _state(kind: str, runs: Sequence[Sample]) -> State:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
-    found, fluid = mean_of_replicates([run.compressibility_factor for run in runs]), phi <= hard_discs.HIGHEST
-    infinite, source = found, "published simulations" if found.theory is not None else None
-    if fluid and found.theory is not None:
-        infinite, source = found.times(float(hard_discs.compressibility_factor(phi)) / found.theory), RESUMMED
-    elif SOLID <= phi < hard_discs.CLOSE_PACKING and found.theory is None:
+    measured, fluid = mean_of_replicates([run.compressibility_factor for run in runs]), phi <= hard_discs.HIGHEST
+    infinite, source = measured, "published simulations" if measured.theory is not None else None
+    if fluid and measured.theory is not None:
+        infinite, source = measured.times(float(hard_discs.compressibility_factor(phi)) / measured.theory), RESUMMED
+    elif SOLID <= phi < hard_discs.CLOSE_PACKING and measured.theory is None:
         solid = crystal(phi)
-        infinite, source = replace(found, theory=solid.value, theory_error=solid.error), solid.source
+        infinite, source = replace(measured, theory=solid.value, theory_error=solid.error), solid.source
     seeds = seeds_of(runs)
     return State(
         name_of_state(phi, runs[0].number, kind, seeds),
@@ -137,7 +146,7 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
         kind,
         n,
         seeds,
-        found,
+        measured,
         infinite,
         source,
         virial=float(hard_discs.virial_series(phi)) if fluid else None,
@@ -146,7 +155,7 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
 
 
 def _virial_coefficients(states: Sequence[State]) -> tuple[Estimate | None, Estimate | None]:
-    """Virial coefficients B2 and B3 by a weighted least-squares fit of (Z - 1)/2φ = Σ b_k (2φ)^(k - 2)."""
+    """Fit the virial coefficients B2 and B3 to (Z - 1)/2φ = Σ b_k (2φ)^(k - 2) by weighted least squares."""
     used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.source and s.infinite.standard_error > 0]
     if len({round(s.packing_fraction, 6) for s in used}) <= FREE_TERMS:
         return None, None

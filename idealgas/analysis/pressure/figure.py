@@ -1,4 +1,4 @@
-"""Pictures of the pressure: compressibility factor Z by every route, and the equation of state."""
+"""Figures of the pressure: compressibility factor Z by every route, and the equation of state."""
 
 from itertools import cycle
 
@@ -15,14 +15,14 @@ from idealgas.analysis.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
 
 
 def pressure_figure(result: Pressure | EquationOfState) -> Figure:
-    """Picture of Z of one log by every route, or of several logs against the packing fraction."""
+    """Draw Z of one log by every route, or Z of several logs against the packing fraction."""
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 
-def _of_walls(result: Pressure, found: Mechanical) -> Figure:
-    """Picture of the mechanical pressure of every wall, and of the external pressure on a piston."""
+def _of_walls(result: Pressure, pressures: Mechanical) -> Figure:
+    """Draw the mechanical pressure on every wall, and the external pressure on a piston."""
     figure, (ax,) = panels(1)
-    walls = found.walls[::-1]
+    walls = pressures.walls[::-1]
     values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
     ax.errorbar(values, range(len(walls)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     for k, wall in enumerate(walls):
@@ -36,7 +36,7 @@ def _of_walls(result: Pressure, found: Mechanical) -> Figure:
 
 
 def _of_log(result: Pressure) -> Figure:
-    """Picture of Z of one log: every route with its error bar beside its own theory, that of the gas in its box."""
+    """Draw Z of one log: every route with its error bar beside the theory of this route for the gas in its box."""
     if result.mechanical:
         return _of_walls(result, result.mechanical)
     figure, (ax,) = panels(1)
@@ -62,7 +62,7 @@ def _of_log(result: Pressure) -> Figure:
 
 
 def _of_states(result: EquationOfState) -> Figure:
-    """Picture of Z against φ with theories, and below it the deviation from the theory of each state."""
+    """Draw Z against φ with the theories, and below it the deviation of each state from its theory."""
     figure, (above, below) = panels(2)
     phi = np.array([state.packing_fraction for state in result.states])
     z = np.array([state.infinite.value for state in result.states])

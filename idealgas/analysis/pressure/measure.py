@@ -1,9 +1,9 @@
-"""Pressure from the walls and from the virial, and the compressibility factor Z = PA/NT with its error bar.
+"""Pressure by walls and virial, and the compressibility factor Z = PA/NT with its error bar.
 
-Virial theorem of Clausius, in equilibrium over a time τ: 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ, with pair collisions on the
-left and wall hits on the right. Each side gives Z by its own events; they differ only by the change of Σ r·p between
-the start and the end. The force per length of wall is larger than the pressure, as walls act on the centres of the
-discs one radius inside the box.
+By Clausius' virial theorem, 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ in equilibrium over a time τ, with pair collisions on the
+left and wall hits on the right. Each side gives Z from its own events; the two differ only by the change of Σ r·p
+between the start and the end. The force per length of a wall is larger than the pressure, as walls act on the centres
+of the discs one radius inside the box.
 """
 
 import math
@@ -55,21 +55,29 @@ from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
 
 IDEAL = "ideal gas"
-"""Name of its theory, Z = 1."""
+"""Name of the theory of the ideal gas, Z = 1."""
 
 
 @dataclass(frozen=True)
 class Pressure(Result):
     """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
 
-    window: the time that was used. number: of discs. area: of the box, length². temperature: energy (k_B = 1).
-    packing_fraction: no unit. routes: pressure and Z by each way of measuring. known_theories: Z by the name of
-    each theory that applies. collision_rates: of each pair of species. free_paths: of each species; empty without
-    events. tensor: components xx, yy and xy of the pressure tensor, energy/length².
-    no_theory: why there is no theory of this gas in its box, as part of a sentence; None if there is.
-    mechanical: pressure of every wall of a gas without an equation of state; None for others. For such a gas area
-    is what it has on average, temperature the mean of m v²/2 over discs and time, and there are no routes,
-    theories, rates and paths.
+    A gas without an equation of state has only the mechanical pressure on every wall: no routes, theories, rates or
+    paths.
+
+    Attributes:
+        window: window of time that was averaged.
+        number: number of discs.
+        area: area of the box, length²; without an equation of state the mean area of the gas.
+        temperature: temperature, energy (k_B = 1); without an equation of state the mean of m v²/2 over discs and time.
+        packing_fraction: packing fraction, no unit.
+        routes: pressure and Z by each route.
+        known_theories: Z by the name of each theory that applies.
+        collision_rates: collision rate of each pair of species.
+        free_paths: free path of each species; empty without events.
+        tensor: components xx, yy and xy of the pressure tensor, energy/length².
+        no_theory: why no theory applies to this gas in its box, as part of a sentence; None if one applies.
+        mechanical: pressure on every wall of a gas without an equation of state; None for other gases.
     """
 
     window: Window
@@ -94,14 +102,14 @@ class Pressure(Result):
     @property
     @reported
     def theory_errors(self) -> dict[str, float]:
-        """Standard deviation of the error of Z by the name of each theory."""
+        """Standard deviation of the error of Z by the name of each theory that applies."""
         return {name: theory.error for name, theory in self.known_theories.items()}
 
     def route(self, name: str) -> Route:
-        """Pressure by one way of measuring.
+        """Return the pressure by one route.
 
         Raises:
-            UserError: if the gas has no such route, with the reason if it has none at all.
+            UserError: if the gas has no such route; with the reason, if it has none at all.
         """
         if not self.routes:
             raise UserError(self.no_theory or "")
@@ -111,7 +119,7 @@ class Pressure(Result):
         return self.routes[names.index(name)]
 
     def check(self) -> CheckResult:
-        """Check that Z by the virial of the walls and of the pairs agrees with theory."""
+        """Check that Z by the virial of the walls and by that of the pairs agrees with theory."""
         virials = (route for route in self.routes if route.name.startswith((WALLS, PAIRS)))
         return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 
@@ -121,14 +129,14 @@ def pressure(
 ) -> Pressure:
     """Measure the pressure of a gas between two times of its log, and compare Z = PA/NT with theory.
 
-    The routes: momentum given to each wall per time and length, and by Clausius's virial theorem that given to all
-    walls and that passed on in collisions of discs. Theory is that of hard discs in this box, see `hard_disc_theories`;
-    collision rates and free paths come from the same events. Without events the sums of `log.pressure = true` give the
-    same from sample to sample, but no free paths.
+    The routes are the momentum given to each wall per time and length and, by Clausius' virial theorem, the momentum
+    given to all walls and that transferred in collisions of discs. Theory is that of hard discs in this box, see
+    `hard_disc_theories`. Collision rates and free paths come from the same events. Without events, the sums of
+    `log.pressure = true` give the same quantities from sample to sample, except the free paths.
 
-    Where the virial theorem needs further terms, or no temperature is known, there is no such Z: with gravity, wall
-    segments, a piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical
-    pressure of every wall, the momentum that it gets per time and length.
+    Z is not defined if the virial theorem has further terms or no temperature is known: with gravity, wall segments, a
+    piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical pressure on
+    every wall: the momentum that the wall receives per time and length.
 
     Raises:
         UserError: if no disc moves, or if there are no events or too few samples in the window.
@@ -172,7 +180,7 @@ def pressure(
 
 
 def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[str, ...]:
-    """Sentences on a dense gas, which changes slowly or is ordered."""
+    """Return caveats for a dense gas, which changes slowly or is ordered."""
     if gas.packing_fraction <= hard_discs.HIGHEST:
         return ()
     ordered = "Discs this dense order, and a run may keep one arrangement of them: the errors are those of that one."
@@ -183,7 +191,10 @@ def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[
 def _without_theory(
     log: Log, start: float | None, end: float | None, progress: Callable[[int, int], None] | None
 ) -> Pressure:
-    """Mechanical pressure of a gas without an equation of state; one that never settles is averaged from its start."""
+    """Return the mechanical pressure of a gas without an equation of state.
+
+    A gas that never becomes stationary is averaged from the start of the log.
+    """
     gas = log.discs
     if start is None and nonstationary_reason(log):
         start = log.start_time
@@ -197,51 +208,53 @@ def _without_theory(
         window, impacts = sampled(log, start, end, ())
         gauge = WallGauge(log, SampledWalls(log, impacts))
         energies = window.of(impacts.kinetic_flow)[:, :3:2].sum(axis=1)
-    found = mechanical(log, gauge, window)
+    walls = mechanical(log, gauge, window)
     causes = log.scene.lacking("uniform", "conserves_energy")
     return Pressure(
         window=window,
         number=len(gas),
-        area=found.area,
+        area=walls.area,
         temperature=float(energies.mean()) / (2 * len(gas)),
-        packing_fraction=gas.packing_fraction * gas.area / found.area,
+        packing_fraction=gas.packing_fraction * gas.area / walls.area,
         routes=(),
         known_theories={},
         collision_rates=(),
         free_paths=(),
         tensor={},
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
-        mechanical=found,
+        mechanical=walls,
         caveats=(*_ends(log), *_chambers(log, window)),
     )
 
 
 def _ends(log: Log) -> tuple[str, ...]:
-    """Sentence on faces of walls inside the box, where no events distinguish the ends of a wall from its faces."""
+    """Return a caveat on walls inside the box if no events distinguish the ends of a wall from its faces."""
     if log.has_events or not walls_inside(log.scene):
         return ()
     return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
 
 
 def _chambers(log: Log, window: Window) -> tuple[str, ...]:
-    """Sentence for each wall inside with gas on both its sides at sides of the box: a mean over chambers."""
-    found, chambers = [], Chambers(log, window.end)
+    """Return a caveat for each inner wall that divides a side of the box into parts of different chambers."""
+    sentences, chambers = [], Chambers(log, window.end)
     for wall in walls_inside(log.scene):
         places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]
         meets = [k for k, ends in enumerate(places) if log.box[axis_of(k)] * (k % 2) in ends]
         met = [SIDES[k] for k in meets if chambers.divided_gas(k, wall.start[1 - axis_of(k)])]
         absent = any(opens <= window.start < window.end <= closes for opens, closes in wall.absences)
         if met and not absent and not wall.radius:
-            found.append(
+            sentences.append(
                 f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over both its sides."
             )
     if chambers.area < log.discs.area:
-        found.append(f"Lengths of sides and A = {chambers.area:g} are those of the chambers with gas, until they open.")
-    return tuple(found)
+        sentences.append(
+            f"Lengths of sides and A = {chambers.area:g} are those of the chambers with gas, until they open."
+        )
+    return tuple(sentences)
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:
-    """Compressibility factor Z at the packing fraction of a gas, by the name of each theory that applies to it."""
+    """Return Z at the packing fraction of a gas by the name of each theory that applies to it."""
     phi = gas.packing_fraction
     theories = {IDEAL: Theory(1.0, 0.0, IDEAL)}
     if in_box.pairs:
@@ -257,9 +270,9 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
         z = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
         error = mixture_error(phi, hard_discs.likeness(discs.radius, discs.number))
         return theories | {MIXTURE: Theory(z, error * (z - 1), MIXTURE)}
-    others = {
+    equations = {
         "virial series to B10": float(hard_discs.virial_series(phi)),
         "Henderson 1975": float(hard_discs.henderson_compressibility_factor(phi)),
     }
-    endless = {name: Theory(z, math.hypot(z - series.value, series.error), name) for name, z in others.items()}
-    return theories | {series.source: series} | endless
+    infinite = {name: Theory(z, math.hypot(z - series.value, series.error), name) for name, z in equations.items()}
+    return theories | {series.source: series} | infinite

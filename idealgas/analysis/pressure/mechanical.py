@@ -1,4 +1,4 @@
-"""Mechanical pressure of every wall, for gases whose pressure follows from no equation of state."""
+"""Mechanical pressure on every wall, for gases without an equation of state."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,19 +14,22 @@ from idealgas.analysis.core.walls import Face, WallGauge, wall_name
 from idealgas.log import Log
 
 SEGMENTS = 8
-"""Number of segments of the window that are averaged one by one if the state of the gas changes all the time."""
+"""Number of segments of the window that are averaged separately if the state of the gas changes all the time."""
 
 SMOOTH = 1e-9
-"""Largest stress along a wall, relative to the pressure, that is rounding."""
+"""Largest stress along a wall, relative to the pressure, that is attributed to rounding."""
 
 
 @dataclass(frozen=True)
 class WallPressure:
-    """What discs press on one face of a wall, per length.
+    """Pressure of the discs on one face of a wall.
 
-    name: of the wall, and for a wall segment of the direction in which the face looks. pressure: force per length of
-    discs that touch the body of the wall, while it is there; its theory is what holds a piston from outside. stress:
-    force along the face per length, its direction the outward normal turned by 90°; None for a smooth face.
+    Attributes:
+        name: name of the wall; that of a wall segment is followed by the direction in which the face looks.
+        pressure: force per length of the discs that touch the face, while the wall is present; the theory of a piston
+            is the pressure that holds it from outside.
+        stress: force along the face per length, positive along the outward normal turned by 90°; None for a smooth
+            face.
     """
 
     name: Annotated[str, Key("wall")]
@@ -36,9 +39,12 @@ class WallPressure:
 
 @dataclass(frozen=True)
 class WallForce:
-    """Force of the discs on one wall or on all, with their ends, mass·length/time².
+    """Force of the discs on one wall, including its ends, or on all walls, mass·length/time².
 
-    name: of the wall. x, y: along each axis; the theory of the force on all walls is the weight of the discs.
+    Attributes:
+        name: name of the wall.
+        x: component along x; the theory of the force on all walls is the weight of the discs.
+        y: component along y, with the same theory.
     """
 
     name: Annotated[str, Key("wall")]
@@ -47,19 +53,26 @@ class WallForce:
 
     @property
     def large(self) -> dict[str, Estimate]:
-        """Components by their axis that are more than rounding, or that have a theory."""
+        """Components by axis that exceed rounding errors or have a theory."""
         both = {"x": self.x, "y": self.y}
-        size = {axis: abs(one.value) + one.standard_error for axis, one in both.items()}
-        return {axis: one for axis, one in both.items() if size[axis] > SMOOTH * max(size.values()) or one.theory}
+        size = {axis: abs(component.value) + component.standard_error for axis, component in both.items()}
+        return {
+            axis: component
+            for axis, component in both.items()
+            if size[axis] > SMOOTH * max(size.values()) or component.theory
+        }
 
 
 @dataclass(frozen=True)
 class Mechanical:
-    """Mechanical pressure of every face and force on every wall of a gas.
+    """Mechanical pressure on every face and force on every wall of a gas.
 
-    area: mean area that the gas has, length². walls: pressure on every face. forces: on every wall, then on all
-    together. unsteady: why the gas never comes to a stationary state, as part of a sentence; None if it may. Then
-    the numbers are means over a changing state.
+    Attributes:
+        area: mean area of the gas, length².
+        walls: pressure on every face.
+        forces: force on every wall, then on all walls together.
+        unsteady: why the gas never becomes stationary, as part of a sentence; None if it may. If it is set, the numbers
+            are means over a changing state.
     """
 
     area: Annotated[float, OMITTED]
@@ -69,29 +82,30 @@ class Mechanical:
 
 
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
-    """Mechanical pressure of all walls of a log in a window of time, from a gauge whose tallies are filled."""
-    some, why = slice(window.first, None), nonstationary_reason(log)
-    present = (face for face in gauge.faces(window.edges) if face.exposed[some].any())
+    """Return the mechanical pressure on all walls of a log in a window, from a gauge whose tallies are filled."""
+    used, why = slice(window.first, None), nonstationary_reason(log)
+    present = (face for face in gauge.faces(window.edges) if face.exposed[used].any())
     faces = [(face, _external_pressure(gauge, face, window)) for face in present]
     balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(
-        area=float(gauge.area(window.edges)[some].mean()),
-        walls=tuple(_pressure(face, some, balances, holding) for face, holding in faces),
+        area=float(gauge.area(window.edges)[used].mean()),
+        walls=tuple(_pressure(face, used, balances, holding) for face, holding in faces),
         forces=_forces(log, gauge, window, balances),
         unsteady=why or None,
     )
 
 
 def _external_pressure(gauge: WallGauge, face: Face, window: Window) -> float | None:
-    """Pressure that holds a piston from outside; None for other walls."""
+    """Return the pressure that holds a piston from outside; None for other walls."""
     held = (piston.balance(window.start, window.end) for piston in gauge.moving if piston.wall == face.wall)
     return next(held, None)
 
 
 def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[Face, float | None]]) -> np.ndarray:
-    """Forces less what balances them (B, K), each the rate at which the momentum of discs or of a piston changes.
+    """Return the forces minus what balances them, (B, K): rates of change of the momentum of the discs or a piston.
 
-    All walls together carry the weight of the discs, where only they stop their motion; a piston is held from outside.
+    If nothing but the walls stops the motion of the discs, all walls together carry their weight. A piston is held from
+    outside.
     """
     forces = window.of(gauge.impulses.given).sum(axis=1) - _weight(log)
     held = [
@@ -103,17 +117,17 @@ def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[
 
 
 def _carried(log: Log) -> np.ndarray:
-    """Whether walls alone balance the weight of the discs, along x and y: (2,) bool; a heat bath holds them too."""
+    """Return whether walls alone balance the weight along x and y, (2,) bool; a heat bath would carry a part of it."""
     return ~conserved_momentum(log) & (log.scene.properties.bath is None)
 
 
 def _weight(log: Log) -> np.ndarray:
-    """Weight (2,) of all discs."""
+    """Return the weight of all discs, (2,)."""
     return np.asarray(log.discs.mass.sum() * np.array(log.gravity))
 
 
-def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: float | None) -> WallPressure:
-    push, along, exposed = face.push[some], face.along[some], face.exposed[some]
+def _pressure(face: Face, used: slice, balances: np.ndarray | None, holding: float | None) -> WallPressure:
+    push, along, exposed = face.push[used], face.along[used], face.exposed[used]
     if not push.any():  # the error of a wall that was never hit is unknown
         return WallPressure(face.name, Estimate(0.0, np.nan, 0.0, holding), None)
     rough = np.abs(along).sum() > SMOOTH * push.sum()
@@ -125,10 +139,16 @@ def _pressure(face: Face, some: slice, balances: np.ndarray | None, holding: flo
 def _average(
     given: np.ndarray, exposed: np.ndarray, balances: np.ndarray | None, theory: float | None = None
 ) -> Estimate:
-    """Mean of momentum given per exposed length; of a changing state over segments, as its change is not an error.
+    """Return the mean momentum given per exposed length; that of a changing state is averaged over segments.
 
-    theory: what balances the force. balances: see `_balances`; None for a changing state. The part of a force that goes
-    with them fluctuates much, but its mean is only off by the change of what is stored.
+    The change of the state is thereby not counted as a fluctuation.
+
+    Args:
+        given: momentum in each block, (B,).
+        exposed: length times time for which the wall was exposed in each block, (B,).
+        balances: see `_balances`; None for a changing state. The part of a force that follows the balances fluctuates
+            strongly, but its mean is off only by the change of the stored momentum.
+        theory: what balances the force.
     """
     there = exposed > 0
     given, exposed = given[there], exposed[there]
@@ -145,7 +165,7 @@ def _average(
 
 
 def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | None) -> tuple[WallForce, ...]:
-    """Force on every wall that was hit, and on all walls, which carry the weight of a gas in a stationary state."""
+    """Return the force on every wall that was hit, and on all walls, which carry the weight of a steady gas."""
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]

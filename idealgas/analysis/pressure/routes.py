@@ -1,6 +1,7 @@
-"""Pressure and Z of a uniform gas by each way of measuring.
+"""Pressure and Z of a uniform gas by each route.
 
-Momentum flows through the bulk of the gas to its walls: the bulk says how well the force on a wall is known.
+Momentum flows through the bulk of the gas to its walls, so that the bulk determines how well the force on a wall is
+known.
 """
 
 import math
@@ -23,16 +24,20 @@ from idealgas.state import Gas
 WALLS, PAIRS = "walls, virial", "pairs, virial"
 """Beginnings of the names of the routes that `Pressure.check` compares with theory.
 
-Where only one axis is periodic, the pressures along both differ, and names of the virials along one end in its name;
-PAIRS alone is the mean of both.
+If only one axis is periodic, the pressures along the two axes differ, and the names of the virials along one axis end
+with it; PAIRS alone is the mean over both axes.
 """
 
 
 @dataclass(frozen=True)
 class Route:
-    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one way of measuring.
+    """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one route.
 
-    source: which theory both have; None without one.
+    Attributes:
+        name: name of the route.
+        pressure: pressure.
+        compressibility_factor: Z.
+        source: name of the theory of both; None without one.
     """
 
     name: Annotated[str, Key("route")]
@@ -42,10 +47,12 @@ class Route:
 
 
 class Bulk(NamedTuple):
-    """What the walls get by the bulk of a gas, in B blocks of time; None where it is not known.
+    """Momentum that reaches the walls through the bulk of a gas, in B blocks of time; None if unknown.
 
-    sides: (4, B), force on each side of the box, mass·length/time². virial: (B,), of all walls by Clausius's theorem,
-    the kinetic energy and Σ r·Δp of all other events, energy.
+    Attributes:
+        sides: (4, B), force on each side of the box, mass·length/time².
+        virial: (B,), virial of all walls by Clausius' theorem: the kinetic energy and Σ r·Δp of all other events,
+            energy.
     """
 
     sides: np.ndarray | None
@@ -53,7 +60,7 @@ class Bulk(NamedTuple):
 
 
 def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moments: Moments, impacts: Impacts) -> Bulk:
-    """What discs carry to the walls, and what collisions and the thermostat pass on."""
+    """Return the momentum that discs carry to the walls and that collisions and the thermostat transfer."""
     flights = window.of(moments.flights)[:, :, 1:3]
     first = np.unique(gas.species, return_index=True)[1]
     carried = (flights / _reach(gas)[first]).sum(axis=1)
@@ -64,9 +71,10 @@ def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moment
 def bulk_in_samples(
     gas: Gas, periodic: tuple[bool, bool], window: Window, impacts: SampledImpacts, has_thermostat: bool
 ) -> Bulk:
-    """The same from sums in samples, with the mean room of discs of several radii.
+    """Return the same from the sums in samples, with one mean free length for discs of several radii.
 
-    Unknown for discs in a heat bath, and the force for walls that drag: it would take where each disc was then.
+    It is unknown for discs in a heat bath. The force is also unknown beside walls that drag discs along. Both would
+    require the position of each disc at that time.
     """
     if has_thermostat:
         return Bulk(None, None)
@@ -86,7 +94,7 @@ def routes_of(
     impacts: Impacts | SampledImpacts,
     tensor: dict[str, Estimate],
 ) -> tuple[Route, ...]:
-    """Pressure by the momentum given to each wall, by the virial of all walls and by that of the pairs of discs."""
+    """Return the pressure by the momentum given to each wall, by the virial of all walls and by that of the pairs."""
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
@@ -120,11 +128,19 @@ def routes_of(
 def _wall(
     name: str, flux: np.ndarray, bulk: np.ndarray, unit: float, stored: float, ideal: float, theory: Theory | None
 ) -> Route:
-    """Pressure by a momentum flux to walls (n,), in units of one of the `ideal` pressure, beside that of the bulk.
+    """Return the pressure by a momentum flux to walls, with the error that follows from the flux through the bulk.
 
-    stored: variance of the momentum that the gas stores on the way. Momenta of equilibrium are independent of each
-    other and of places: it is the sum of m T over discs, times the mean square of the share of it that has reached a
-    wall, which grows evenly from 0 at one wall to 1 at the other.
+    Args:
+        name: name of the route.
+        flux: momentum flux in each block, (n,).
+        bulk: momentum flux through the bulk in each block, (n,).
+        unit: flux at a pressure of one `ideal`.
+        stored: variance of the momentum that the gas stores on the way. In equilibrium the momenta of discs are
+            independent of each other and of the positions. The variance is then the sum of m T over the discs, times
+            the mean square of the share of the momentum that has reached a wall, which grows linearly from 0 at one
+            wall to 1 at the other.
+        ideal: pressure of the ideal gas, energy/length².
+        theory: theory of Z.
     """
     if not flux.any():  # the error of a wall that was never hit is unknown
         z = Estimate(0.0, math.nan, 0.0, *((theory.value, theory.error) if theory else ()))
@@ -134,12 +150,12 @@ def _wall(
 
 
 def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> Route:
-    """Route with Z and with the pressure, Z times that of the ideal gas."""
+    """Return the route with Z and with the pressure, which is Z times that of the ideal gas."""
     return Route(name, z.times(ideal), z, theory.source if theory else None)
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
-    """Weighted mean of theories with a common error; None if one of them has no value."""
+    """Return the weighted mean of theories whose errors are shared; None if one of them has no value."""
     known = [(theory, weight) for theory, weight in parts if theory]
     if not known or len(known) < len(parts):
         return None
@@ -148,15 +164,15 @@ def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
 
 
 def _reach(gas: Gas) -> np.ndarray:
-    """Room (N, 2) along x and y that the centre of each disc has, length."""
+    """Return the length that the centre of each disc can move along x and y, (N, 2)."""
     return np.asarray(np.array(gas.box) - 2 * gas.radius[:, None])
 
 
 def _across(flow: np.ndarray, periodic: tuple[bool, bool]) -> np.ndarray:
-    """Sum (B,) of a flow along x and y, (B, 2), over the axes that have walls."""
+    """Return the sum (B,) of a flow along x and y, (B, 2), over the axes that have walls."""
     return np.asarray(flow[:, ~np.array(periodic)].sum(axis=1))
 
 
 def _on_sides(along: np.ndarray) -> np.ndarray:
-    """Force (4, B) on each side of the box from that along x and y, (B, 2)."""
+    """Return the force on each side of the box, (4, B), from that along x and y, (B, 2)."""
     return np.array([along[:, axis_of(k)] for k in range(len(SIDES))])

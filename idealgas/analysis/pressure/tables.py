@@ -21,7 +21,7 @@ from idealgas.analysis.pressure.mechanical import Mechanical, WallPressure
 from idealgas.analysis.pressure.routes import PAIRS
 
 CLEAR = 5.0
-"""Difference of two pressures, in units of both errors together, from which on the headline has both."""
+"""Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
@@ -30,12 +30,12 @@ WALLS_AND_VIRIAL = (
 
 
 def pressure_tables(result: Pressure | EquationOfState) -> list[Table]:
-    """Tables of routes, theories and collisions of one log, or of states and virial coefficients of several logs."""
+    """Return the tables of routes, theories and collisions of one log, or of states and virial coefficients."""
     return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
 
 
-def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
-    """Tables of the mechanical pressure of every wall, and of the forces on walls."""
+def _of_walls(result: Pressure, mechanical: Mechanical) -> list[Table]:
+    """Return the tables of the mechanical pressure on every wall, and of the forces on the walls."""
     ideal = result.number * result.temperature / result.area
     notes = [
         describe(result.window),
@@ -43,12 +43,12 @@ def _of_walls(result: Pressure, found: Mechanical) -> list[Table]:
         f"energy per disc {result.temperature:.6g}, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
         f"No theory here: {result.no_theory}.",
     ]
-    if found.unsteady:
-        notes.append(f"Never stationary, as {found.unsteady}: means over the window; `evolution` shows P(t).")
-    forces = [(f"{force.name}, {axis}", value) for force in found.forces for axis, value in force.large.items()]
-    along = [(wall.name, wall.stress) for wall in found.walls if wall.stress]
+    if mechanical.unsteady:
+        notes.append(f"Never stationary, as {mechanical.unsteady}: means over the window; `evolution` shows P(t).")
+    forces = [(f"{force.name}, {axis}", value) for force in mechanical.forces for axis, value in force.large.items()]
+    along = [(wall.name, wall.stress) for wall in mechanical.walls if wall.stress]
     return [
-        estimates("P on each wall (energy/length²)", [(wall.name, wall.pressure) for wall in found.walls], notes),
+        estimates("P on each wall (energy/length²)", [(wall.name, wall.pressure) for wall in mechanical.walls], notes),
         estimates("Force of the discs (energy/length)", forces),
         *([estimates("Stress along walls (energy/length²)", along)] if along else []),
     ]
@@ -65,8 +65,8 @@ def _of_log(result: Pressure) -> list[Table]:
         result.routes[-1].compressibility_factor.theory,
     )  # of the ideal gas, and of this number of discs in this box
     theories = [
-        (name if one.value in exact else f"{name}, N → ∞", *with_error(one.value, one.error))
-        for name, one in result.known_theories.items()
+        (name if theory.value in exact else f"{name}, N → ∞", *with_error(theory.value, theory.error))
+        for name, theory in result.known_theories.items()
     ]
     missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
     return [
@@ -123,18 +123,21 @@ def _of_states(result: EquationOfState) -> list[Table]:
 
 
 def _unlike(walls: Sequence[WallPressure]) -> list[WallPressure]:
-    """Return the first wall, and each further one whose pressure clearly differs from those before it."""
+    """Return the first wall, and each further wall whose pressure clearly differs from those before it."""
     unlike: list[WallPressure] = []
     for wall in walls:
         p = wall.pressure
-        others = [other.pressure for other in unlike]
-        if all(abs(p.value - q.value) > CLEAR * math.hypot(p.standard_error, q.standard_error) for q in others):
+        before = [previous.pressure for previous in unlike]
+        if all(abs(p.value - q.value) > CLEAR * math.hypot(p.standard_error, q.standard_error) for q in before):
             unlike.append(wall)
     return unlike
 
 
 def pressure_summary(result: Pressure | EquationOfState) -> str:
-    """Z beside the ideal gas and hard discs; of walls the pressure, where one presses from outside its own."""
+    """Return Z beside the ideal gas and hard discs, or the pressure on the walls of a gas without an equation of state.
+
+    If the external pressure on a wall is known, only such walls are named.
+    """
     if isinstance(result, EquationOfState):
         return _summary_of_states(result)
     ideal = result.number * result.temperature / result.area
@@ -142,9 +145,9 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
         walls = result.mechanical.walls
         shown = [wall for wall in walls if wall.pressure.theory is not None] or _unlike(walls)
         beside = f"N T/A of an ideal gas is {ideal:.4g}; "
-        said = agreement([(wall.name, wall.pressure) for wall in shown], "the external pressure", result.no_theory)
-        found = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
-        return f"P = {found or 'unknown without walls'}; {beside}{said}."
+        verdict = agreement([(wall.name, wall.pressure) for wall in shown], "the external pressure", result.no_theory)
+        pressures = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
+        return f"P = {pressures or 'unknown without walls'}; {beside}{verdict}."
     (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
     more = z.value - 1
     beside = f"{abs(100 * more):.2g} % {'above' if more > 0 else 'below'} the ideal gas"
@@ -157,7 +160,7 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
 def _summary_of_states(result: EquationOfState) -> str:
     rows = [(f"φ = {state.packing_fraction:.5g}", state.infinite) for state in result.states]
     name, z = rows[-1]
-    found = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
+    sentence = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
     if result.b2 is not None:
-        found += f" B2 = {format_estimate(result.b2)} areas of a disc; {agreement([('B2', result.b2)])}."
-    return found
+        sentence += f" B2 = {format_estimate(result.b2)} areas of a disc; {agreement([('B2', result.b2)])}."
+    return sentence
