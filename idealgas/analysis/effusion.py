@@ -1,6 +1,7 @@
 """Measure the flow through a gate that opens, and compare it with n⟨v⟩/π.
 
-DIR is the folder of a sweep with the analysis "effusion"; runs that differ only in their seeds are averaged.
+Of several logs, or of the folder of a sweep with the analysis "effusion", runs that differ only in their seeds are
+averaged.
 """
 
 import math
@@ -31,39 +32,39 @@ if TYPE_CHECKING:
 INSTANTS = 256
 
 LAW_OFF, LAW_OFF_PER_PATH = 0.0125, 0.245
-"""Error of n⟨v⟩/π for a slit of width w at mean free path λ, relative to it: LAW_OFF + LAW_OFF_PER_PATH w/λ.
+"""Relative error of n⟨v⟩/π for a slit of width w at mean free path λ: LAW_OFF + LAW_OFF_PER_PATH w/λ.
 
-A straight line through what was measured: 2.0, 3.9 and 6.6 % more at w/λ = 0.03, 0.11 and 0.22.
+A straight line through measured fluxes, which are larger by 2.0, 3.9 and 6.6 % at w/λ = 0.03, 0.11 and 0.22.
 """
 
 CROWDING = 3.2
-"""Error of n⟨v⟩/π at a packing fraction φ of the chamber, relative to it and to φ: discs crowd in a slit.
+"""Relative error of n⟨v⟩/π over the packing fraction φ of the chamber, as discs crowd in a slit.
 
-The density in a narrow slit is n exp(3.2 φ) to lowest order, as walls hide a part of the room that a disc takes from
-others. Twelve runs at φ = 0.1 had 14 % more, twelve at 0.3 had 120 % more.
+To lowest order the density in a narrow slit is n exp(3.2 φ), as the walls cover a part of the area that a disc excludes
+for others. The flux was larger by 14 % in twelve runs at φ = 0.1, and by 120 % in twelve runs at φ = 0.3.
 """
 
 DENSEST = 0.03
-"""Largest packing fraction of the chamber for that law."""
+"""Largest packing fraction of the chamber for which n⟨v⟩/π is given."""
 
 TINY = 1e-12
 
 
 @dataclass(frozen=True)
 class Effusion(Result):
-    """Flow of discs between two chambers through a gate, from its opening on.
+    """Flow of discs between two chambers through a gate after its opening.
 
     Attributes:
-        name: of the run.
+        name: name of the run.
         density: number density if all discs were in the chamber that has more discs at first, 1/length².
-        temperature: energy.
+        temperature: temperature, energy.
         time: (INSTANTS,), times.
         beyond: (INSTANTS,), number of discs in the other chamber.
-        expected: (INSTANTS,), this number by theory; None where `speed` has no theory.
-        speed: discs per time and open length, divided by the difference of the densities, length/time; each density is
-            multiplied by the mean speed in its chamber over that of the gas. Its theory is ⟨v⟩/π, None for a slit wider
-            than a mean free path and for a chamber denser than DENSEST; its error is that of a Poisson number of
-            passages in both directions.
+        expected: (INSTANTS,), this number by theory; None if `speed` has no theory.
+        speed: number of discs per time and open length, divided by the difference of the densities, length/time. Each
+            density is multiplied by the mean speed in its chamber over that of the gas. Its theory is ⟨v⟩/π, or None
+            for a slit wider than a mean free path and for a chamber denser than DENSEST. Its error is that of a Poisson
+            number of passages in both directions.
     """
 
     name: Annotated[str, OMITTED]
@@ -102,22 +103,22 @@ class EffusionAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Effusion:
-        """Measure how fast discs pass through a slit that opens between two chambers, and compare with n⟨v⟩/π.
+        """Measure how fast discs pass through a slit that opens between two chambers, and compare it with n⟨v⟩/π.
 
-        n⟨v⟩/π discs per time and open length of the slit leave a gas of number density n and mean speed ⟨v⟩: this is
-        the flux of kinetic theory through a slit much narrower than the mean free path. Through a wider slit more discs
-        pass; for one wider than a mean free path, and from a dense chamber, no theory is given.
+        From a gas of number density n and mean speed ⟨v⟩, n⟨v⟩/π discs leave per time and open length of the slit. This
+        is the flux of kinetic theory through a slit much narrower than the mean free path. More discs pass through a
+        wider slit. Theory is not available if the slit is wider than a mean free path, or for a dense chamber.
 
         Raises:
-            UserError: unless the scene has one gate along an axis, lower than the box, and one species, the log has
-                events, and the chambers are not in balance.
+            UserError: unless the log has events and its scene one species and one gate along an axis that is lower than
+                the box, or if the chambers are in balance.
         """
         discs, equilibrium = composition(log.discs), ensemble(log)
         gate = _slit(log)
         across, place = gate.across, gate.place
         radius, number, slit = discs.radius[0], len(log.discs), gate.width - 2 * discs.radius[0]
         time = _instants(log, gate, start, end)
-        beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: sum of the speeds, below and above
+        beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: sums of the speeds below and above the gate
         for k, state in enumerate(frames(log, time, progress)):
             side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
             beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
@@ -138,17 +139,19 @@ class EffusionAnalysis(Analysis):
         why_not = _no_law(paths, phi)
         error = math.sqrt((speed if why_not else expected) * slit * both) / (slit * drive)
         theory_error = expected * (LAW_OFF + LAW_OFF_PER_PATH * paths + CROWDING * phi)
-        found = Estimate(speed, error, math.inf, expected, theory_error)
+        flux_over_density = Estimate(speed, error, math.inf, expected, theory_error)
         law = None
         if why_not:
-            found = replace(found, theory=None, theory_error=0.0)
+            flux_over_density = replace(flux_over_density, theory=None, theory_error=0.0)
         else:
             rate = expected * slit
             law = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
         if gate.others:
             why_not += (f"The law is that of empty chambers, and in these there is {', '.join(gate.others)}.",)
         density = number / inner
-        return Effusion(str(log.path), density, equilibrium.temperature, time, beyond, law, found, caveats=why_not)
+        return Effusion(
+            str(log.path), density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=why_not
+        )
 
     @staticmethod
     def combine(results: Sequence[Effusion]) -> Effusions:
@@ -165,31 +168,31 @@ class EffusionAnalysis(Analysis):
         return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
 
     @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Effusion:
-        """Result of one point of a sweep, named by `label`, the values of its axes."""
-        time, beyond = np.array(found["time"]), np.array(found["beyond"])
-        law = None if found["expected"] is None else np.array(found["expected"])
-        speed = Estimate.from_dict(found["speed"])
-        return Effusion(label, found["density"], found["temperature"], time, beyond, law, speed)
+    def restore(stored: dict[str, Any], label: str) -> Effusion:
+        """Return the result of one point of a sweep, which is named by the values of its axes, `label`."""
+        time, beyond = np.array(stored["time"]), np.array(stored["beyond"])
+        law = None if stored["expected"] is None else np.array(stored["expected"])
+        speed = Estimate.from_dict(stored["speed"])
+        return Effusion(label, stored["density"], stored["temperature"], time, beyond, law, speed)
 
     @staticmethod
-    def tables(found: Effusions) -> list[Table]:
-        """Table of the flux over density of each gas, length/time."""
-        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", found.together.items())]
+    def tables(result: Effusions) -> list[Table]:
+        """Return the table of the flux over density of each gas, length/time."""
+        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", result.together.items())]
 
     @staticmethod
-    def summary(found: Effusions) -> str:
-        """Flux over density of the first gas, and whether those of all gases agree with kinetic theory."""
-        first, *_ = found.together.values()
-        said = agreement(found.together.items(), "⟨v⟩/π of kinetic theory")
-        return f"{format_estimate(first)} n discs pass per time and length of the slit at the density n; {said}."
+    def summary(result: Effusions) -> str:
+        """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
+        first, *_ = result.together.values()
+        verdict = agreement(result.together.items(), "⟨v⟩/π of kinetic theory")
+        return f"{format_estimate(first)} n discs pass per time and length of the slit at the density n; {verdict}."
 
     @staticmethod
-    def figure(found: Effusions) -> "Figure":
-        """Picture of the fraction of discs beyond the slit against time, and of the flux of each gas beside n⟨v⟩/π."""
+    def figure(result: Effusions) -> "Figure":
+        """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
         from idealgas.analysis.core.style import GREY, curve_style, panels
 
-        groups, together = found.groups, found.together
+        groups, together = result.groups, result.together
         figure, (course, flux) = panels(2)
         for k, (name, runs) in enumerate(groups.items()):
             colour, line, marker = curve_style(k)
@@ -206,7 +209,9 @@ class EffusionAnalysis(Analysis):
                 flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3, label=label)
         highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
         ends = np.array([0.0, 1.1 * highest])
-        doubt = max((one.theory_error / one.theory for one in together.values() if one.theory), default=0.0)
+        doubt = max(
+            (estimate.theory_error / estimate.theory for estimate in together.values() if estimate.theory), default=0.0
+        )
         flux.theory(ends, ends, doubt * ends, "n⟨v⟩/π", GREY)
         course.set(xlabel="t (time)", ylabel="discs beyond the slit (no unit)")
         flux.set(xlabel="n⟨v⟩/π (1/(length time))", ylabel="flux (1/(length time))")
@@ -216,7 +221,10 @@ class EffusionAnalysis(Analysis):
 
 
 def _no_law(paths: float, phi: float) -> tuple[str, ...]:
-    """Why ⟨v⟩/π does not hold for a slit so many mean free paths wide, in a chamber of packing fraction phi."""
+    """Return why ⟨v⟩/π does not hold, for the width of a slit in mean free paths and a packing fraction phi.
+
+    The result is empty if it holds.
+    """
     if paths > 1:
         return (
             f"The slit is {paths:.2g} mean free paths wide: discs stream out together, not one by one, and ⟨v⟩/π does "
@@ -228,14 +236,15 @@ def _no_law(paths: float, phi: float) -> tuple[str, ...]:
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
-    """Share (INSTANTS,) of all discs beyond the slit by theory; leave, come: rates at equal temperature, 1/time.
+    """Return the fraction of all discs beyond the slit by theory, (INSTANTS,).
 
     Discs that pass carry the mean energy 3T/2 instead of T, so that one chamber becomes colder and the other hotter.
+    leave and come are the rates in the two directions at equal temperature, 1/time.
     """
-    from scipy.integrate import solve_ivp  # which takes longer to import than most analyses to measure
+    from scipy.integrate import solve_ivp  # its import takes longer than most measurements
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Rates of the shares of discs and energy: a side with n, e loses √(ne) of discs, 3/2 √(e³/n) of energy."""
+        """Return the rates of the shares: a side with shares n and e loses √(ne) discs and 3/2 √(e³/n) energy."""
         (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
         return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])
@@ -249,8 +258,8 @@ def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) 
 class Slit(NamedTuple):
     """Slit between two chambers: a gate in a wall from side to side.
 
-    opens, closes: times. across: axis across it (0 or 1). place: its coordinate on this axis, length. width: length.
-    others: names of the walls in the chambers besides the one with the slit.
+    opens, closes: times. across: axis normal to the wall (0 or 1). place: coordinate of the wall on this axis, length.
+    width: width of the slit, length. others: names of the walls in the chambers besides the one with the slit.
     """
 
     opens: float
@@ -262,7 +271,7 @@ class Slit(NamedTuple):
 
 
 def _slit(log: Log) -> Slit:
-    """The slit of a log; UserError without one gate along an axis, in a wall from side to side, and one species."""
+    """Return the slit of a log; raise UserError unless it has events, one species, and one gate in a straight wall."""
     inside = walls_inside(log.scene)
     gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
@@ -279,7 +288,7 @@ def _slit(log: Log) -> Slit:
 
 
 def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
-    """Why a gate is not a slit in a wall, as part of a sentence; empty if it is one."""
+    """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is one."""
     if gate.start[across] != gate.end[across] or not gate.is_straight:
         return "the gate is not along an axis"
     (low, high), radius, size = _reach(gate, across), float(log.discs.radius[0]), log.box[1 - across]
@@ -303,7 +312,7 @@ def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], acro
 
 
 def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
-    """Walls in the line of a gate while it is open; none is off by half a radius, so that no disc passes between."""
+    """Return the walls in line with a gate while it is open, displaced by so little that no disc passes between."""
     opens, closes = gate.absences[0][0], min(gate.absences[0][1], log.end_time)
     place, near = gate.start[across], log.discs.radius[0] / 2
     return [
@@ -317,13 +326,13 @@ def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
 
 
 def _reach(wall: NumberedWall, across: int) -> tuple[float, float]:
-    """From where to where a wall is along the other axis, length."""
+    """Return the range of coordinates of a wall along the other axis, length."""
     ends = float(wall.start[1 - across]), float(wall.end[1 - across])
     return min(ends), max(ends)
 
 
 def _instants(log: Log, gate: Slit, start: float | None, end: float | None) -> np.ndarray:
-    """Instants (INSTANTS,) between two times at which the gate is open; UserError if there are none."""
+    """Return the instants (INSTANTS,) at which the open gate is sampled; raise UserError if there are none."""
     if gate.opens >= log.end_time:
         raise UserError(
             f"{log.path}: no effusion: the gate opens at t = {gate.opens:g}, the log ends at {log.end_time:g}"

@@ -1,6 +1,7 @@
 """Follow Boltzmann's H and the entropy of the positions in time, without the bias of finite numbers.
 
-H = ∫ f ln f d²v of each species, from distances between velocities; the entropy of positions, from discs in cells.
+H = ∫ f ln f d²v of each species is estimated from distances between velocities, and the entropy of the positions from
+numbers of discs in cells.
 """
 
 import math
@@ -30,28 +31,33 @@ if TYPE_CHECKING:
 
 INSTANTS = 129
 MOST_DISCS = 2**13
-"""Largest number of discs of a species whose velocities are compared; of more, evenly chosen ones."""
+"""Largest number of discs of a species whose velocities are compared; a larger species is thinned evenly."""
 
 NEIGHBOUR = 4
-"""Which nearest velocity the distance is to: a smaller one scatters more, a larger one blurs more."""
+"""Rank of the neighbour to which the distance is measured; a smaller one scatters more, a larger one blurs more."""
 
 FEWEST_DISCS = 2 * NEIGHBOUR
-"""Least number of discs of a species."""
+"""Smallest number of discs of a species."""
 
 DISCS_PER_CELL = 16
-"""Mean number of discs of a species in a cell; the next term of the bias is then below 1 % of the one removed."""
+"""Mean number of discs of a species in a cell; the next term of the bias is then below 1 % of the removed one."""
 
 NODES = 64
-"""Nodes of the quadratures of the bias, along each of two dimensions."""
+"""Number of nodes of the quadratures of the bias, along each of two dimensions."""
 
 
 @dataclass(frozen=True)
 class SpeciesEntropy:
     """Entropy of the discs of one species, per disc (no unit, k_B = 1).
 
-    species: name. h: (F,), Boltzmann's H, ⟨ln f⟩ of its velocities. positions: (F,), entropy of its positions in cells
-    of equal area, 0 for an even density and -ln 2 for one half of the box; None without positions. cells: numbers along
-    x and y. mean_h, mean_positions: means from the time on at which both are steady; None if they never are.
+    Attributes:
+        species: name of the species.
+        h: (F,), Boltzmann's H, ⟨ln f⟩ of the velocities.
+        positions: (F,), entropy of the positions in cells of equal area: 0 for a uniform density and -ln 2 for one half
+            of the box; None without positions.
+        cells: numbers of cells along x and y.
+        mean_h: mean of H once both series are steady; None if they never are.
+        mean_positions: mean entropy of the positions from the same time on; None if the series never are steady.
     """
 
     species: str
@@ -66,7 +72,9 @@ class SpeciesEntropy:
 class Entropy(Result):
     """Entropy of a gas in time.
 
-    time: (F,), instants. species: entropy of each species of at least FEWEST_DISCS discs.
+    Attributes:
+        time: (F,), instants.
+        species: entropy of each species with at least FEWEST_DISCS discs.
     """
 
     time: np.ndarray
@@ -88,54 +96,56 @@ class EntropyAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Entropy:
-        """Follow Boltzmann's H of the velocities and the entropy of the positions, per disc; needs no equilibrium.
+        """Follow Boltzmann's H of the velocities and the entropy of the positions, per disc.
+
+        The gas need not be in equilibrium.
 
         Raises:
-            UserError: if the log does not cover the times, has no events, or no species of at least 8 discs.
+            UserError: if the log does not cover the times, has no events, or has no species of at least 8 discs.
         """
         equilibrium = known_ensemble(log)
-        species = [one for one in _species(log, equilibrium) if len(one.members) >= FEWEST_DISCS]
+        species = [kind for kind in _species(log, equilibrium) if len(kind.members) >= FEWEST_DISCS]
         if not species or not log.has_events:
             needs = f"events and a species of at least {FEWEST_DISCS} discs"
             raise NotApplicableError(f"{log.path}: entropy requires {needs}")
         time = np.linspace(*span(log, start, end), INSTANTS)
         h, positions = np.empty((2, len(species), len(time)))
         for k, state in enumerate(frames(log, time, progress)):
-            for s, one in enumerate(species):
-                h[s, k] = one.bias - neighbour_entropy(state.velocity[one.compared])
-                positions[s, k] = one.spread(state.position) if log.has_positions else 0.0
+            for s, kind in enumerate(species):
+                h[s, k] = kind.bias - neighbour_entropy(state.velocity[kind.compared])
+                positions[s, k] = kind.spread(state.position) if log.has_positions else 0.0
         first = detect_equilibration(map(Observable, (*h, *positions))) if np.isfinite(h).all() else None
         steady = first is not None and nonstationary_reason(log) == ""
-        found = tuple(
+        entropies = tuple(
             SpeciesEntropy(
-                one.name,
+                kind.name,
                 h[s],
                 positions[s] if log.has_positions else None,
-                one.grid,
-                mean(h[s][first:], one.expected_h) if steady else None,
-                mean(positions[s][first:], one.expected_spread) if steady and log.has_positions else None,
+                kind.grid,
+                mean(h[s][first:], kind.expected_h) if steady else None,
+                mean(positions[s][first:], kind.expected_spread) if steady and log.has_positions else None,
             )
-            for s, one in enumerate(species)
+            for s, kind in enumerate(species)
         )
-        return Entropy(time, found)
+        return Entropy(time, entropies)
 
     @staticmethod
     def tables(result: Entropy) -> list[Table]:
-        """Tables of the means in equilibrium and of the series."""
+        """Return the tables of the means in equilibrium and of the series."""
         rows = [
-            (f"{one.species}: {name}", found)
-            for one in result.species
-            for name, found in (("H", one.mean_h), ("positions", one.mean_positions))
-            if found is not None
+            (f"{entropy.species}: {name}", average)
+            for entropy in result.species
+            for name, average in (("H", entropy.mean_h), ("positions", entropy.mean_positions))
+            if average is not None
         ]
         notes = [
-            f"{one.species}: {one.cells[0]} × {one.cells[1]} cells"
-            for one in result.species
-            if one.positions is not None
+            f"{entropy.species}: {entropy.cells[0]} × {entropy.cells[1]} cells"
+            for entropy in result.species
+            if entropy.positions is not None
         ]
         columns: dict[str, np.ndarray | None] = {"t": result.time}
-        for one in result.species:
-            columns |= {f"H of {one.species}": one.h, f"positions of {one.species}": one.positions}
+        for entropy in result.species:
+            columns |= {f"H of {entropy.species}": entropy.h, f"positions of {entropy.species}": entropy.positions}
         return [
             estimates("Per disc, once steady (no unit, k_B = 1)", rows, notes if rows else [*notes, "never steady"]),
             time_series("Boltzmann's H and entropy of positions per disc", columns),
@@ -143,29 +153,31 @@ class EntropyAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Entropy) -> str:
-        """Boltzmann's H at the start and in the end, and whether it is that of the Maxwell–Boltzmann distribution."""
+        """Return H at the start and at the end, and whether it agrees with the Maxwell–Boltzmann distribution."""
         first, rows = result.species[0], [(s.species, s.mean_h) for s in result.species if s.mean_h is not None]
         change = f"H per disc of {first.species} goes from {first.h[0]:.4g} to {first.h[-1]:.4g}"
         if not rows:
             return f"{change} and is not steady."
-        said = agreement(rows, "the Maxwell–Boltzmann distribution")
-        return f"{change}; steady at {format_estimate(rows[0][1])}; {said}."
+        verdict = agreement(rows, "the Maxwell–Boltzmann distribution")
+        return f"{change}; steady at {format_estimate(rows[0][1])}; {verdict}."
 
     @staticmethod
     def figure(result: Entropy) -> "Figure":
-        """Picture of H and of the entropy of the positions against time, with their values in equilibrium dashed."""
+        """Draw H and the entropy of the positions against time, with their equilibrium values dashed."""
         from idealgas.analysis.core.style import curve_style, panels
 
-        has_positions = any(one.positions is not None for one in result.species)
+        has_positions = any(entropy.positions is not None for entropy in result.species)
         figure, axes = panels(1 + has_positions)
-        for k, one in enumerate(result.species):
+        for k, entropy in enumerate(result.species):
             colour, line, _ = curve_style(k)
-            for ax, values, found in zip(axes, (one.h, one.positions), (one.mean_h, one.mean_positions), strict=False):
+            for ax, values, average in zip(
+                axes, (entropy.h, entropy.positions), (entropy.mean_h, entropy.mean_positions), strict=False
+            ):
                 if values is None:
                     continue
-                ax.plot(result.time, values, line, color=colour, label=one.species)
-                if found is not None and found.theory is not None:
-                    ax.theory(None, found.theory, found.theory_error, "equilibrium, theory", colour)
+                ax.plot(result.time, values, line, color=colour, label=entropy.species)
+                if average is not None and average.theory is not None:
+                    ax.theory(None, average.theory, average.theory_error, "equilibrium, theory", colour)
         axes[0].set_ylabel("Boltzmann's H per disc, ⟨ln f⟩ (no unit)")
         if has_positions:
             axes[1].set_ylabel("entropy of positions per disc (no unit)")
@@ -176,7 +188,7 @@ class EntropyAnalysis(Analysis):
 
 
 def neighbour_entropy(points: np.ndarray) -> float:
-    """Entropy -∫ f ln f of points (n, 2), from distances to a neighbour; nan if points coincide.
+    """Return the entropy -∫ f ln f of points (n, 2), from distances to a neighbour; nan if points coincide.
 
     Kozachenko & Leonenko, Probl. Inf. Transm. 23, 95 (1987); Kraskov et al., Phys. Rev. E 69, 066138 (2004).
     """
@@ -190,10 +202,11 @@ def neighbour_entropy(points: np.ndarray) -> float:
 
 
 def _bias(number: int) -> float:
-    """Bias of `neighbour_entropy` of so many independent points of a normal distribution, exactly.
+    """Return the exact bias of `neighbour_entropy` for a number of independent, normally distributed points.
 
-    The probability p within the distance of neighbour k has the distribution Beta(k, n - k), and the entropy would have
-    no bias if the density were the same up to there. At a distance r from the middle p is the noncentral χ².
+    The probability p inside the distance to neighbour k has the distribution Beta(k, n - k). The estimator would be
+    unbiased if the density were uniform up to that distance. Around a point at a distance r from the centre, p is a
+    noncentral χ² distribution function.
     """
     from scipy import special
 
@@ -206,9 +219,10 @@ def _bias(number: int) -> float:
 
 
 def _bias_of_energy(equilibrium: Ensemble | None) -> float:
-    """Mean of ln(T/T') over canonical velocities whose energy gives T' with D degrees of freedom; 0 in a heat bath.
+    """Return the mean of ln(T/T') over canonical velocities whose energy gives T' with D degrees of freedom.
 
-    Velocities of a fixed energy are canonical ones times √(T/T'), which changes the entropy of each sample by as much.
+    Velocities at fixed energy are canonical ones times √(T/T'), which changes the entropy of each sample by ln(T/T').
+    In a heat bath the bias is 0.
     """
     from scipy import special
 
@@ -218,12 +232,19 @@ def _bias_of_energy(equilibrium: Ensemble | None) -> float:
 
 
 class _Species(NamedTuple):
-    """What the entropy of a species takes.
+    """Quantities that determine the entropy of a species.
 
-    name: of the species. members: ids of its discs. compared: of those whose velocities are compared. low, size: (2,),
-    corner and size of what the centres of its discs reach, length. grid: numbers of cells. bias: of H. variance: of
-    the number of discs in a cell, over its mean. expected_h, expected_spread: theory for
-    equilibrium; None without one.
+    Attributes:
+        name: name of the species.
+        members: ids of its discs.
+        compared: ids of those discs whose velocities are compared.
+        low: (2,), lower corner of the area that the centres of its discs reach, length.
+        size: (2,), size of this area, length.
+        grid: numbers of cells along x and y.
+        bias: bias of H.
+        variance: variance of the number of discs in a cell, over its mean.
+        expected_h: H in equilibrium by theory; None without theory.
+        expected_spread: entropy of the positions in equilibrium by theory; None without theory.
     """
 
     name: str
@@ -238,20 +259,20 @@ class _Species(NamedTuple):
     expected_spread: Theory | None
 
     def spread(self, position: np.ndarray) -> float:
-        """-Σ p ln(p K) over K cells with the shares p of the discs; position: (N, 2), of all discs.
+        """Return -Σ p ln(p K) over K cells with the shares p of the discs, for positions (N, 2) of all discs.
 
-        Without the bias of Miller (1955) for independent discs, times the variance of a number in the gas.
+        The bias for independent discs (Miller 1955), times the variance of a number in the gas, is removed.
         """
         share = (position[self.members] - self.low) / self.size
         x, y = (np.clip((share[:, a] * self.grid[a]).astype(int), 0, self.grid[a] - 1) for a in range(2))
-        found = np.bincount(x * self.grid[1] + y) / len(self.members)
-        found = found[found > 0]
-        bias = self.variance * (len(found) - 1) / (2 * len(self.members))
-        return bias - float(found @ np.log(found * math.prod(self.grid)))
+        shares = np.bincount(x * self.grid[1] + y) / len(self.members)
+        shares = shares[shares > 0]
+        bias = self.variance * (len(shares) - 1) / (2 * len(self.members))
+        return bias - float(shares @ np.log(shares * math.prod(self.grid)))
 
 
 def _species(log: Log, equilibrium: Ensemble | None) -> Iterator[_Species]:
-    """All species of a log."""
+    """Yield the quantities of each species of a log."""
     kinds, periodic, phi = composition(log.discs), np.array(log.periodic), log.discs.packing_fraction
     compressibility = 1 / float(hard_discs.inverse_compressibility(phi)) if phi <= hard_discs.HIGHEST else 0.0
     even = log.has_positions and becomes_uniform(log, None) and log.scene.properties.fixed_walls
@@ -282,12 +303,15 @@ def _species(log: Log, equilibrium: Ensemble | None) -> Iterator[_Species]:
 
 
 def _maxwell(thermal: float) -> float:
-    """H of the Maxwell–Boltzmann distribution with the variance T/m of a velocity component, (length/time)²."""
+    """Return H of the Maxwell–Boltzmann distribution for the variance T/m of a velocity component, (length/time)²."""
     return -1 - math.log(2 * math.pi * thermal)
 
 
 def _grid(size: np.ndarray, number: int) -> tuple[int, int]:
-    """Numbers of nearly square cells along x and y for so many discs: 1, or even, so that halves are whole cells."""
+    """Return the numbers of nearly square cells along x and y for a number of discs.
+
+    Each number is 1 or even, so that halves of the box consist of whole cells.
+    """
     cells = max(number / DISCS_PER_CELL, 1.0)
     along_x = max(2 * round(math.sqrt(cells * size[0] / size[1]) / 2), 1)
     return along_x, max(2 * int(cells / along_x / 2), 1)

@@ -1,7 +1,7 @@
 """Measure how discs leave the gas through holes: the number left in time, and escapes per length of path.
 
-Theory is the limit of small holes in an ergodic box: at the rate v ℓ/(π A) a disc of speed v leaves through holes of
-the length ℓ in walls around the area A.
+Theory is the limit of small holes in an ergodic box: a disc of speed v leaves at the rate v ℓ/(π A) through holes of
+length ℓ in walls around an area A.
 """
 
 import math
@@ -29,13 +29,13 @@ INSTANTS = 257
 """Number of instants of the series."""
 
 RARE, OFTEN = 0.1, 10.0
-"""Collisions of a disc with others per escape up to which speeds last, and from which on the gas is in equilibrium."""
+"""Collisions of a disc per escape up to which speeds persist, and from which on the gas is in equilibrium."""
 
 BILLIARD = (
     "Discs hardly meet: theory then needs walls that bring every path to the hole, such as ones that bulge inwards; a "
     "circle or a rectangle does not."
 )
-"""Caveat of discs that walls alone divert."""
+"""Caveat for discs that only walls deflect."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ class Escape(Result):
 
     Attributes:
         discs: number of discs at the start of the window.
-        escaped: number of them that left.
+        escaped: number of these discs that escaped.
         time: (INSTANTS,), times.
         left: (INSTANTS,), number of discs in the gas.
-        expected: (INSTANTS,), its mean by theory; None without one.
-        spread: (INSTANTS,), its standard deviation, with the error of theory; None without theory.
+        expected: (INSTANTS,), mean of this number by theory; None without theory.
+        spread: (INSTANTS,), its standard deviation, including the error of theory; None without theory.
         per_path: escapes per length that discs fly, 1/length; None under gravity.
-        mean_time: time that discs spend in the gas per escape: if these are independent of the time already spent, the
-            mean escape time, also where not all discs have left.
+        mean_time: time that discs spend in the gas per escape. If escapes do not depend on the time already spent, this
+            is the mean escape time, even if not all discs have left.
     """
 
     discs: int
@@ -81,7 +81,7 @@ class EscapeAnalysis(Analysis):
         """Measure how fast discs leave the gas through absorbing walls.
 
         Errors are those of a Poisson number of escapes. Theory is given for discs of one radius in a box with walls at
-        rest, without gravity; the length of the holes and the area are those for the centres of the discs.
+        rest and without gravity; the length of the holes and the area are those for the centres of the discs.
 
         Raises:
             UserError: if no wall absorbs discs, or if the log has no events or no escapes in the window.
@@ -116,9 +116,9 @@ class EscapeAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Escape) -> list[Table]:
-        """Tables of the rates and of the number left."""
+        """Return the tables of the rates and of the number of discs left."""
         rows = {"escapes per path (1/length)": result.per_path, "mean escape time (time)": result.mean_time}
-        found = [(name, one) for name, one in rows.items() if one is not None]
+        rates = [(name, estimate) for name, estimate in rows.items() if estimate is not None]
         notes = [f"{result.escaped} of {result.discs} discs escaped"]
         series = {
             "t": result.time,
@@ -126,19 +126,19 @@ class EscapeAnalysis(Analysis):
             "theory": result.expected,
             "± (s.d.)": result.spread,
         }
-        return [estimates("Escape", found, notes), time_series("Number of discs in the gas", series)]
+        return [estimates("Escape", rates, notes), time_series("Number of discs in the gas", series)]
 
     @staticmethod
     def summary(result: Escape) -> str:
-        """Number of discs that escaped, and whether they did at the rate of theory."""
-        found = result.per_path or result.mean_time
+        """Return the number of discs that escaped, and whether their rate agrees with theory."""
+        estimate = result.per_path or result.mean_time
         what = "escapes per length of path" if result.per_path else "time per escape"
-        said = agreement([(what, found)])
-        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(found)} {what}; {said}."
+        verdict = agreement([(what, estimate)])
+        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(estimate)} {what}; {verdict}."
 
     @staticmethod
     def figure(result: Escape) -> "Figure":
-        """Draw the number of discs in the gas and its theory, on a logarithmic scale once only a tenth is left."""
+        """Draw the number of discs in the gas with its theory, on a logarithmic scale if less than a tenth is left."""
         from idealgas.analysis.core.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
@@ -154,7 +154,10 @@ class EscapeAnalysis(Analysis):
 
 
 def _flights(log: Log, first: float, last: float, progress: Progress | None) -> tuple[np.ndarray, float, float, int]:
-    """Times of the escapes in order, time and length that all discs fly, and numbers of collisions of two, twice."""
+    """Return the times of the escapes in order, the time and the path that all discs fly, and the number of collisions.
+
+    A collision of two discs is counted twice, once for each.
+    """
     at, spent, path, collisions, done = [np.empty(0)], [0.0], [0.0], 0, 0
     rows = log.row_at(last, "right") - log.row_at(first, "right")
     for flights in log.flights([first, last], columns=("start", "end", "kind", "velocity")):
@@ -173,10 +176,13 @@ def _flights(log: Log, first: float, last: float, progress: Progress | None) -> 
 
 
 def _theory(log: Log) -> Theory:
-    """Escapes per length of path ℓ/(π A), 1/length. Raises NoTheoryError where it does not apply.
+    """Return the number of escapes per length of path, ℓ/(π A), 1/length.
 
-    Its error is ℓ/P of the whole wall P that discs touch, by which a hole depletes the gas before it, R/ℓ for the ends
-    of the holes, and 2φ for the density at the wall.
+    The relative error is the sum of ℓ/P, where P is the whole perimeter that discs touch, as a hole depletes the gas in
+    front of it; R/ℓ for the ends of the holes; and 2φ for the density at the wall.
+
+    Raises:
+        NoTheoryError: if theory does not apply.
     """
     scene, gas, radius = log.scene, log.discs, float(log.discs.radius[0])
     if np.ptp(gas.radius) > 0:
@@ -196,10 +202,13 @@ def _theory(log: Log) -> Theory:
 def _expected(
     log: Log, speed: np.ndarray, rate: Theory, time: np.ndarray, collisions: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard deviation (INSTANTS,) of the number of discs left, after times from a state with speeds (N,).
+    """Return the mean and standard deviation of the number of discs left, (INSTANTS,), from speeds (N,) at time 0.
 
-    Discs that hardly meet keep their speeds. Those of a gas in equilibrium at one temperature leave at the rate of its
-    mean speed; without heat from outside it cools, as a disc that leaves takes 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
+    Discs that hardly meet keep their speeds. Discs of a gas in equilibrium leave at the rate of its mean speed. Without
+    heat from outside the gas cools, as each disc that leaves carries 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
+
+    Raises:
+        NoTheoryError: if theory does not apply.
     """
     properties, mass, number = log.scene.properties, float(log.discs.mass[0]), len(speed)
     mixes, lossy = collisions >= OFTEN, properties.dissipative or properties.spins

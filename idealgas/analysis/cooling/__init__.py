@@ -1,8 +1,8 @@
 """Measure how a gas cools whose discs lose energy in collisions: Haff's law, a₂, spin and clusters.
 
-Haff's time and the loss per collision with the Sonine correction, the fourth cumulant a₂ of the velocities, the
-ratio of the temperatures of spin and motion of rough discs, and how much numbers of discs in small cells scatter,
-which shows when clusters form.
+The analysis gives the loss per collision and Haff's time, both with the Sonine correction, the fourth cumulant a₂ of
+the velocities, the ratio of the temperatures of spin and motion of rough discs, and the scatter of the numbers of discs
+in small cells, which shows when clusters form.
 """
 
 import math
@@ -31,26 +31,26 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INSTANTS = 257
-"""Number of instants of the series."""
+"""Number of instants of the time series."""
 
 FEW = 10
-"""Number of discs below which a caveat says that the theory is for many discs."""
+"""Number of discs below which a caveat says that theory assumes many discs."""
 
 FEWEST = 16
-"""Least number of instants in the window of the averages."""
+"""Smallest number of instants in the window of the averages."""
 
 SETTLED, FOLDS = 20.0, 5.0
-"""Averages begin after so many collisions per disc, and after so many relaxation times of the temperature ratio."""
+"""Collisions per disc, and relaxation times of the temperature ratio, after which averages begin."""
 
 LOSS_ERROR, TIME_ERROR, RATIO_ERROR = 0.015, 0.025, 0.05
 """Relative errors of theory for the loss per collision, Haff's time and the temperature ratio.
 
-From simulations: 20 runs each of 300 discs at φ = 0.05, with e = 0.8 to 0.98 without spin, and with e = 0.9 or 0.95 and
-β = 0, 0.5 and 0.9.
+They are from simulations of 300 discs at φ = 0.05, 20 runs each, with e = 0.8 to 0.98 without spin, and with e = 0.9 or
+0.95 and β = 0, 0.5 and 0.9.
 """
 
 CUMULANT_ERROR = 0.05
-"""Relative error of a₂ by theory: terms of higher order in it."""
+"""Relative error of a₂ by theory, due to neglected terms of higher order in a₂."""
 
 SPREAD = 1.0
 """Upper limit of the relative standard deviation of the temperature over runs, times the root of the number of discs.
@@ -67,21 +67,25 @@ class Cooling(Result):
 
     Attributes:
         time: (F,), times.
-        collisions: (F,), mean number of collisions per disc before them.
+        collisions: (F,), mean number of collisions per disc up to each time.
         temperature: (F,), mean m v²/2 in the frame of the centre of mass, energy.
         spin: (F,), mean I ω², energy; None without spin.
-        cumulant: (F,), a₂ of the velocities.
+        cumulant: (F,), fourth cumulant a₂ of the velocities.
         scatter: (F,), variance over mean of the numbers of discs in equal cells; 1 for points at random positions.
         flow: (F,), mean square of the momentum in a cell over that of discs that move independently.
         cells: number of cells.
-        law, spin_law: (F,), temperatures of motion and spin by theory; None without a theory.
-        start, end: window of the averages, times.
-        loss: part of the temperature lost per collision of a disc.
+        law: (F,), temperature of the motion by theory, energy; None without theory.
+        spin_law: (F,), temperature of the spins by theory, energy; None without theory.
+        start: start of the window of the averages, time.
+        end: end of this window, time.
         last_temperature: temperature at the end, energy; its theory is the law of a uniform gas at that time.
-        haff: Haff's time τ of T = T₀/(1 + t/τ)² with the temperature T₀ at time 0.
+        loss: fraction of the temperature that is lost per collision of a disc.
+        haff: Haff's time τ in T = T₀/(1 + t/τ)², where T₀ is the temperature at time 0.
         fourth: mean of a₂.
         temperature_ratio: mean of spin over temperature; None without rough discs.
-        first_scatter, last_scatter, last_flow: means of scatter and flow in the first or last tenth of the collisions.
+        first_scatter: mean of scatter in the first tenth of the collisions.
+        last_scatter: mean of scatter in the last tenth.
+        last_flow: mean of flow in the last tenth.
     """
 
     time: np.ndarray
@@ -130,16 +134,19 @@ class CoolingAnalysis(Analysis):
         """Measure how a gas of equal discs cools by its collisions, and compare it with the theory of a uniform gas.
 
         Raises:
-            NotApplicableError: if not only collisions of equal discs change the energy, or if the log is too short.
+            NotApplicableError: if anything but collisions of equal discs changes the energy, or if the log is too
+                short.
         """
         parameters, dof, number = _parameters(log), degrees_of_freedom(log), len(log.discs)
         first, last = span(log, None, end)
         t0, s0, _ = _moments(log, log.state_at(log.start_time), dof)
         contacts = hard_discs.box_contacts(log.discs.radius[:1], [number], log.box, log.periodic)[0, 0]
-        rate = float(contacts) * hard_discs.mean_relative_speed(t0, float(log.discs.mass[0]))  # inf: too dense
+        rate = float(contacts) * hard_discs.mean_relative_speed(
+            t0, float(log.discs.mass[0])
+        )  # inf if the gas is too dense
         known = math.isfinite(rate)
         tau = granular.cooling_time(parameters, rate) if known else last - first
-        # equally many collisions between any two of these times, by Haff's law
+        # by Haff's law, equal numbers of collisions lie between successive times
         time = np.clip(np.geomspace(tau + first, tau + last, INSTANTS) - tau, first, last)
         temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
         shape = cells_of(log)
@@ -153,7 +160,7 @@ class CoolingAnalysis(Analysis):
             needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
             raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions per disc ({needs})")
         tested = parameters.normal >= granular.TESTED_FROM
-        rate /= dof / (2 * number)  # a conserved momentum leaves the same heat to fewer degrees of freedom
+        rate /= dof / (2 * number)  # conserved momentum: fewer degrees of freedom share the energy
         law = spin_law = None
         if known and tested:
             law, spin_law = granular.homogeneous_cooling(parameters, rate, t0, s0, time)
@@ -163,10 +170,10 @@ class CoolingAnalysis(Analysis):
         few = 1 / dof
 
         def expected(value: float | None, relative: float) -> Theory | None:
-            """Theory of a uniform gas with a relative error."""
+            """Return a value of the theory of a uniform gas with its relative error; None without theory."""
             return Theory(value, relative * abs(value), "homogeneous cooling") if tested and value is not None else None
 
-        # averages over the window; in `cooled` the energy that motion and spin exchange does not show
+        # averages over the window; the energy that motion and spin exchange is removed from `cooled`
         energy = temperature[window] + number / dof * spin[window]
         cooled = energy * (temperature[window] / energy).mean()
         loss = expected(granular.cooling_per_collision(parameters) * 2 * number / dof, math.hypot(LOSS_ERROR, few))
@@ -214,7 +221,7 @@ class CoolingAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Cooling) -> list[Table]:
-        """Tables of the averages and of the time series."""
+        """Return the tables of the averages and of the time series."""
         rows = [
             ("T at the end (energy)", result.last_temperature),
             ("T lost per collision of a disc (share)", result.loss),
@@ -246,7 +253,7 @@ class CoolingAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Cooling) -> str:
-        """How far the gas cools and how fast, and whether it does so by the theory of a uniform gas."""
+        """Return how far and how fast the gas cools, and whether this agrees with the theory of a uniform gas."""
         last = result.last_temperature
         rows = [("T at the end", last), ("loss per collision", result.loss), ("Haff's time", result.haff)]
         law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
@@ -258,13 +265,13 @@ class CoolingAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Cooling) -> "Figure":
-        """Picture of the temperature against time, and of the other series against collisions."""
+        """Draw the temperature against time, and the other series against collisions per disc."""
         from idealgas.analysis.core.style import COLOURS, GREY, panels
 
         means = [("a₂ (no unit)", result.cumulant, result.fourth)]
         if result.spin is not None and result.temperature_ratio is not None:
             means.append(("spin over motion (no unit)", result.spin / result.temperature, result.temperature_ratio))
-        figure, (ax, *others, last) = panels(2 + len(means))
+        figure, (ax, *middle, last) = panels(2 + len(means))
         shown = result.time > 0
         ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="temperature")
         if result.spin is not None:
@@ -275,35 +282,39 @@ class CoolingAnalysis(Analysis):
                 ax.theory(result.time[shown], law[shown], _law_error(law, doubt)[shown], label, GREY)
         ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
         window = result.collisions[result.time.searchsorted([result.start, result.end])]
-        for panel, (label, series, found) in zip(others, means, strict=True):
+        for panel, (label, series, average) in zip(middle, means, strict=True):
             panel.plot(result.collisions, series, color=COLOURS[5], linewidth=0.9, label="measured")
-            panel.plot(window, [found.value] * 2, color=COLOURS[0], label="mean")
-            if found.theory is not None:
-                panel.theory(None, found.theory, found.theory_error, color=GREY)
+            panel.plot(window, [average.value] * 2, color=COLOURS[0], label="mean")
+            if average.theory is not None:
+                panel.theory(None, average.theory, average.theory_error, color=GREY)
             panel.set(xlabel="collisions per disc", ylabel=label)
         last.plot(result.collisions, result.scatter, color=COLOURS[0], label="numbers: variance over mean")
         last.plot(result.collisions, result.flow, color=COLOURS[1], label="momenta: square over that by chance")
         last.set(ylabel=f"in {result.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
-        for panel in (ax, *others, last):
+        for panel in (ax, *middle, last):
             panel.legend()
         return figure
 
 
 def _parameters(log: Log) -> GranularParameters:
-    """Coefficients of the collisions; NotApplicableError unless equal discs lose energy in them and nowhere else."""
+    """Return the coefficients of the collisions.
+
+    Raises:
+        NotApplicableError: unless equal discs lose energy in their collisions and nothing else changes the energy.
+    """
     scene, properties = log.scene, log.scene.properties
-    found = GranularParameters(
+    parameters = GranularParameters(
         1.0 if scene.restitution is None else scene.restitution.normal,
         -1.0 if scene.rotation is None else scene.rotation.roughness,
         properties.inertia,
     )
-    others = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
+    effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
     elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
     why = ""
-    if found.normal == 1 and abs(found.roughness) == 1:
+    if parameters.normal == 1 and abs(parameters.roughness) == 1:
         why = "collisions of its discs lose no energy"
-    elif others or not (all(log.periodic) or elastic_walls):
-        why = f"more than collisions of discs changes its energy ({', '.join(others) or 'walls'})"
+    elif effects or not (all(log.periodic) or elastic_walls):
+        why = f"more than collisions of discs changes its energy ({', '.join(effects) or 'walls'})"
     elif not log.has_positions or not log.has_events:
         why = "it requires events with positions"
     elif len(log.discs.species_names) > 1:
@@ -312,18 +323,21 @@ def _parameters(log: Log) -> GranularParameters:
         why = "its discs never meet"
     if why:
         raise NotApplicableError(f"{log.path}: {why}")
-    return found
+    return parameters
 
 
 def _law_error(law: np.ndarray, relative: float) -> np.ndarray:
-    """Error (F,) of temperatures (F,) by Haff's law whose time has a relative error: dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ."""
+    """Return the errors (F,) of temperatures (F,) by Haff's law, for a relative error dτ/τ of its time.
+
+    dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ.
+    """
     return 2 * (1 - np.sqrt(np.minimum(law / law[0], 1))) * relative * law
 
 
 def _moments(log: Log, state: LogState, dof: int) -> tuple[float, float, float]:
-    """Temperatures of motion and spin and a₂ at one instant.
+    """Return the temperatures of motion and spin and a₂ at one instant.
 
-    a₂ is without the bias of few discs: at fixed energy Gaussian ones have -2/(D + 2) on average.
+    The bias of a₂ for few discs is removed: at fixed energy a₂ of Gaussian velocities is -2/(D + 2) on average.
     """
     square = ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
     spin = 0.0

@@ -1,4 +1,4 @@
-"""Whether a gas that cools stays uniform: numbers and momenta of discs in small cells."""
+"""Uniformity of a gas that cools: numbers and momenta of discs in small cells."""
 
 import math
 from collections.abc import Iterator
@@ -9,21 +9,24 @@ from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.log import Log, LogState
 
 DISCS_PER_CELL = 8
-"""Approximate mean number of discs in the cells in which they are counted."""
+"""Approximate mean number of discs in a cell."""
 
 SIGNIFICANT = 4.0
-"""Standard errors of single states beyond which a gas counts as nonuniform."""
+"""Deviation from which on a gas counts as nonuniform, in standard errors of a single state."""
 
 
 def cells_of(log: Log) -> np.ndarray:
-    """Numbers of equal cells along x and y in which discs are counted."""
+    """Return the numbers of equal cells along x and y in which discs are counted, (2,)."""
     side = math.sqrt(DISCS_PER_CELL * math.prod(log.box) / len(log.discs))
     shape = np.maximum(np.round(np.array(log.box) / side).astype(int), 1)
     return shape if (shape > 1).any() else np.array([2, 2])
 
 
 def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
-    """Variance over mean of the numbers of discs in cells; square of the sums of velocities over that by chance."""
+    """Return the scatter of the numbers of discs in cells, and the mean square momentum of cells over that by chance.
+
+    The scatter is the variance over the mean. The momentum is taken per mass, from sums of velocities.
+    """
     velocity, cells = state.velocity - centre_of_mass_velocity(log), int(shape.prod())
     at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)
     cell = at[:, 0] * shape[1] + at[:, 1]
@@ -33,9 +36,9 @@ def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, flo
 
 
 def nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
-    """Caveats of a gas that is not uniform at the end, beyond chance in single states of M cells.
+    """Yield caveats for a gas that is not uniform at the end, beyond the fluctuations of single states in M cells.
 
-    There scatter has an error of √(2/(M - 1)) of itself, and flow one of 1/√M.
+    The relative standard error of the scatter of a single state is √(2/(M - 1)), and that of the flow 1/√M.
     """
     end = "and the laws are those of a uniform gas."
     if late > early * (1 + SIGNIFICANT * math.sqrt(4 / (cells - 1))):

@@ -1,8 +1,9 @@
-"""Follow temperature, pressure, discs beyond a wall, piston and energies in time, with the expected temperature.
+"""Follow temperature, pressure, discs beyond a wall, pistons and energies in time, and compare them with theory.
 
-Laws: Haff's law for a cooling gas, the adiabat of a slow piston, the rest position of a piston under pressure, and
-equilibrium for isolated gases, gases under gravity and heat baths. The pressure is the mechanical one on the walls.
-With a piston the picture has the pressure against the area, with the isotherm and the adiabat through the start.
+The temperature follows Haff's law in a cooling gas and the adiabat of a slow piston; a piston under pressure has a
+position of rest, and isolated gases, gases under gravity and gases in heat baths have an equilibrium. The pressure is
+the mechanical pressure on the walls. With a piston the figure shows the pressure against the area, with the isotherm
+and the adiabat through the initial state.
 """
 
 from collections.abc import Mapping
@@ -37,10 +38,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INSTANTS = 257
-"""Number of instants of the series."""
+"""Number of instants of the time series."""
 
 MOST_IN_COLUMN = 3
-"""Largest number of panels of the picture that stand below each other."""
+"""Largest number of panels of the figure in a single column."""
 
 MOST_SAMPLES = 2**14
 """Largest number of samples of the energy."""
@@ -54,27 +55,27 @@ class Evolution(Result):
         time: (F,), times.
         temperature: (F,), mean m v²/2 per disc, energy.
         spin: (F,), mean I ω² per disc, energy; None without spin.
-        beyond: fraction of the discs of each species beyond the first gate or permeable wall along an axis, (F,),
-            by species.
-        spread: fractions in equilibrium without walls inside, by species; their error is the standard deviation of a
-            binomial distribution.
-        law: theory of the temperature at these times; None without one.
-        samples: (P,), times of the samples; of more than MOST_SAMPLES, evenly chosen ones.
+        beyond: fraction of the discs of each species beyond the first gate or permeable wall along an axis, (F,), by
+            species.
+        spread: these fractions in equilibrium without walls inside the box, by species; their error is the standard
+            deviation of a binomial distribution.
+        law: theory of the temperature at these times; None without theory.
+        samples: (P,), times of the samples, thinned evenly to at most MOST_SAMPLES.
         parts: parts of the energy, (P,), by name.
-        given: energy from each wall, each piston (its work) and a heat bath since the start, (P,), by name.
-        pistons: their coordinates, (P,), length, by name.
+        given: energy received from each wall, each piston (its work) and a heat bath since the start, (P,), by name.
+        pistons: coordinate of each piston, (P,), length, by name.
         balance: (P,), change since the start of the energy of discs and pistons minus the energy from outside, relative
-            to the largest part of the energy: rounding only.
-        dissipated: energy lost since the start, (P,), in collisions of two discs and at walls, by name.
-        pressure: mechanical pressure on walls in bins of time; None without events or hits of walls.
-        rest: mean position of the only piston, with a mass, once it is steady, length; None without one, or if it is
-            not steady by the end.
-        rest_start: time from which on the piston is steady; None where `rest` is.
-        mean_temperature: mean of the temperature once it is steady, energy; None where it is constant, or without a law
+            to the largest part of the energy; only rounding changes it.
+        dissipated: energy lost since the start in collisions of two discs and at walls, (P,), by name.
+        pressure: mechanical pressure on walls in bins of time; None without events or wall hits.
+        rest: mean position of a single piston with a mass once it is steady, length; None without such a piston, or if
+            it is not steady by the end.
+        rest_start: time from which on the piston is steady; None if `rest` is None.
+        mean_temperature: mean temperature once it is steady, energy; None if it is constant, or if the law is not one
             of equilibrium.
         adiabatic_exponent: γ from temperature and area at both ends; None unless a piston compresses the gas without
-            heat.
-        isothermal_work: work of a piston on a gas at the temperature of a heat bath, energy; None elsewhere.
+            heat exchange.
+        isothermal_work: work of a piston on a gas at the temperature of a heat bath, energy; None otherwise.
         chambers: mean m v²/2 per disc of each gas beside inner pistons, (F,), by name as in `beside_pistons`.
     """
 
@@ -100,7 +101,7 @@ class Evolution(Result):
 
     @property
     def track(self) -> tuple[np.ndarray, Series] | None:
-        """Times and coordinates of each piston, means over short blocks or samples; None without pistons."""
+        """Times and coordinates of each piston, averaged over short blocks or from samples; None without pistons."""
         if self.pressure and self.pressure.track:
             return self.pressure.track
         return (self.samples, self.pistons) if self.pistons else None
@@ -133,10 +134,11 @@ class EvolutionAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Evolution:
-        """Follow temperature, pressure, energies, piston and discs beyond a wall in time; needs no equilibrium.
+        """Follow temperature, pressure, energies, pistons and discs beyond a wall in time.
 
-        The theory, if there is one, is that of the temperature: in equilibrium, of a gas that cools by its collisions
-        (Haff's law), or of one that a moving piston compresses (the adiabat).
+        The gas need not be in equilibrium. Theory, where it is available, predicts the temperature: that of
+        equilibrium, of a gas that cools by its collisions (Haff's law), or of a gas that a moving piston compresses
+        (the adiabat).
 
         Raises:
             UserError: if the log does not cover the times or has no samples of the energy.
@@ -178,7 +180,7 @@ class EvolutionAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Evolution) -> list[Table]:
-        """Tables of temperature and of discs beyond the wall, of the pressure, and of the energies."""
+        """Return the tables of temperature and of discs beyond a wall, of the pressure, and of the energies."""
         law = result.law
         series = {
             "t": result.time,
@@ -191,8 +193,8 @@ class EvolutionAnalysis(Analysis):
         }
         notes = [f"law: {law.text if law else 'none for this scene'}"]
         notes += [
-            f"beyond the wall in equilibrium: {one.value:.1%} ± {one.standard_error:.1%} of {name} (binomial)"
-            for name, one in result.spread.items()
+            f"beyond the wall in equilibrium: {share.value:.1%} ± {share.standard_error:.1%} of {name} (binomial)"
+            for name, share in result.spread.items()
         ]
         means = {
             "mean temperature once steady (energy)": result.mean_temperature,
@@ -200,12 +202,12 @@ class EvolutionAnalysis(Analysis):
             "γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) (no unit; 2 for an ideal gas)": result.adiabatic_exponent,
             "work of the piston at constant T (energy)": result.isothermal_work,
         }
-        rows = [(name, found) for name, found in means.items() if found is not None]
+        rows = [(name, estimate) for name, estimate in means.items() if estimate is not None]
         tables = [time_series("Time series", series, notes)]
-        if found := result.pressure:
-            columns = {"t": found.middles, "area": found.area}
-            for name in found.shown:
-                columns |= {f"P on {name}": found.pressure[name], f"± s.e. ({name})": found.error[name]}
+        if bins := result.pressure:
+            columns = {"t": bins.middles, "area": bins.area}
+            for name in bins.shown:
+                columns |= {f"P on {name}": bins.pressure[name], f"± s.e. ({name})": bins.error[name]}
             tables.append(time_series("Pressure on walls, means over bins of time", columns))
         energy = {
             "t": result.samples,
@@ -222,9 +224,9 @@ class EvolutionAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Evolution) -> "Figure":
-        """Picture of the temperature, its law dashed, of discs beyond a wall, pressure, piston and energy from walls.
+        """Draw temperature with its law dashed, discs beyond a wall, pressure, pistons and energy from walls.
 
-        With a piston the pressure against the area comes last, with the isotherm and the adiabat through the start.
+        With a piston the last panel shows pressure against area, with the isotherm and the adiabat through the start.
         """
         from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
 
@@ -251,7 +253,7 @@ class EvolutionAnalysis(Analysis):
         low, high = result.temperature.min(), result.temperature.max()
         if high > 10 * low > 0:
             ax.set_yscale("log")
-        elif high - low < 1e-6 * high:  # changes only by rounding
+        elif high - low < 1e-6 * high:  # constant, except for rounding
             ax.set_ylim(0.9 * low, 1.1 * high)
         ax.set_ylabel("temperature (energy, k_B = 1)")
         if result.beyond:
@@ -287,12 +289,12 @@ class EvolutionAnalysis(Analysis):
 
 
 def _source_label(name: str, result: Evolution) -> str:
-    """Heading of the energy that a wall, a piston or a heat bath gave to the discs."""
+    """Return the heading of the energy that a wall, a piston or a heat bath gave to the discs."""
     return f"work done by the {name}" if name in result.pistons else f"energy from {name}"
 
 
 def _chamber_label(name: str, several: bool) -> str:
-    """Name of the gas between two pistons, or at a side of the box beside one or several."""
+    """Return the label of the gas between two pistons, or between a side of the box and one or several pistons."""
     return name if name.startswith("between") else f"{name} of the piston{'s' if several else ''}"
 
 
@@ -303,7 +305,7 @@ Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series, Series]
 
 
 def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]], inside: np.ndarray) -> Frames:
-    """Evolution from the samples stored during the run, for a log without events."""
+    """Return the evolution from the samples stored during the run, for a log without events."""
     time, kinetic = observables["kinetic_energy"]
     n, spin = len(log.discs) - observables["escaped"][1][inside] if log.escapes else len(log.discs), None
     n = np.maximum(n, 1)
@@ -313,19 +315,19 @@ def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]],
 
 
 def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
-    """Evolution at evenly spaced times, from the events of a log."""
+    """Return the evolution at evenly spaced times, from the events of a log."""
     gas, frame, inertia = log.discs, centre_of_mass_velocity(log), log.inertia
     wall = first_passable(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)
     temperature, spin, beyond = np.empty(len(time)), np.empty(len(time)), np.empty((len(time), len(number)))
-    members = beside_pistons(log)
-    apart = {name: np.empty(len(time)) for name in members}
+    chambers = beside_pistons(log)
+    apart = {name: np.empty(len(time)) for name in chambers}
     for k, state in enumerate(frames(log, time, progress)):
         energy = gas.mass * ((state.velocity - frame) ** 2).sum(axis=1) / 2
         temperature[k] = state.mean(energy)
-        for name, own in members.items():
-            apart[name][k] = state.mean(energy, own)
+        for name, members in chambers.items():
+            apart[name][k] = state.mean(energy, members)
         if inertia is not None and state.angular_velocity is not None:
             spin[k] = state.mean(inertia * state.angular_velocity**2)
         if wall:

@@ -1,4 +1,4 @@
-"""Account of the energy of a gas: its parts, where it comes from and where it is lost."""
+"""Energy balance of a gas: its parts, its sources and its losses."""
 
 import numpy as np
 
@@ -7,16 +7,28 @@ from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
 
 HEAT_BATH, STEPS = "the heat bath", "changes in time"
-"""Names among the sources of energy; pistons have those of `piston_names`."""
+"""Names of sources of energy besides walls; pistons have the names of `piston_names`."""
 
 ROUNDING = 1e-12
-"""Energy that collisions lose, relative to the largest energy, that is rounding."""
+"""Energy lost in collisions, relative to the largest energy, that is attributed to rounding."""
 
 Series = dict[str, np.ndarray]
 
 
 def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
-    """Parts of the energy, energy from walls and a heat bath, energy lost by kind of collision, and the balance."""
+    """Return the parts of the energy, the energy by source, the losses by kind of collision, and the balance.
+
+    Args:
+        log: log of the run.
+        time: (P,), times of the samples.
+        observed: observables at these times, by name.
+
+    Returns:
+        parts: parts of the energy, (P,), by name.
+        by_source: energy received since the start, (P,), by source.
+        losses: energy lost since the start, (P,), by kind of collision.
+        balance: (P,), relative change of the energy that no source or loss explains.
+    """
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
     given = observed.get("wall_energy", np.zeros((len(observed["kinetic_energy"]), 0)))
@@ -24,10 +36,10 @@ def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Serie
     counted, unpaid = np.ones(given.shape[1], bool), lost[:, 0]
     walls = [wall.name for wall in log.walls]
     for k, (piston, name) in enumerate(zip(log.scene.piston, piston_names(log.scene), strict=True)):
-        own = walls.index(piston.wall)
-        walls[own] = name
-        if piston.mass:  # its energy is a part of the energy, so that it gives none from outside
-            counted[own], unpaid = False, unpaid + lost[:, 1 + own]
+        number = walls.index(piston.wall)
+        walls[number] = name
+        if piston.mass:  # its energy is one of the parts, so that none comes from outside
+            counted[number], unpaid = False, unpaid + lost[:, 1 + number]
             pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
             place, velocity = (observed[column][:, k] for column in ("piston_position", "piston_velocity"))
             parts[name] = piston_energy(piston.mass, place, velocity, pull)

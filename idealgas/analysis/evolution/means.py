@@ -1,4 +1,4 @@
-"""Means of an evolution once it is steady; adiabatic exponent and isothermal work of a gas that a piston compresses."""
+"""Means of an evolution once it is steady, and the adiabatic exponent and isothermal work of a compression."""
 
 import math
 
@@ -16,24 +16,27 @@ from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log
 
 LEAST_CHANGE = 0.05
-"""Smallest change of the logarithm of the area from which an adiabatic exponent follows."""
+"""Smallest change of the logarithm of the area for which an adiabatic exponent is given."""
 
 ROUND_TRIPS = 8.0
-"""Least number of round trips of a disc within a stroke with which the error of γ is right.
+"""Smallest number of round trips of a disc within a stroke for which the error of γ is reliable.
 
-In 40 runs each, the rms of deviation over error is 1.03 with 8 of them, and 0.57 with 0.8: hits of few round trips are
-more regular than their differences from instant to instant show.
+In 40 runs each, the rms of deviation over error is 1.03 with 8 round trips and 0.57 with 0.8: the hits of few round
+trips are more regular than the differences between instants suggest.
 """
 
 PARTS = 256
-"""Largest number of parts of the way of a piston whose work gives the error of all of it."""
+"""Largest number of parts of the stroke of a piston whose work gives the error of the total."""
 
 ROUNDING = 1e-9
 """Relative change below which a temperature is constant."""
 
 
 def mean_position(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
-    """Mean position of the only piston, with a mass, once it is steady, compared with theory, and since when it is."""
+    """Return the mean position of a single piston with a mass once it is steady, and the time from which on it is.
+
+    The position is compared with theory. Both results are None without such a piston, or if it is never steady.
+    """
     masses = [piston.mass for piston in log.scene.piston]
     if len(masses) != 1 or not masses[0] or series is None or series.track is None:
         return None, None
@@ -46,9 +49,9 @@ def mean_position(log: Log, series: PressureSeries | None, law: Law | None) -> t
 
 
 def mean_temperature(temperature: np.ndarray, law: Law | None) -> Estimate | None:
-    """Mean of a temperature (F,) once it is steady, compared with equilibrium; None where it is constant or not steady.
+    """Return the mean of a temperature (F,) once it is steady, compared with equilibrium.
 
-    None too without a law of equilibrium.
+    The result is None if the temperature is constant or never steady, or if the law is not one of equilibrium.
     """
     if law is None or not law.steady or np.ptp(temperature) <= ROUNDING * temperature.max():
         return None
@@ -57,10 +60,11 @@ def mean_temperature(temperature: np.ndarray, law: Law | None) -> Estimate | Non
 
 
 def adiabatic_exponent(temperature: np.ndarray, law: Law | None) -> Estimate | None:
-    """Exponent γ of P A^γ = const from a temperature (F,) and the area: 1 + ln(T₂/T₁)/ln(A₁/A₂) between the ends.
+    """Return the exponent γ of P A^γ = const from a temperature (F,): 1 + ln(T₂/T₁)/ln(A₁/A₂) between both ends.
 
-    Its theory is the same of the adiabat of these discs, 2 for an ideal gas, and its error that of the changes of the
-    temperature between instants against the adiabat. None where no piston compresses the gas without heat.
+    Its theory is the exponent of the adiabat of these discs, which is 2 for an ideal gas. Its error follows from the
+    deviations of the temperature from the adiabat between instants. The result is None unless a piston compresses the
+    gas without heat exchange.
     """
     if law is None or law.area is None or not (temperature > 0).all():
         return None
@@ -74,7 +78,7 @@ def adiabatic_exponent(temperature: np.ndarray, law: Law | None) -> Estimate | N
 
 
 def short_stroke(log: Log, exponent: Estimate | None, time: np.ndarray, temperature: np.ndarray) -> tuple[str, ...]:
-    """Caveat of γ from a temperature (F,) at times (F,) between which discs hardly cross the gas."""
+    """Return a caveat for γ from a temperature (F,) at times (F,) if discs make few round trips within the stroke."""
     if exponent is None:
         return ()
     speed = math.sqrt(2 * float(temperature.mean()) / (math.pi * float(log.discs.mass.mean())))  # mean of |vx|
@@ -85,16 +89,16 @@ def short_stroke(log: Log, exponent: Estimate | None, time: np.ndarray, temperat
 
 
 def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None:
-    """Work of the only piston on a gas at the temperature of a heat bath, compared with that of a slow piston, energy.
+    """Return the work of a single piston on a gas at the temperature of a heat bath, energy.
 
-    Its theory is N T ∫ Z dA/A, N T ln(A₁/A₂) for an ideal gas, and its error that of the work on parts of the way
-    against theory. None where no heat bath of one temperature holds that of a gas on one side of a driven piston, or
-    where the area hardly changes.
+    Its theory is N T ∫ Z dA/A, the work of a slow piston, which is N T ln(A₁/A₂) for an ideal gas. Its error follows
+    from the deviations from theory on parts of the stroke. The result is None unless the gas lies on one side of a
+    driven piston at the temperature of a heat bath, and if its area hardly changes.
 
     Args:
-        log: with the piston.
-        pistons: coordinates of each piston at the times of samples (P,), length.
-        given: energy that the discs got before from each wall and piston (P,), energy.
+        log: log with the piston.
+        pistons: coordinates of each piston at the times of samples, (P,), length.
+        given: energy that the discs have received from each wall and piston, (P,), energy.
     """
     properties, gas = log.scene.properties, log.discs
     ((name, place),) = pistons.items() if len(pistons) == 1 else (("", np.empty(0)),)
@@ -109,12 +113,12 @@ def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None
         return None
     if properties.shear or len(gas.species_names) > 1 or gas.unlike or not outward(log, piston):
         return None
-    some = np.unique(np.linspace(0, len(place) - 1, PARTS + 1).astype(int))
-    lengths = room(log, place[some])
+    chosen = np.unique(np.linspace(0, len(place) - 1, PARTS + 1).astype(int))
+    lengths = room(log, place[chosen])
     if abs(math.log(lengths[0] / lengths[-1])) < LEAST_CHANGE or is_crowded(log, float(lengths.min())):
         return None
     grid = np.linspace(lengths.min(), lengths.max(), STEPS + 1)
     expected = -len(gas) * next(iter(properties.temperatures)) * np.diff(work_integral(log, grid, lengths))
-    gains = np.diff(work[some])
+    gains = np.diff(work[chosen])
     error, samples = error_of_mean(gains - expected)
     return Estimate(float(gains.sum()), len(gains) * error, samples, float(expected.sum()))

@@ -1,4 +1,4 @@
-"""Mechanical pressure on walls in bins of time, the area that the gas has, and its isotherm and adiabat."""
+"""Mechanical pressure on walls in bins of time, the area of the gas, and its isotherm and adiabat."""
 
 import math
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from idealgas.analysis.core.style import Panel
 
 BLOCKS = 2048
-"""Number of blocks of time that are counted; a bin is a number of them, whose spread gives its error bar."""
+"""Number of blocks of time; a bin consists of several blocks, whose scatter gives its error bar."""
 
 POINTS = 256
 """Number of points of the track of a piston."""
@@ -31,13 +31,13 @@ STATES = 16
 """Largest number of pressures that are drawn against the area."""
 
 HITS = 32
-"""Mean number of hits of walls in a bin, at least, if there is more than one bin."""
+"""Smallest mean number of wall hits in a bin, if there is more than one bin."""
 
 GROUP = 16
-"""Number of bins in a row whose scatter about a straight line is compared with their error bars."""
+"""Number of successive bins whose scatter about a straight line is compared with their error bars."""
 
 FAR = 0.999
-"""Share of groups, if all are alike, that are no further beyond their median than those that count."""
+"""Fraction of groups, if all are alike, that count because they are not far beyond the median."""
 
 ALL_SIDES = "all sides"
 
@@ -51,11 +51,12 @@ class PressureSeries:
 
     Attributes:
         edges: (B + 1,), times between the bins.
-        area: (B,), mean area that the gas has, length².
-        pressure, error: (B,), momentum given per time and length and its standard error, energy/length², by the name of
-            the wall; nan as the error of a wall that was not hit.
-        shown: walls in table and picture: pistons, all sides of a uniform gas together, or each of them.
-        lines: isotherm and adiabat through the start; None without a theory, one piston, or with gas on both its sides.
+        area: (B,), mean area of the gas, length².
+        pressure: (B,), momentum given per time and length, energy/length², by the name of the wall.
+        error: (B,), its standard error, energy/length², by the name of the wall; nan for a wall that was not hit.
+        shown: walls in table and figure: all sides of a uniform gas together, otherwise pistons or each side.
+        lines: isotherm and adiabat through the start; None without theory, or unless a single piston has gas on one
+            side.
         track: times (T,) and, by name, mean coordinates (T,) of pistons in POINTS blocks of time; None without pistons.
     """
 
@@ -69,12 +70,12 @@ class PressureSeries:
 
     @property
     def middles(self) -> np.ndarray:
-        """Times (B,) of the middles of the bins."""
+        """Times of the middles of the bins, (B,)."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
 
 def pressure_series(log: Log, first: float, last: float) -> PressureSeries | None:
-    """Mechanical pressure on the walls of a log between two times; None without events or without hits of walls."""
+    """Return the mechanical pressure on the walls of a log between two times; None without events or wall hits."""
     if not log.has_events or not log.has_positions:
         return None
     gauge, blocks = WallGauge(log), np.linspace(first, last, BLOCKS + 1)
@@ -90,9 +91,9 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
         given[ALL_SIDES] = np.sum([face.push for face in sides], axis=0), np.sum([f.exposed for f in sides], axis=0)
         shown = [ALL_SIDES]
     else:
-        own = [face for face in faces if face.wall in [piston.wall for piston in gauge.moving]]
-        shown = [face.name for face in own or sides or faces]
-    found = {name: _in_bins(*series, bins) for name, series in given.items()}
+        faces_of_pistons = [face for face in faces if face.wall in [piston.wall for piston in gauge.moving]]
+        shown = [face.name for face in faces_of_pistons or sides or faces]
+    binned = {name: _in_bins(*series, bins) for name, series in given.items()}
     lines = track = None
     if gauge.moving:
         lines = state_lines(log, gauge.area(blocks)) if gauge.bounded else None
@@ -101,8 +102,8 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
     return PressureSeries(
         blocks[:: BLOCKS // bins],
         gauge.area(blocks).reshape(bins, -1).mean(axis=1),
-        {name: values for name, (values, _) in found.items()},
-        {name: errors for name, (_, errors) in found.items()},
+        {name: values for name, (values, _) in binned.items()},
+        {name: errors for name, (_, errors) in binned.items()},
         tuple(shown),
         lines,
         track,
@@ -110,37 +111,37 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
 
 
 def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarray, np.ndarray]:
-    """Pressure (bins,) and its standard error from momentum and exposed length (BLOCKS,)."""
+    """Return the pressure in each bin and its standard error, (bins,), from momentum and exposed length (BLOCKS,)."""
     values, errors = np.zeros(bins), np.full(bins, np.nan)
     for k, (given, there) in enumerate(zip(push.reshape(bins, -1), exposed.reshape(bins, -1), strict=True)):
         if given.any():
-            found = ratio(given[there > 0], there[there > 0])
-            values[k], errors[k] = found.value, found.standard_error
+            pressure = ratio(given[there > 0], there[there > 0])
+            values[k], errors[k] = pressure.value, pressure.standard_error
     return values, errors * _scatter(values, errors)
 
 
 def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
-    """Scatter of bins about straight lines through GROUP of them, over what independent blocks in them let expect.
+    """Return the scatter of bins about straight lines through GROUP of them, relative to that of independent blocks.
 
-    Sound and pistons push a wall back and forth within a bin, so the mean of a bin varies less than its blocks.
-    Groups far beyond the median of all do not count: a gate opened in them, or a heat bath set in.
+    Sound and pistons push a wall back and forth within a bin, so that the mean of a bin varies less than its blocks.
+    Groups far beyond the median do not count: in them a gate opens, or a heat bath starts.
     """
     if len(values) < GROUP:
         return 1.0
     lines, _ = np.linalg.qr(np.vander(np.arange(GROUP), 2))
     groups = sliding_window_view(values, GROUP)
     off = ((groups - groups @ lines @ lines.T) ** 2).sum(axis=1)
-    told = (sliding_window_view(errors, GROUP) ** 2).sum(axis=1)
-    known = np.isfinite(off / told)
+    expected = (sliding_window_view(errors, GROUP) ** 2).sum(axis=1)
+    known = np.isfinite(off / expected)
     if not known.any():
         return 1.0
-    off, told, free = off[known], told[known], GROUP - 2
-    calm = off / told <= np.median(off / told) * special.chdtri(free, 1 - FAR) / special.chdtri(free, 0.5)
-    return math.sqrt(off[calm].sum() / told[calm].sum() * GROUP / free)
+    off, expected, free = off[known], expected[known], GROUP - 2
+    calm = off / expected <= np.median(off / expected) * special.chdtri(free, 1 - FAR) / special.chdtri(free, 0.5)
+    return math.sqrt(off[calm].sum() / expected[calm].sum() * GROUP / free)
 
 
 def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
-    """Draw pressure against time, and the external pressure on a piston, or the adiabat of a piston that is moved."""
+    """Draw pressure against time, with the external pressure on a free piston or the adiabat of a driven one."""
     from idealgas.analysis.core.style import BLACK, COLOURS
 
     for name, colour in zip(series.shown, COLOURS, strict=False):
@@ -157,7 +158,7 @@ def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
 def draw_state(ax: "Panel", series: PressureSeries, rest_start: float | None) -> None:
     """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat.
 
-    From the time `rest_start` on, if there is one, a piston only fluctuates: all of that is one point.
+    From the time `rest_start` on, if it is given, the piston only fluctuates: all later bins are merged into one point.
     """
     from idealgas.analysis.core.style import COLOURS, GREY
 

@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from idealgas.analysis.evolution import Evolution
 
 RETURNED = 0.2
-"""Fraction of the discs that have come back from beyond a wall, from which on the headline says how many were there."""
+"""Fraction of the discs that have returned from beyond a wall, from which on the headline gives their maximum."""
 
 
 def evolution_summary(result: "Evolution") -> str:
-    """Return the temperatures at the start and the end with theory, the piston, and the discs beyond a wall."""
+    """Return sentences on the temperature and its theory, the pistons, and the discs beyond a wall."""
     return " ".join([*_temperatures(result), *_pistons(result), *_beyond(result)])
 
 
 def _change(values: np.ndarray) -> str:
-    """Change of a series (F,) from its first to its last instant, as a predicate."""
+    """Return the change of a series (F,) from its first to its last instant, as a predicate."""
     first, last = (f"{value:.4g}" for value in values[[0, -1]])
     return f"stays at {first}" if first == last else f"goes from {first} to {last}"
 
@@ -48,11 +48,11 @@ def _pistons(result: "Evolution") -> Iterator[str]:
         if len(places) and not result.rest:
             yield f"The {name} {_change(places)}."
     if exponent := result.adiabatic_exponent:
-        said = agreement([("γ", exponent)], "the adiabat of these discs")
-        yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {said}, 2 for an ideal gas."
+        verdict = agreement([("γ", exponent)], "the adiabat of these discs")
+        yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {verdict}, 2 for an ideal gas."
     if work := result.isothermal_work:
-        said = agreement([("work", work)], "a slow piston at constant T")
-        yield f"The piston does the work {format_estimate(work)} on the discs; {said}."
+        verdict = agreement([("work", work)], "a slow piston at constant T")
+        yield f"The piston does the work {format_estimate(work)} on the discs; {verdict}."
 
 
 def _beyond(result: "Evolution") -> Iterator[str]:
@@ -60,8 +60,8 @@ def _beyond(result: "Evolution") -> Iterator[str]:
         known = result.spread.get(name)
         expected = [] if known is None else [(name, replace(known, value=share[-1], theory=known.value))]
         discs = f"species '{name}'" if len(result.beyond) > 1 else "the discs"
-        said = agreement(expected, "equilibrium")
+        verdict = agreement(expected, "equilibrium")
         most = int(share.argmax())
         if share[most] > share[-1] + RETURNED:
             yield f"Up to {100 * share[most]:.1f} % of {discs} are beyond the wall, at t = {result.time[most]:.4g}."
-        yield f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {said}."
+        yield f"At the end {100 * share[-1]:.1f} % of {discs} are beyond the wall; {verdict}."

@@ -1,4 +1,4 @@
-"""Temperature of a gas against time, and what is beyond a wall in the end, by theory."""
+"""Theory of the temperature of a gas against time, and of the discs beyond a wall in equilibrium."""
 
 import math
 from collections.abc import Mapping
@@ -24,19 +24,19 @@ from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 
 SLOW = 0.05
-"""Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is a good law."""
+"""Largest speed of a piston, relative to the mean speed of the discs, for which the adiabat is accurate."""
 
 FEW = 5
-"""Number of discs below which energy and place of a piston are not shared as theory takes it."""
+"""Number of discs below which theory does not predict how they share their energy with a piston."""
 
 DILUTE = 0.1
-"""Largest packing fraction at which two gases beside an inner piston are taken to have one compressibility factor."""
+"""Largest packing fraction for which one compressibility factor is used for both gases beside an inner piston."""
 
 EQUAL = 3
-"""Standard deviations of the difference of two pressures within which a piston is taken to be in equilibrium.
+"""Difference of two pressures, in standard deviations, up to which a piston is taken to be in equilibrium.
 
-It vibrates with the energy T/2 on two gases that are compressed without heat: the variance of the difference is
-2 (1/N₁ + 1/N₂) P².
+The piston vibrates with the energy T/2 between two gases that are compressed without heat exchange, and the variance of
+the difference is 2 (1/N₁ + 1/N₂) P².
 """
 
 STEPS = 128
@@ -45,7 +45,7 @@ STEPS = 128
 REST_ERROR = 0.12
 """Error of the length of a gas below a piston at rest, relative to it and times N.
 
-30 runs of 10 discs had 1.1 % more than theory, 50 discs at a packing fraction of 0.5 had 0.15 % more.
+In 30 runs the length was 1.1 % larger than theory for 10 discs, and 0.15 % larger for 50 discs at φ = 0.5.
 """
 
 
@@ -57,12 +57,13 @@ class Law:
         text: name of the law.
         temperature: (F,), mean m v²/2 per disc, energy.
         spin: mean I ω² per disc, energy.
-        piston, piston_error: coordinate of the piston at rest, and its error, length.
+        piston: coordinate of the piston at rest, length.
         pressure: external pressure on the piston, energy/length².
         caveats: conditions of the law that are not met.
+        piston_error: error of the coordinate at rest, length.
         chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_pistons`.
-        steady: whether it is that of an equilibrium that the gas comes to.
-        area: (F,), area that a gas has that a piston compresses without heat, length²; None for other laws.
+        steady: whether the law is an equilibrium that the gas approaches.
+        area: (F,), area of a gas that a piston compresses without heat exchange, length²; None for other laws.
     """
 
     text: str
@@ -79,10 +80,12 @@ class Law:
 
 @dataclass(frozen=True)
 class StateLines:
-    """Isotherm and adiabat of a gas below a piston, through its state at the start.
+    """Isotherm and adiabat of a gas below a piston, through its initial state.
 
-    area: (L,), area that the gas has, length². isotherm, adiabat: (L,), pressure on the piston, energy/length²; no
-    adiabat where heat flows in or discs spin.
+    Attributes:
+        area: (L,), areas of the gas, length².
+        isotherm: (L,), pressure on the piston at constant temperature, energy/length².
+        adiabat: (L,), pressure without heat exchange, energy/length²; None if heat flows in or discs spin.
     """
 
     area: np.ndarray
@@ -93,12 +96,15 @@ class StateLines:
 def expected_law(
     log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray] | None = None, start: float = 0.0
 ) -> Law | None:
-    """Law of the temperature at times (F,); None if no simple theory applies to the scene.
+    """Return the law of the temperature at times (F,); None if no simple theory applies to the scene.
 
-    apart: mean kinetic energy per disc at these times on each side of an inner piston. start: coordinate of the piston
-    at the first time, if it is known.
+    Args:
+        log: log of the gas.
+        time: (F,), times.
+        apart: mean kinetic energy per disc at these times on each side of an inner piston.
+        start: coordinate of the piston at the first time, if it is known.
     """
-    properties, one = log.scene.properties, np.ones(len(time))
+    properties, ones = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
     alone = (
@@ -118,25 +124,25 @@ def expected_law(
     if single and alone and not properties.fixed_walls:
         if piston is None or (piston.mass and properties.varies):
             return None
-        return _at_rest(log, one) if piston.mass else _adiabat(log, time)
+        return _at_rest(log, ones) if piston.mass else _adiabat(log, time)
     if properties.later_accelerations or properties.escapes:
         return None
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)
         t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis)
-        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * one, t, steady=True)
+        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * ones, t, steady=True)
     if log.discs.unlike or (equilibrium := known_ensemble(log)) is None:
         return None
     t = equilibrium.temperature
     kinetic = float(discs.number @ equilibrium.of_species / discs.number.sum())
-    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * one, t, steady=True)
+    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * ones, t, steady=True)
 
 
 def _haff(log: Log, time: np.ndarray) -> Law | None:
-    """Haff's law T = T₀/(1 + t/τ)² with τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
+    """Return Haff's law T = T₀/(1 + t/τ)² with τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
 
-    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant. The
-    velocity of the centre of mass, where it is conserved, is not part of the temperature.
+    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant. If
+    the velocity of the centre of mass is conserved, it does not contribute to the temperature.
     """
     gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
     if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
@@ -145,30 +151,33 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
-    said = "Haff's law is that of a uniform gas; `idealgas cooling` shows whether this one remains so."
-    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(said,))
+    caveat = "Haff's law is that of a uniform gas; `idealgas cooling` shows whether this one remains so."
+    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(caveat,))
 
 
 def _kinetic(log: Log) -> float:
-    """Kinetic energy at the start, relative to the centre of mass along axes where momentum is conserved."""
+    """Return the initial kinetic energy, relative to the centre of mass along axes where momentum is conserved."""
     gas = log.discs
     return float((gas.mass * ((gas.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)).sum() / 2)
 
 
 def _track(log: Log) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times of the samples, and coordinates and velocities of the only piston at them."""
+    """Return the times of the samples, and the coordinates and velocities of the only piston at them."""
     time, place = log.observables["piston_position"]
     return time, place[:, 0], log.observables["piston_velocity"][1][:, 0]
 
 
 def room(log: Log, place: np.ndarray) -> np.ndarray:
-    """Length (P,) of the gas along the axis of the only piston at coordinates (P,)."""
+    """Return the length of the gas along the axis of the only piston, (P,), for coordinates of the piston (P,)."""
     (table,) = log.scene.piston
     return place if outward(log, table) >= 0 else log.box[table.axis] - place
 
 
 def piston_force(log: Log, length: float) -> float:
-    """Force on a piston at rest over N T, in 1/length: Z/(L - 2R), as the centres stay one radius away from it."""
+    """Return the force on a piston at rest over N T, 1/length.
+
+    It is Z/(L - 2R), as the centres of the discs stay one radius away from the piston.
+    """
     gas, size = log.discs, list(log.box)
     size[log.scene.piston[0].axis] = length
     z = hard_discs.box_compressibility_factor(gas.radius[:1], [len(gas)], (size[0], size[1]), log.periodic)
@@ -176,9 +185,9 @@ def piston_force(log: Log, length: float) -> float:
 
 
 def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
-    """Isotherm and adiabat through the start of a gas below a piston, over the range of areas that it has.
+    """Return the isotherm and adiabat through the initial state of a gas below a piston, over the range of its areas.
 
-    None without theory: for several species or pistons, above freezing, or where the gas is not uniform below it.
+    The result is None without theory: for several species or pistons, above freezing, or if the gas is not uniform.
     """
     gas, lacking = log.discs, log.scene.lacking("uniform", "straight_flight", "elastic")
     if len(log.scene.piston) != 1 or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike:
@@ -199,21 +208,21 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
 
 
 def is_crowded(log: Log, length: float) -> bool:
-    """Whether the gas below the piston is denser than a fluid in a room of this length."""
+    """Return whether the gas below the piston is denser than a fluid if its length is `length`."""
     gas, across = log.discs, log.box[1 - log.scene.piston[0].axis]
     return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)
 
 
 def work_integral(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
-    """Work ∫ F dL/NT of the gas on a piston from the length grid[0] to others, at rising grid points."""
+    """Return the work ∫ F dL/NT of the gas on a piston from the length grid[0] to other lengths, on a rising grid."""
     slope = np.array([piston_force(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
 
 
 def _adiabat(log: Log, time: np.ndarray) -> Law | None:
-    """Adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the collisions of the discs.
+    """Return the adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the discs.
 
-    None if the gas does not remain a fluid.
+    The result is None if the gas does not remain a fluid.
     """
     at, places, speeds = _track(log)
     lengths = room(log, np.interp(time, at, places))
@@ -225,18 +234,18 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
     fastest = float(np.abs(speeds).max())
     at_first = _kinetic(log) / len(log.discs)
     share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
-    said = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
+    caveat = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
     area = lengths * log.box[1 - log.scene.piston[0].axis]
-    return Law(text, at_first * np.exp(exponent), caveats=(said,) if share > SLOW else (), area=area)
+    return Law(text, at_first * np.exp(exponent), caveats=(caveat,) if share > SLOW else (), area=area)
 
 
-def _at_rest(log: Log, one: np.ndarray) -> Law | None:
-    """Mean position of a piston with a mass, and the temperature there: the energy is N T + T/2 + P L X.
+def _at_rest(log: Log, ones: np.ndarray) -> Law | None:
+    """Return the mean position of a piston with a mass and the temperature there, from the energy N T + T/2 + P L X.
 
     These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
-    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean. None for a few discs, and
-    where the end stop holds the piston.
+    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean. It is None for few discs,
+    and if the end stop holds the piston.
     """
     (table,), (_, places, speeds) = log.scene.piston, _track(log)
     if not table.pressure or len(log.discs) < FEW:
@@ -255,21 +264,21 @@ def _at_rest(log: Log, one: np.ndarray) -> Law | None:
     if is_crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
-    return Law(text, t * one, None, piston, table.pressure, piston_error=REST_ERROR / n * length, steady=True)
+    return Law(text, t * ones, None, piston, table.pressure, piston_error=REST_ERROR / n * length, steady=True)
 
 
 def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> Law | None:
-    """Temperature and place of an inner piston with a mass in equilibrium, and the way of both gases to it.
+    """Return temperature and position of an inner piston with a mass in equilibrium, and the relaxation of both gases.
 
-    In equilibrium its position has the weight X^N₁ (L - X)^N₂ between dilute gases of N₁ and N₂ discs. From equal
-    pressures on the temperatures follow `adiabatic_piston.relaxation`; how hot the gases are when unequal pressures
-    have become equal is not known.
+    In equilibrium the position has the weight X^N₁ (L - X)^N₂ between dilute gases of N₁ and N₂ discs. Once the
+    pressures are equal, the temperatures follow `adiabatic_piston.relaxation`. Theory does not predict the temperatures
+    at which different pressures become equal.
     """
     (table,), gas = log.scene.piston, log.discs
     if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
         return None
     n, diameter = len(gas), 2 * float(gas.radius[0])
-    number = np.array([own.sum() for own in beside_pistons(log).values()])
+    number = np.array([members.sum() for members in beside_pistons(log).values()])
     length = log.box[table.axis] - 2 * diameter
     speed = float(_track(log)[2][0])
     t = (_kinetic(log) + table.mass * speed**2 / 2) / (n + 0.5)
@@ -281,18 +290,24 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     if abs(pressure[0] - pressure[1]) > EQUAL * pressure.mean() * math.sqrt(2 * (1 / number).sum()):
         return law
     z = hard_discs.box_compressibility_factor(gas.radius[:1], [n], gas.box, log.periodic)
-    found = relaxation(first, number, float(gas.mass[0]), table.mass, z, length, time - time[0])
-    return replace(law, chambers=dict(zip(apart, found, strict=True)))
+    temperatures = relaxation(first, number, float(gas.mass[0]), table.mass, z, length, time - time[0])
+    return replace(law, chambers=dict(zip(apart, temperatures, strict=True)))
 
 
 def first_passable(log: Log) -> tuple[int, float] | None:
-    """Axis across which the first gate or permeable wall along an axis stands, and its coordinate; None without one."""
+    """Return the axis normal to the first straight gate or permeable wall along an axis, and its coordinate.
+
+    The result is None without such a wall.
+    """
     walls = (wall for wall in walls_inside(log.scene) if wall.is_passable and wall.is_straight)
     return next(((k, wall.start[k]) for wall in walls for k in range(2) if wall.start[k] == wall.end[k]), None)
 
 
 def equilibrium_spread(log: Log, end: float) -> dict[str, Estimate]:
-    """Fractions of the discs of each species beyond a wall in equilibrium, where centres reach both sides alike."""
+    """Return the equilibrium fraction of the discs of each species beyond a wall.
+
+    The result is empty without such a wall, or if the discs are not distributed uniformly over both sides.
+    """
     wall, gas = first_passable(log), log.discs
     if wall is None or gas.unlike or known_ensemble(log) is None or not becomes_uniform(log, end):
         return {}
