@@ -14,7 +14,7 @@ from idealgas.log import Log
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
     gas, discs, frame = log.discs, composition(log.discs), centre_of_mass_velocity(log)
-    frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # without what is only rounding
+    frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # remove rounding errors
     left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
     return {
@@ -58,7 +58,10 @@ def info(log: Log) -> dict[str, Any]:
 
 
 def _reference_speed(log: Log) -> dict[str, Any]:
-    """Where v_ref may rise: that of the start and that of the end, length/time, and how often it was raised."""
+    """Return the reference speed at the start and at the end, length/time, and how often it was raised.
+
+    The result is empty if the log has no varying reference speed.
+    """
     if "v_ref" not in log.observables:
         return {}
     values = log.observables["v_ref"][1]

@@ -1,6 +1,6 @@
-"""Measure Lyapunov exponents: how fast small deviations grow, and digits are lost.
+"""Measure Lyapunov exponents: how fast small deviations grow and digits are lost.
 
-With `--exponents K` the K largest ones; 4N are the whole spectrum.
+With `--exponents K` the K largest exponents are measured; 4N of them are the whole spectrum.
 """
 
 import math
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIGNMENT = 20
-"""Collisions per disc in which deviations turn into the directions that grow fastest, before growth is measured."""
+"""Events per disc in which deviations turn into the directions of fastest growth before growth is measured."""
 
 FEWEST = 32
-"""Least number of intervals of one event per disc in which growth is measured."""
+"""Smallest number of intervals of one event per disc in which growth is measured."""
 
 PRECISIONS = (7, 16, 32)
-"""Digits of the number types whose loss is predicted."""
+"""Numbers of digits whose loss is predicted."""
 
 
 @dataclass(frozen=True)
@@ -38,19 +38,20 @@ class Lyapunov(Result):
     """Lyapunov exponents of a gas.
 
     Attributes:
-        window: the time that was used.
-        number: N discs.
-        exponents: the largest ones in decreasing order, 1/time.
-        mean_free_time: window and discs, time.
-        digits: decimal digits that a disc's motion loses between two of its collisions (no unit).
-        localisation: exp(S)/N with the entropy S of the squares of the leading deviation of each disc: from 1/N, if one
-            disc has it all, to 1.
+        window: window of time that was used.
+        number: number N of discs.
+        exponents: the largest exponents in decreasing order, 1/time.
+        mean_free_time: mean free time, averaged over window and discs, time.
+        digits: decimal digits that the motion of a disc loses between two of its collisions (no unit).
+        localisation: exp(S)/N, where S is the entropy of the squares of the leading deviation of each disc. It is 1/N
+            if one disc has the whole deviation, and 1 if all have an equal share.
         entropy: sum of the positive exponents (Kolmogorov-Sinai entropy), 1/time; None without the whole spectrum.
-        pairing: largest |λ_i + λ_(4N+1-i)|, which is 0 for conservative motion, 1/time; None as above.
-        zeros: number of exponents that are 0 by conservation laws: two for the energy and two for each momentum.
-        largest_zero: largest size of so many exponents in the middle of the spectrum, 1/time; it falls with time t as
-            ln(t)/t. None as above.
-        time: (n,), from the start of the measurement. growth: (n,), natural logarithm of the leading deviation.
+        pairing: largest |λ_i + λ_(4N+1-i)|, 0 for conservative motion, 1/time; None without the whole spectrum.
+        zeros: number of exponents that vanish by conservation laws: two for the energy and two for each momentum.
+        largest_zero: largest magnitude of these exponents, 1/time, which decays with time t as ln(t)/t; None without
+            the whole spectrum.
+        time: (n,), times from the start of the measurement.
+        growth: (n,), natural logarithm of the leading deviation.
     """
 
     window: Window
@@ -67,7 +68,7 @@ class Lyapunov(Result):
     growth: Annotated[np.ndarray, OMITTED]
 
     def lifetime(self, digits: int) -> float:
-        """Time in which a deviation in the last of so many digits grows to the size of the motion itself."""
+        """Return the time in which a deviation in the last of `digits` digits grows to the size of the motion."""
         return digits * math.log(10) / self.exponents[0].value
 
 
@@ -92,13 +93,13 @@ class LyapunovAnalysis(Analysis):
     ) -> Lyapunov:
         """Measure Lyapunov exponents between two times of a log.
 
-        Deviations are taken through the recorded flights and collisions by the exact tangent map, and made orthogonal
-        after each event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth in the first collisions is left
-        out. Errors are those of the mean growth rate.
+        Deviations are propagated through the recorded flights and collisions by the exact tangent map, and made
+        orthogonal after each event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth during the first
+        events is discarded. Errors are those of the mean growth rate.
 
         Raises:
-            UserError: unless the log has the events of smooth elastic discs between plain sides at rest or periodic
-                ones, by an exact method; for more exponents than 4N, or fewer than 52 events per disc in the window.
+            UserError: unless an exact method recorded the events of smooth elastic discs between periodic sides or
+                plain sides at rest; for more exponents than 4N, or fewer than 52 events per disc in the window.
         """
         must_have_tangent_map(log)
         number = len(log.discs)
@@ -113,18 +114,18 @@ class LyapunovAnalysis(Analysis):
                 f"{log.path}: too short for Lyapunov exponents, which take {ALIGNMENT + FEWEST} events per disc"
             )
         durations, logs, shares, collisions = (np.array(column) for column in zip(*steps, strict=True))
-        found = tuple(ratio(logs[:, k], durations) for k in range(exponents))
+        spectrum = tuple(ratio(logs[:, k], durations) for k in range(exponents))
         free_time = number * durations.sum() / (2 * collisions.sum()) if collisions.any() else math.inf
-        values = np.array([one.value for one in found])
+        values = np.array([estimate.value for estimate in spectrum])
         zeros = 2 * (1 + sum(log.scene.properties.conserves_momentum))
         whole = exponents == 4 * number
         middle = slice(2 * number - zeros // 2, 2 * number + zeros // 2)
         return Lyapunov(
             window,
             number,
-            found,
+            spectrum,
             free_time,
-            _scaled(found[0], free_time / math.log(10)),
+            _scaled(spectrum[0], free_time / math.log(10)),
             mean(shares),
             ratio(np.where(values > 0, logs, 0.0).sum(axis=1), durations) if whole else None,
             float(np.abs(values + values[::-1]).max()) if whole else None,
@@ -136,27 +137,27 @@ class LyapunovAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Lyapunov) -> list[Table]:
-        """Exponents, of a long spectrum some; loss of digits and entropy; times after which digits are lost."""
-        exponents = [(f"λ{k}", one) for k, one in enumerate(result.exponents, 1)]
+        """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
+        exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(result.exponents, 1)]
         notes = [describe(result.window), "theory: none for any density; the largest exponent grows with N"]
-        other = [
+        chaos = [
             ("digits lost per collision of a disc (no unit)", result.digits),
             ("fraction of the discs in the leading deviation (no unit)", result.localisation),
         ]
         if result.entropy is not None:
-            other.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", result.entropy))
+            chaos.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", result.entropy))
             notes.append(f"λ and -λ in pairs: within {result.pairing:.1g}")
             notes.append(f"{result.zeros} exponents are 0 by conservation laws: within {result.largest_zero:.1g}")
         rows = [(f"{digits} digits", Number(result.lifetime(digits), ".3g")) for digits in PRECISIONS]
         return [
             replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
-            estimates(f"Chaos; mean free time {result.mean_free_time:.4g}", other),
+            estimates(f"Chaos; mean free time {result.mean_free_time:.4g}", chaos),
             Table("Time after which all digits are lost", ("numbers of", "time"), rows),
         ]
 
     @staticmethod
     def summary(result: Lyapunov) -> str:
-        """Growth of deviations and the loss of digits, for which there is no theory."""
+        """Return the growth rate of deviations and the loss of digits, for which theory is not available."""
         return (
             f"Small deviations grow at the rate λ = {format_estimate(result.exponents[0])}: a collision of a disc "
             f"takes {format_estimate(result.digits)} digits, and float64 has lost its 16 digits after t = "
@@ -165,7 +166,7 @@ class LyapunovAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Lyapunov) -> "Figure":
-        """Picture of the growth of the leading deviation, and of all exponents if there are several."""
+        """Draw the growth of the leading deviation, and all exponents if there are several."""
         from idealgas.analysis.core.style import BLACK, COLOURS, GREY, panels
 
         figure, axes = panels(1 + (len(result.exponents) > 1))
@@ -180,22 +181,30 @@ class LyapunovAnalysis(Analysis):
         axes[0].set(xlabel="time", ylabel="growth (decimal digits)")
         axes[0].legend()
         for ax in axes[1:]:
-            ax.plot(range(1, len(result.exponents) + 1), [one.value for one in result.exponents], ".", color=COLOURS[0])
+            ax.plot(
+                range(1, len(result.exponents) + 1),
+                [estimate.value for estimate in result.exponents],
+                ".",
+                color=COLOURS[0],
+            )
             ax.axhline(0, color=GREY, linewidth=0.8)
             ax.set(xlabel="number of the exponent", ylabel="exponent (1/time)")
         return figure
 
 
-def _scaled(found: Estimate, factor: float) -> Estimate:
-    return Estimate(found.value * factor, found.standard_error * factor, found.independent_samples)
+def _scaled(estimate: Estimate, factor: float) -> Estimate:
+    return Estimate(estimate.value * factor, estimate.standard_error * factor, estimate.independent_samples)
 
 
 def _steps(
     log: Log, window: Window, exponents: int, progress: Progress | None
 ) -> Iterator[tuple[float, np.ndarray, float, int]]:
-    """Duration, growth (K,) of deviations, localisation of the first and collisions of intervals of N event rows."""
+    """Yield intervals of N event rows with their duration, the growth of deviations, localisation and collisions.
+
+    The growth (K,) is logarithmic, and the localisation is that of the first deviation.
+    """
     number, masses = len(log.discs), log.discs.mass
-    if exponents == 4 * number:  # conjugate pairs, which remain so: their exponents are ±λ in each interval
+    if exponents == 4 * number:  # conjugate pairs remain conjugate: their exponents are ±λ in each interval
         components = np.arange(4 * number).reshape(number, 4)
         start = np.zeros((4 * number, 4 * number))
         start[[*components[:, :2].ravel(), *components[::-1, :1:-1].ravel()], range(4 * number)] = 1.0

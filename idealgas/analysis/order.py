@@ -1,9 +1,8 @@
 """Measure the order of the discs: ψ₆ of neighbours, its correlation g₆(r) and the structure factor S(k).
 
-ψ₆ measures how well the neighbours of a disc form a regular hexagon; its mean over all discs is 1 in a
-crystal and of the order of 1/√N in a fluid. S(k), in a periodic box only, measures how well the discs form rows; its
-limit at small k is given by theory, the compressibility of the fluid. A run without events is measured at its
-checkpoints.
+ψ₆ measures how well the neighbours of a disc form a regular hexagon. The modulus of its mean over all discs is 1 in a
+crystal and of order 1/√N in a fluid. S(k), which requires a periodic box, measures how well the discs form rows; its
+limit at small k is the compressibility of the fluid by theory. A run without events is measured at its checkpoints.
 """
 
 import math
@@ -30,19 +29,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FRAMES, FEWEST_FRAMES = 128, 8
-"""Number of instants of the whole log at which the order is measured, and least number of them in the window."""
+"""Number of instants of the whole log at which the order is measured, and smallest number of them in the window."""
 
 MOST_WAVES = 2**28
-"""Largest number of discs squared times frames: of a large gas fewer instants are taken, at least FEWEST_FRAMES."""
+"""Largest number of discs squared times frames; for a large gas fewer instants are used, at least FEWEST_FRAMES."""
 
 MOST_PAIRS = 2**19
-"""Largest number of pairs of an instant for g₆(r): of a large gas some discs are taken, with all others around them."""
+"""Largest number of pairs of an instant for g₆(r); in a large gas a part of the discs is paired with all others."""
 
 BINS_A_SPACING = 8
-"""Bins of g₆(r) in a mean distance 1/√n between discs."""
+"""Number of bins of g₆(r) per mean distance 1/√n between discs."""
 
 MOST_ROWS = 12
-"""Rows of a function of distance or wave number that are shown; CSV has all of them."""
+"""Number of rows that are printed of a function of distance or wave number; CSV has all of them."""
 
 REACH = 15.0
 """Largest wave number in units of √n: three rings of peaks of a triangular lattice, at 6.75, 11.7 and 13.5."""
@@ -57,9 +56,9 @@ class Structure:
 
     kx, ky: (X,) and (Y,), components of the wave vectors, 1/length; kx ≥ 0, as S(-k) = S(k). on_lattice: (X, Y), mean
     of S over time at each wave vector; nan at 0 and beyond the reach. k, value, error: (K,), mean wave number of a
-    ring, mean of S over time and the directions in the ring, and its standard error. peak: (2,), wave vector of the
-    highest S in every other frame. positional: S/N at that wave vector in the remaining frames, so that chance does
-    not choose what is measured: the square of the positional order, 1 in a lattice at rest.
+    ring, mean of S over time and over the directions in the ring, and its standard error. peak: (2,), wave vector of
+    the highest S in every other frame. positional: S/N at this wave vector in the remaining frames, so that the choice
+    does not bias it: the square of the positional order, 1 in a lattice at rest.
     """
 
     kx: Annotated[np.ndarray, OMITTED]
@@ -74,14 +73,14 @@ class Structure:
 
 @dataclass(frozen=True)
 class Order(Result):
-    """Order of the discs of one log (no unit, but for times and lengths).
+    """Order of the discs of one log (no unit, except for times and lengths).
 
-    window: the time that was used. frames: number of instants in it. local: mean |ψ₆| of a disc. whole: |Ψ₆|, size of
-    the mean of ψ₆ over all discs. square: N ⟨|Ψ₆|²⟩, the number of discs that turn together. hexagons: share of the
-    discs with six neighbours. time, series: (F,), instants from the start of the log on, and |Ψ₆| there. distance,
-    correlation, correlation_error: (B,), distance in the middle of a bin, length, g₆ = ⟨Re ψ₆*(0) ψ₆(r)⟩ of two discs
-    so far apart, and its standard error. structure: structure factor; None unless the box is periodic.
-    compressibility: limit of S(k) at small k by theory, nT times the isothermal compressibility; None without a theory.
+    window: window of time that was used. frames: number of instants in it. local: mean |ψ₆| of a disc. whole: |Ψ₆|,
+    modulus of the mean of ψ₆ over all discs. square: N ⟨|Ψ₆|²⟩, the number of discs that turn together. hexagons:
+    fraction of the discs with six neighbours. time, series: (F,), instants from the start of the log on, and |Ψ₆| at
+    them. distance, correlation, correlation_error: (B,), middle of a bin of distances, length, g₆ = ⟨Re ψ₆*(0) ψ₆(r)⟩
+    of two discs at this distance, and its standard error. structure: structure factor; None unless the box is periodic.
+    compressibility: limit of S(k) at small k by theory, nT times the isothermal compressibility; None without theory.
     """
 
     window: Window
@@ -120,9 +119,9 @@ class OrderAnalysis(Analysis):
     ) -> Order:
         """Measure how well the discs of a gas are ordered between two times of its log.
 
-        The order ψ₆ of the neighbours of each disc (`bond_order`), of all discs together and of two at a distance; in
-        a periodic box the structure factor S(k), with its limit at small k by theory for a fluid of equal discs. All
-        discs count alike, whatever their radius; walls inside the box do not part neighbours.
+        The order ψ₆ of the neighbours of each disc (`bond_order`) is averaged over all discs and correlated between
+        discs. In a periodic box the structure factor S(k) is measured, and compared at small k with theory for a fluid
+        of equal discs. All discs count alike, whatever their radius; walls inside the box do not separate neighbours.
 
         Raises:
             UserError: without positions or with a piston, or if the window is empty or has too few checkpoints.
@@ -133,14 +132,14 @@ class OrderAnalysis(Analysis):
         first = int(times.searchsorted(window.start))
         number, waves = len(log.discs), WaveVectors(log.box, len(log.discs))
         bins = _Distances(log)
-        found, factors = [], []
+        rows, factors = [], []
         for k, state in enumerate(frames(log, times, progress)):
             local, neighbours = bond_order(state.position, log.box, log.periodic)
-            found.append((np.abs(local).mean(), np.abs(local.mean()), (neighbours == FOLD).mean()))
+            rows.append((np.abs(local).mean(), np.abs(local.mean()), (neighbours == FOLD).mean()))
             if k >= first:
                 bins.add(state.position, local)
                 factors += [waves.structure_factor(state.position)] if all(log.periodic) else []
-        size, whole, six = np.array(found).T
+        size, whole, six = np.array(rows).T
         distance, correlation, error = bins.correlation()
         return Order(
             window=window,
@@ -161,7 +160,7 @@ class OrderAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Order) -> list[Table]:
-        """Tables of hexagonal order, its correlation, and the structure factor of a periodic box."""
+        """Return the tables of hexagonal order, its correlation, and the structure factor of a periodic box."""
         rows = [
             ("|ψ₆| of a disc, mean", result.local),
             ("|Ψ₆|, of all discs together", result.whole),
@@ -171,20 +170,20 @@ class OrderAnalysis(Analysis):
         notes = [f"{describe(result.window)}, {result.frames} frames"]
         correlation = result.distance, result.correlation, result.correlation_error
         functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
-        if (found := result.structure) is None:
+        if (structure := result.structure) is None:
             notes.append("S(k) and positional order: in a periodic box only")
         else:
-            rows.append(("S/N at the highest peak (positional order, squared)", found.positional))
-            notes.append(f"highest peak of S at k = ({found.peak[0]:.5g}, {found.peak[1]:.5g})")
+            rows.append(("S/N at the highest peak (positional order, squared)", structure.positional))
+            notes.append(f"highest peak of S at k = ({structure.peak[0]:.5g}, {structure.peak[1]:.5g})")
             title = "Structure factor, all directions (no unit)"
-            functions.append(_function(title, "k (1/length)", found.k, found.value, found.error))
+            functions.append(_function(title, "k (1/length)", structure.k, structure.value, structure.error))
         if result.compressibility is not None:
             notes.append(f"S(k) at small k by theory: {result.compressibility:.4g} (nT times the compressibility)")
         return [estimates("Order (no unit)", rows, notes), *functions]
 
     @staticmethod
     def summary(result: Order) -> str:
-        """Hexagonal order of all discs, from 0 to 1, for which there is no theory."""
+        """Return the hexagonal order of all discs, from 0 to 1, for which theory is not available."""
         return (
             f"|Ψ₆| of all discs is {format_estimate(result.whole)} (0 without order, 1 in a perfect crystal), and "
             f"{100 * result.hexagons.value:.0f} % have six neighbours; there is no theory of either."
@@ -192,7 +191,7 @@ class OrderAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Order) -> "Figure":
-        """Picture of |Ψ₆| against time, g₆ against distance, and in a periodic box S against wave number and vector."""
+        """Draw |Ψ₆| against time, g₆ against distance and, in a periodic box, S against wave number and wave vector."""
         from idealgas.analysis.core.style import COLOURS, GREY, panels
 
         figure, axes = panels(1 if result.structure is None else 2, 2)
@@ -223,7 +222,7 @@ class OrderAnalysis(Analysis):
 
 
 def _function(title: str, of: str, *columns: np.ndarray) -> Table:
-    """Table of a function of distance or wave number, with its standard error."""
+    """Return the table of a function of distance or wave number, with its standard error."""
     rows = [
         (Number(float(x), ".4g"), *with_error(float(y), float(error))) for x, y, error in zip(*columns, strict=True)
     ]
@@ -231,7 +230,7 @@ def _function(title: str, of: str, *columns: np.ndarray) -> Table:
 
 
 def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window, np.ndarray]:
-    """Window of time, and instants from the start of the log, or the given one, to its end."""
+    """Return the window, and instants from the start of the log, or from the given start, to its end."""
     number = max(min(FRAMES, MOST_WAVES // len(log.discs) ** 2), FEWEST_FRAMES)
     if log.has_events:
         window = measure(log, [], start, end, needs=("fixed_walls",))
@@ -250,7 +249,7 @@ def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window,
 
 
 def _compressibility(log: Log) -> float | None:
-    """Limit of S(k) at small k, 1/(d(φZ)/dφ), of a fluid of equal discs in a periodic box; None for other gases."""
+    """Return the limit 1/(d(φZ)/dφ) of S(k) at small k for a fluid of equal discs in a periodic box, else None."""
     gas, phi = log.discs, log.discs.packing_fraction
     if not all(log.periodic) or np.ptp(gas.radius) > 0 or phi > hard_discs.HIGHEST:
         return None
@@ -258,7 +257,7 @@ def _compressibility(log: Log) -> float | None:
 
 
 class _Distances:
-    """Sums of Re ψ₆*(0) ψ₆(r) over pairs of discs, by distance up to half of the box's shorter side."""
+    """Sums of Re ψ₆*(0) ψ₆(r) over pairs of discs, by distance up to half of the shorter side of the box."""
 
     def __init__(self, log: Log) -> None:
         number = len(log.discs)
@@ -281,18 +280,18 @@ class _Distances:
         self._sums.append(np.array([each[: self._bins] for each in sums]))
 
     def correlation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle of each bin that mostly has pairs in it, mean of the product there, and its standard error."""
+        """Return the middle of each bin that mostly contains pairs, the mean product in it, and its standard error."""
         product, pairs = np.moveaxis(np.array(self._sums), 1, 0)
         middle = (np.arange(self._bins) + 0.5) * (self._reach / self._bins)
-        some = (pairs > 0).mean(axis=0) > 0.5  # a product that is rarely observed has no known error
-        value = product.sum(axis=0)[some] / pairs.sum(axis=0)[some]
-        influence = (product[:, some] - value * pairs[:, some]) / pairs[:, some].mean(axis=0)
+        filled = (pairs > 0).mean(axis=0) > 0.5  # the error of a rarely observed product is unknown
+        value = product.sum(axis=0)[filled] / pairs.sum(axis=0)[filled]
+        influence = (product[:, filled] - value * pairs[:, filled]) / pairs[:, filled].mean(axis=0)
         error = np.array([mean(column).standard_error for column in influence.T])
-        return middle[some], value, error
+        return middle[filled], value, error
 
 
 class WaveVectors:
-    """Wave vectors 2π(a/Lx, b/Ly) of a periodic box up to a reach, of which one in each pair ±k."""
+    """Wave vectors 2π(a/Lx, b/Ly) of a periodic box up to a maximum, one of each pair ±k."""
 
     def __init__(self, box: tuple[float, float], number: int) -> None:
         """Take the width and height of the box, length, and the number of discs in it."""
@@ -301,23 +300,23 @@ class WaveVectors:
         self.kx = 2 * math.pi / box[0] * np.arange(most[0] + 1)
         self.ky = 2 * math.pi / box[1] * np.arange(-most[1], most[1] + 1)
         size = np.hypot(self.kx[:, None], self.ky)
-        twice = (self.kx[:, None] == 0) & (self.ky <= 0)  # the other one of a pair, or no wave at all
+        twice = (self.kx[:, None] == 0) & (self.ky <= 0)  # the second of a pair, or k = 0
         self.used = ~twice & (size <= max(reach, size[0, most[1] + 1], size[1, most[1]]))
         self.size = size[self.used]
 
     def structure_factor(self, position: np.ndarray) -> np.ndarray:
-        """S (K,) of positions (N, 2) at the wave vectors that are used."""
+        """Return S (K,) of positions (N, 2) at the wave vectors that are used."""
         waves = zip((self.kx, self.ky[len(self.ky) // 2 :]), position.T, strict=True)
         along, up = (np.vander(np.exp(1j * k[1] * x), len(k), increasing=True) for k, x in waves)  # powers of the first
         across = np.hstack((up[:, :0:-1].conj(), up))
         return np.asarray(np.abs((along.T @ across)[self.used]) ** 2 / len(position))
 
     def structure(self, frames: np.ndarray, number: int) -> Structure:
-        """Structure of a gas of `number` discs from S (F, K) in F frames, F ≥ 2."""
+        """Return the structure factor of a gas of `number` discs from S (F, K) in F ≥ 2 frames."""
         edges = np.linspace(0.0, self.size.max() * (1 + 1e-9), RINGS + 1)
         ring = np.digitize(self.size, edges) - 1
         filled = np.unique(ring)
-        found = [mean(frames[:, ring == r].mean(axis=1)) for r in filled]
+        means = [mean(frames[:, ring == r].mean(axis=1)) for r in filled]
         on_lattice = np.full(self.used.shape, np.nan)
         on_lattice[self.used] = frames.mean(axis=0)
         best = int(frames[::2].mean(axis=0).argmax())
@@ -327,24 +326,24 @@ class WaveVectors:
             self.ky,
             on_lattice,
             k=np.array([self.size[ring == r].mean() for r in filled]),
-            value=np.array([one.value for one in found]),
-            error=np.array([one.standard_error for one in found]),
+            value=np.array([estimate.value for estimate in means]),
+            error=np.array([estimate.standard_error for estimate in means]),
             peak=np.array((self.kx[column], self.ky[row])),
             positional=mean(frames[1::2, best] / number),
         )
 
 
-def _draw_vectors(ax: "Axes", found: Structure) -> None:
+def _draw_vectors(ax: "Axes", structure: Structure) -> None:
     """Draw S at every wave vector, in all directions."""
     from matplotlib.colors import LogNorm
 
-    half = found.on_lattice
+    half = structure.on_lattice
     both = np.concatenate((half[:0:-1, ::-1], half))
     both[len(half) - 1] = np.fmax(half[0], half[0, ::-1])
-    kx = np.concatenate((-found.kx[:0:-1], found.kx))
+    kx = np.concatenate((-structure.kx[:0:-1], structure.kx))
     low, high = np.nanmin(half), np.nanmax(half)
     norm = LogNorm(max(low, high * 1e-4), high)
-    shown = ax.pcolormesh(kx, found.ky, both.T, norm=norm, cmap="cividis", rasterized=True)
+    shown = ax.pcolormesh(kx, structure.ky, both.T, norm=norm, cmap="cividis", rasterized=True)
     ax.set(aspect="equal", xlabel="kx (1/length)", ylabel="ky (1/length)")
     ax.grid(visible=False)
     ax.figure.colorbar(shown, ax=ax, label="S(k) (no unit)")

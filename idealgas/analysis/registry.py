@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from idealgas.scene import Scene
 
 MAIN = ("pressure", "temperature", "histogram")
-"""Analyses that a gas in equilibrium without effects leads with."""
+"""Analyses that come first for a gas in equilibrium without effects."""
 
 
 def _source(name: str) -> str:
@@ -29,23 +29,23 @@ def _source(name: str) -> str:
 
 
 def help_of(name: str) -> str:
-    """Help text of the command of an analysis: the docstring of its module, read without importing it."""
+    """Return the help text of the command of an analysis: the docstring of its module, read without importing it."""
     return ast.get_docstring(ast.parse(_source(name))) or ""
 
 
 def position_of(name: str) -> int:
-    """Position of an analysis in the report and in lists of commands, read without importing it."""
-    found = re.search(r"^    position = (\d+)$", _source(name), re.MULTILINE)
-    return int(found[1]) if found else 1000
+    """Return the position of an analysis in the report and in lists of commands, read without importing it."""
+    match = re.search(r"^    position = (\d+)$", _source(name), re.MULTILINE)
+    return int(match[1]) if match else 1000
 
 
 def analyses() -> "tuple[type[Analysis], ...]":
-    """All analyses in the order of the report."""
-    return tuple(sorted(map(find, names()), key=lambda one: (one.position, one.name)))
+    """Return all analyses in the order of the report."""
+    return tuple(sorted(map(find, names()), key=lambda analysis: (analysis.position, analysis.name)))
 
 
 def find(name: str) -> "type[Analysis]":
-    """Analysis with a name such as "heat_capacity" or "heat-capacity".
+    """Return the analysis with a name such as "heat_capacity" or "heat-capacity".
 
     Raises:
         UserError: for an unknown name; the message lists all known names.
@@ -60,7 +60,7 @@ def find(name: str) -> "type[Analysis]":
 
 
 def shown(scene: "Scene") -> tuple[str, ...]:
-    """Return the analyses that a report begins with: those in `scene.shows`, or else those that suit its effects."""
+    """Return the analyses at the beginning of a report: those in `scene.shows`, or else those that suit the effects."""
     if scene.scene.shows:
         return scene.scene.shows
     properties = scene.properties
@@ -69,14 +69,14 @@ def shown(scene: "Scene") -> tuple[str, ...]:
     if properties.escapes:
         return ("escape", "evolution")
     opened, dissipative = properties.last_wall_removed_at > 0, properties.dissipative
-    called_for = {
+    suitable = {
         "effusion": opened,
         "cooling": dissipative,
         "evolution": opened or not properties.fixed_walls or dissipative,
         "profile": not properties.straight_flight or len(properties.temperatures) > 1,
         "transport": all(properties.periodic) and properties.collisions_conserve_energy,
     }
-    return tuple(name for name, called in called_for.items() if called) or MAIN
+    return tuple(name for name, suits in suitable.items() if suits) or MAIN
 
 
 def analyse(
@@ -106,10 +106,10 @@ def analyse(
 def combine(results: "Sequence[Result]") -> "Result":
     """Combine the results of one analysis of several logs, as commands with several logs do.
 
-    The pressures of several gases become their equation of state, with its virial coefficients.
+    For example, the pressures of several gases become their equation of state with its virial coefficients.
 
     Args:
-        results: of the same analysis.
+        results: results of the same analysis.
 
     Raises:
         UserError: if the analysis does not combine logs, if a run is given twice, or if the gases do not fit together.

@@ -1,4 +1,4 @@
-"""Status of a run that may still go on: the latest state in its log, and the pressure from the latest events."""
+"""Status of a run that may still be going on: the latest state in its log, and the pressure from the latest events."""
 
 from dataclasses import dataclass
 
@@ -24,13 +24,19 @@ BINS, HIGHEST = 20, 4.0
 class Status:
     """Latest state of the gas in a log.
 
-    time: end of the log, time. rows: number of event rows; None if the log has no events. events: number of events so
-    far. temperature: mean kinetic energy of all discs without their conserved common motion, energy. pressure,
-    compressibility_factor: pressure (energy/length²) and Z = PA/NT from the virial of the latest pair collisions; None
-    if they cannot be measured. ks_distance: Kolmogorov-Smirnov distance of the speeds, in units of √(T/m), from
-    Maxwell-Boltzmann's distribution; None if no disc moves. edges: (BINS + 1,), edges of the bins of these speeds.
-    density: (BINS,), their measured probability density, None if no disc moves. expected: (BINS,), Maxwell-Boltzmann's
-    density. caveats: those of averages over this gas.
+    Attributes:
+        time: end of the log, time.
+        rows: number of event rows; None if the log has no events.
+        events: number of events so far.
+        temperature: mean kinetic energy of the discs without the conserved motion of their centre of mass, energy.
+        pressure: pressure from the virial of the latest pair collisions, energy/length²; None if it cannot be measured.
+        compressibility_factor: Z = PA/NT from the same collisions; None if it cannot be measured.
+        ks_distance: Kolmogorov-Smirnov distance of the speeds from the Maxwell-Boltzmann distribution; None if no disc
+            moves.
+        edges: (BINS + 1,), edges of the bins of the speeds, in units of √(T/m).
+        density: (BINS,), measured probability density of these speeds; None if no disc moves.
+        expected: (BINS,), Maxwell-Boltzmann density.
+        caveats: caveats of averages over this gas.
     """
 
     time: float
@@ -47,7 +53,7 @@ class Status:
 
 
 def status(log: Log) -> Status:
-    """Status of a log, from its latest state and a bounded number of its latest events."""
+    """Return the status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
     squares = (mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1))[state.inside]
@@ -71,7 +77,7 @@ def status(log: Log) -> Status:
 
 
 def _time_seen(log: Log) -> float:
-    """End of the log, or an earlier time if more than ROWS event rows follow the last checkpoint."""
+    """Return the end of the log, or an earlier time if more than ROWS event rows follow the last checkpoint."""
     if not log.has_events:
         return float(log.checkpoints.times[-1]) if len(log.checkpoints) else log.start_time
     last = int(log.checkpoints.rows[-1]) + ROWS if len(log.checkpoints) else ROWS
@@ -81,9 +87,9 @@ def _time_seen(log: Log) -> float:
 
 
 def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
-    """Pressure and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`.
+    """Return P and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`.
 
-    Without events they come from the sums in the samples since one of the last checkpoints, if the log has them.
+    Without events they are from the sums in the samples since one of the last checkpoints, if the log has such sums.
     """
     times = log.checkpoints.times
     if log.has_events:

@@ -1,8 +1,8 @@
 """Measure the heat capacity by every route that the logs allow.
 
-Logs at several temperatures give the slope dE/dT. One log gives E/T by the pressure on the walls of a closed box,
-Var(E)/T² in a heat bath, and with spin, gravity or a piston the fluctuations of the kinetic energy. DIR is the
-folder of a sweep with the analysis "heat-capacity".
+Logs at several temperatures give the slope dE/dT. A single log gives E/T from the pressure on the walls of a closed
+box, Var(E)/T² in a heat bath, and the fluctuations of the kinetic energy with spin, gravity or a piston. The folder of
+a sweep with the analysis "heat-capacity" may be given instead of logs.
 """
 
 import math
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MANY = 12
-"""Largest number of logs that the table lists one by one."""
+"""Largest number of logs that the table lists individually."""
 
 
 class HeatCapacityAnalysis(Analysis):
@@ -59,11 +59,11 @@ class HeatCapacityAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Measured:
-        """Measure the heat capacity per disc, in units of k_B, by all the routes that one log allows.
+        """Measure the heat capacity per disc, in units of k_B, by every route that one log allows.
 
-        A closed box gives E/T, with T from the pressure on its walls; a heat bath Var(E)/T²; discs with spin, gravity
-        or a piston the fluctuations of the kinetic energy at fixed total energy. Too few independent samples give
-        none; `caveats` says so.
+        A closed box gives E/T, with T from the pressure on its walls. A heat bath gives Var(E)/T². Discs with spin,
+        gravity or a piston give the heat capacity from the fluctuations of the kinetic energy at fixed total energy. If
+        there are too few independent samples there is no result, and `caveats` contains the reason.
 
         Raises:
             UserError: if no equilibrium exists or is known: walls of two temperatures, collisions that lose energy, a
@@ -91,18 +91,18 @@ class HeatCapacityAnalysis(Analysis):
             return _closed_box(log, start, end, progress)
         series, dof = energy_series(log, start, end), degrees_of_freedom(log)
         capacity, excess = expected_capacity(log, series)
-        other = 1.5 if has_piston else 0.0
+        of_piston = 1.5 if has_piston else 0.0
         if BATH in kinds:
             (bath,) = properties.temperatures
             temperature = Estimate(bath, 0.0, math.inf)
             thermometer = "the walls' own" if properties.bath is None else "the heat bath's own"
             route, fluctuating = "Var(E)/T²", series.energy
-            found = bath_fluctuations(series.energy, n, bath, other, capacity)
+            capacity_of_route = bath_fluctuations(series.energy, n, bath, of_piston, capacity)
         else:
             temperature, thermometer = mean(2 * series.kinetic / dof), "kinetic energy"
             route, fluctuating = "fluctuations of the kinetic energy", series.kinetic
-            found = kinetic_fluctuations(series.kinetic, n, dof, other, capacity)
-        why = too_few(found, fluctuating)
+            capacity_of_route = kinetic_fluctuations(series.kinetic, n, dof, of_piston, capacity)
+        why = too_few(capacity_of_route, fluctuating)
         return Measured(
             str(log.path),
             ", ".join(kinds),
@@ -110,7 +110,7 @@ class HeatCapacityAnalysis(Analysis):
             _mean_energy(series.energy / n),
             temperature,
             thermometer,
-            {} if why else {route: found},
+            {} if why else {route: capacity_of_route},
             None if capacity is None else capacity.value,
             excess,
             0.0 if capacity is None else capacity.error,
@@ -119,18 +119,18 @@ class HeatCapacityAnalysis(Analysis):
         )
 
     @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Measured:
-        """Result of one point of a sweep, named by the path of its log."""
-        energy, temperature = (Estimate.from_dict(found[key]) for key in ("energy_per_disc", "temperature"))
-        routes = {name: Estimate.from_dict(route) for name, route in found["routes"].items()}
+    def restore(stored: dict[str, Any], label: str) -> Measured:
+        """Return the result of one point of a sweep, which is named by the path of its log."""
+        energy, temperature = (Estimate.from_dict(stored[key]) for key in ("energy_per_disc", "temperature"))
+        routes = {name: Estimate.from_dict(route) for name, route in stored["routes"].items()}
         plain = {
-            key: found[key] for key in ("path", "kind", "number", "thermometer", "theory", "excess", "theory_error")
+            key: stored[key] for key in ("path", "kind", "number", "thermometer", "theory", "excess", "theory_error")
         }
         return Measured(energy=energy, temperature=temperature, routes=routes, **plain)
 
     @staticmethod
     def tables(result: HeatCapacity) -> list[Table]:
-        """Tables of energy and temperature of each log, and of the heat capacity by every route."""
+        """Return the tables of energy and temperature of each log, and of the heat capacity by every route."""
         tables = []
         if len(result.logs) <= MANY:
             rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]
@@ -142,16 +142,18 @@ class HeatCapacityAnalysis(Analysis):
 
     @staticmethod
     def summary(result: HeatCapacity) -> str:
-        """Heat capacity per disc by the first route, and whether all routes agree with theory."""
+        """Return the heat capacity per disc by the first route, and whether all routes agree with theory."""
         rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
         if not rows:
             return "No route gives a heat capacity here, so that there is nothing to compare with theory."
-        name, found = rows[0]
-        return f"C = {format_estimate(found)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
+        name, estimate = rows[0]
+        return (
+            f"C = {format_estimate(estimate)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
+        )
 
     @staticmethod
     def figure(result: HeatCapacity) -> "Figure":
-        """Picture of C per disc (and of γ) by every route with its error bar, and of its theory."""
+        """Draw C per disc (and γ) by every route with its error bar and its theory."""
         from idealgas.analysis.core.style import COLOURS, name_rows, panels
 
         figure, (ax,) = panels(1)
@@ -176,20 +178,23 @@ def _listed(*parts: str | None) -> str:
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
-    """Mean of a series of energies; known exactly if only rounding changes it."""
+    """Return the mean of a series of energies, which is known exactly if only rounding changes it."""
     if np.ptp(energy) <= 1e-9 * np.abs(energy).max():
         return Estimate(float(energy.mean()), 0.0, math.inf)
     return mean(energy)
 
 
 def _closed_box(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Measured:
-    """Heat capacity E/T of a gas in a closed box: hard discs have no energy scale, so that E is proportional to T."""
+    """Return the heat capacity E/T of a gas in a closed box.
+
+    Hard discs have no energy scale, so that E is proportional to T.
+    """
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility_factor for route in measured.routes if route.name.startswith(WALLS)), None)
     if walls is None or walls.theory is None or not walls.value > 0:
         raise UserError(f"{log.path}: no temperature from walls: none, never hit, or without a theory")
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
-    t = replace(walls.times(temperature / walls.theory), theory=temperature)  # undoes that Z has E/N as temperature
+    t = replace(walls.times(temperature / walls.theory), theory=temperature)  # Z was computed with E/N as temperature
     n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)
     energy = (log.discs.kinetic_energy - centre_of_mass_energy(log)) / n
     error = energy * t.standard_error / t.value**2

@@ -21,28 +21,29 @@ ROUTES = {
     "fluctuations of the kinetic energy": "it requires an isolated gas with spin, gravity or a piston",
     "γ": "it requires a piston with a mass",
 }
-"""Reason why a route does not apply to a set of logs, by the name of the route."""
+"""Reason for which a route does not apply to a set of logs, by the name of the route."""
 
 
 @dataclass(frozen=True)
 class Measured(Result):
-    """Measurements of one log that concern the heat capacity.
+    """Energy, temperature and heat capacities of one log.
 
-    The temperature must be measured independently of the energy: by the pressure on the walls where all energy is
-    kinetic, as the temperature of thermal walls or of a thermostat in a heat bath, and by the kinetic energy where that
-    is a part of the energy.
+    The temperature must be measured independently of the energy. It follows from the pressure on the walls if all
+    energy is kinetic; in a heat bath it is the temperature of the thermal walls or of the thermostat; and if the
+    kinetic energy is only a part of the energy, it follows from the kinetic energy.
 
     Attributes:
-        path: of the log.
+        path: path of the log.
         kind: kind of gas, such as a closed box or a heat bath.
-        number: of discs.
-        energy: mean energy per disc from an arbitrary zero, energy.
-        temperature: energy (k_B = 1).
+        number: number of discs.
+        energy: mean energy per disc, relative to an arbitrary zero, energy.
+        temperature: temperature, energy (k_B = 1).
         thermometer: how the temperature was measured.
         routes: heat capacity per disc (k_B = 1) by the name of each route.
-        refused: reason why the log gives no value by a route that applies to it, by the name of the route.
-        theory, theory_error: heat capacity per disc by theory, and its error.
-        excess: C_P - C_A per disc by theory, None without a piston.
+        theory: heat capacity per disc by theory.
+        excess: C_P - C_A per disc by theory; None without a piston.
+        theory_error: error of the heat capacity by theory.
+        refused: why the log gives no value by a route that applies to it, by the name of the route.
     """
 
     path: str
@@ -60,10 +61,13 @@ class Measured(Result):
 
 @dataclass(frozen=True)
 class Route:
-    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one way of measuring.
+    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one route.
 
-    name: of the route. kind: of gas. gas: its number of discs, box and effects; None if the logs hold one gas of this
-    kind.
+    Attributes:
+        name: name of the route.
+        kind: kind of gas.
+        value: heat capacity or γ.
+        gas: number of discs, box and effects of the gas; None if the logs contain one gas of this kind.
     """
 
     name: Annotated[str, Key("route")]
@@ -76,8 +80,10 @@ class Route:
 class HeatCapacity(Result):
     """Heat capacity by every route that a set of logs allows.
 
-    routes: heat capacities, one for each route and kind of gas. refused: reason why a route does not apply, by the name
-    of the route. logs: what was measured in each log.
+    Attributes:
+        routes: heat capacities, one for each route and kind of gas.
+        refused: why a route does not apply, by the name of the route.
+        logs: measurements of each log.
     """
 
     routes: tuple[Route, ...]
@@ -86,7 +92,7 @@ class HeatCapacity(Result):
 
 
 Groups = dict[tuple[str, str], list[Measured]]
-"""Logs by kind of gas and gas in words; the words are empty where all logs of the kind are of one gas."""
+"""Logs by kind of gas and gas in words; the words are empty if all logs of the kind contain the same gas."""
 
 
 def combine_logs(logs: Sequence[Measured]) -> HeatCapacity:
@@ -112,15 +118,15 @@ def _groups(logs: Sequence[Measured]) -> Groups:
         origin = members[0].origin
         words = origin.words if origin and kinds[kind] > 1 else ""
         if (kind, words) in groups and origin:
-            words = f"{words}, as in {origin.path}"  # gases that differ in what the words leave out
+            words = f"{words}, as in {origin.path}"  # the gases differ in something that the words omit
         groups[kind, words] = members
     return groups
 
 
 def _apart(groups: Groups) -> Iterator[str]:
-    """Sentence for each kind of gas of which there is more than one gas."""
+    """Yield a caveat for each kind of gas of which there is more than one gas."""
     for kind in dict.fromkeys(kind for kind, _ in groups):
-        if len(gases := [gas for other, gas in groups if other == kind]) > 1:
+        if len(gases := [gas for kind_of_gas, gas in groups if kind_of_gas == kind]) > 1:
             words = "; ".join(gases)
             yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: {words}."
 
@@ -134,7 +140,7 @@ def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
-    """Slope dE/dT per disc by weighted least squares with errors of E or of T; None if all are the same."""
+    """Return the slope dE/dT per disc by weighted least squares with errors of E or T; None if all T are the same."""
     energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
     if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
         return None
@@ -152,14 +158,19 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
         error = spread**-0.5 * slope**2 / abs(guess)
     else:
         error = spread**-0.5
-    other = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
+    of_piston = 1.5 / members[0].number if PISTON in members[0].kind else 0.0
     samples = sum(min(m.energy.independent_samples, m.temperature.independent_samples) for m in members)
     theory_error = sum(m.theory_error for m in members) / len(members)
-    return Estimate(float(slope) - other, float(error), samples, mean_theory([m.theory for m in members]), theory_error)
+    return Estimate(
+        float(slope) - of_piston, float(error), samples, mean_theory([m.theory for m in members]), theory_error
+    )
 
 
 def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
-    """Ratio γ = C_P/C_A: C_A is measured in a log without the piston if there is one, else C_P - C_A is from theory."""
+    """Yield the ratio γ = C_P/C_A of each gas with a piston.
+
+    C_A is measured in a log without the piston if there is one; otherwise C_P - C_A is taken from theory.
+    """
     for route in routes:
         excess = next((m.excess for m in groups[route.kind, route.gas or ""] if m.excess), None)
         c_p = route.value

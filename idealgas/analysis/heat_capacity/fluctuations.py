@@ -1,8 +1,8 @@
 """Heat capacity from the fluctuations of the energy, and its theory.
 
 Events give the energy at all times. Samples are stored at the starts of epochs, whose length depends on the speed of
-the discs at that time, and with `log.snapshot_every` also at evenly spaced times, which are independent of the state of
-the gas.
+the discs at that time. With `log.snapshot_every` they are also stored at evenly spaced times, which are independent of
+the state of the gas.
 """
 
 import math
@@ -25,19 +25,19 @@ FEWEST = 16
 """Smallest number of samples from which fluctuations can be measured."""
 
 LEAST_SAMPLES = 128
-"""Least number of independent samples for heat capacities from fluctuations; the error of a variance is then 13 %.
+"""Smallest number of independent samples for a heat capacity from fluctuations; the error of a variance is then 13 %.
 
-Where it is larger, a variance that is too small has an error that is too small: with 32 samples deviations are 1.46
-times their errors (rms of made-up series), with 64 1.24, with 100 1.11.
+With fewer samples, a variance that is too small also has an error that is too small: the rms of deviation over error is
+1.46 with 32 samples, 1.24 with 64 and 1.11 with 100 (synthetic series).
 """
 
 LARGEST_ERROR = 0.5
-"""Largest standard error of such a heat capacity, relative to it."""
+"""Largest relative standard error of a heat capacity from fluctuations."""
 
 FEW_IN_COLUMN = 0.47
-"""Relative error, times N, of the heat capacity of many discs under gravity for N discs of a fixed energy.
+"""Relative error of the heat capacity under gravity by the theory of many discs, for N discs of fixed energy, times N.
 
-The largest part of it over all heights of the box, by exact integration over the states of 2 to 20 points.
+It is the maximum over all heights of the box, from exact integration over the states of 2 to 20 points.
 """
 
 SOURCE = "degrees of freedom"
@@ -48,9 +48,13 @@ SOURCE = "degrees of freedom"
 class EnergySeries:
     """Energies of a gas at n times after equilibration.
 
-    kinetic: (n,), kinetic energy of translation of the discs. energy: (n,), energy of the discs by motion, spin and
-    position, including that of a piston with a mass. Both are relative to the gas as a whole where nothing stops its
-    motion. position: (n,), coordinate of the piston, length; None without one. start: first of the times.
+    Along axes where nothing stops its motion, the gas as a whole does not contribute to the energies.
+
+    Attributes:
+        kinetic: (n,), kinetic energy of translation of the discs.
+        energy: (n,), energy of the discs by motion, spin and position, including that of a piston with a mass.
+        position: (n,), coordinate of the piston, length; None without a piston.
+        start: first of the times.
     """
 
     kinetic: np.ndarray
@@ -60,10 +64,10 @@ class EnergySeries:
 
 
 def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
-    """Energies between two times, by default from detected equilibrium to the end of the log.
+    """Return the energies between two times, by default from detected equilibrium to the end of the log.
 
-    Events give them at all times, and those at the edges of the blocks of the window are taken; without events, and
-    with a piston, there are those of the samples.
+    With events, the energies at the edges of the blocks of the window are used. Without events, and with a piston,
+    those of the samples are used.
 
     Raises:
         UserError: if there are no samples, or too few in equilibrium.
@@ -77,7 +81,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
 
 
 def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
-    """Energies of discs at given times (n,)."""
+    """Return the energies of the discs at given times (n,)."""
     gas, kinetic, inner = log.discs, np.zeros(len(times)), np.zeros(len(times))
     for k, state in enumerate(log.frames(times)):
         kinetic[k] = gas.mass @ (state.velocity**2).sum(axis=1) / 2
@@ -90,7 +94,7 @@ def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
 
 
 def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
-    """Energies at samples between two times, evenly spaced where they can be."""
+    """Return the energies at samples between two times, evenly spaced if possible."""
     scene, observed = log.scene, log.observables
     time = observed["kinetic_energy"][0]
     if len(time) < 2 or not np.diff(time).max() > 0:
@@ -101,7 +105,7 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
     else:
         step = np.diff(time).max()
         grid = np.arange(first_time, end + 1e-9 * step, step)
-        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample at a point of the grid, but for rounding
+        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample may be off the grid by rounding
         at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(end, "right"))]
     common = centre_of_mass_energy(log)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
@@ -122,7 +126,7 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
 
 
 def bath_fluctuations(energy: np.ndarray, n: int, bath: float, other: float, capacity: Theory | None) -> Estimate:
-    """Heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean of the series.
+    """Return the heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean.
 
     Args:
         energy: series of energies.
@@ -139,10 +143,10 @@ def bath_fluctuations(energy: np.ndarray, n: int, bath: float, other: float, cap
 
 
 def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, capacity: Theory | None) -> Estimate:
-    """Heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
+    """Return the heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
 
-    All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and
-    r = a Var(K)/⟨K⟩² is b/(a + b + 1). Source: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967).
+    All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and r = a
+    Var(K)/⟨K⟩² is b/(a + b + 1). Source: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967).
 
     Args:
         kinetic: series of kinetic energies.
@@ -163,7 +167,7 @@ def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, ca
 
 
 def too_few(found: Estimate, series: np.ndarray) -> str:
-    """Why the fluctuations of a series give no heat capacity, as part of a sentence; empty if they do."""
+    """Return why the fluctuations of a series give no heat capacity, as part of a sentence; empty if they do."""
     samples, error = len(series) / inefficiency(series), found.standard_error
     if samples < LEAST_SAMPLES:
         why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
@@ -175,11 +179,11 @@ def too_few(found: Estimate, series: np.ndarray) -> str:
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
-    """Heat capacity C per disc by theory, and C_P - C_A per disc with a piston (k_B = 1); None where theory is unknown.
+    """Return C per disc by theory and, with a piston, C_P - C_A per disc (k_B = 1); None if theory is not available.
 
-    Each degree of freedom adds 1/2; a conserved momentum takes one away. The position of a disc under gravity adds
-    1 - x² eˣ/(eˣ - 1)² with x = m g h/T and the height h that its centre can reach; N discs of a fixed energy differ
-    from that by a part 1/N. A piston adds Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
+    Each degree of freedom contributes 1/2; each conserved momentum removes one. The position of a disc under gravity
+    contributes 1 - x² eˣ/(eˣ - 1)² with x = m g h/T, where h is the height that its centre can reach; for N discs of
+    fixed energy this is off by a fraction of order 1/N. A piston contributes Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas, part = log.scene, log.discs, 0.0
     motion = degrees_of_freedom(log) / (2 * len(gas))

@@ -1,8 +1,8 @@
 """Measure density, temperature, flow and pressure in strips along an axis, and the heat given by walls.
 
-Theory, for a dilute gas: uniform in a closed or periodic box, barometric under gravity, and between two thermal sides
-T^(3/2) linear in the position, with the temperature jumps at them, and n T Z constant. A flow that gravity drives along
-periodic sides is Poiseuille's (`flow`).
+Theory predicts a uniform gas in a closed or periodic box and, for a dilute gas, the barometric law under gravity.
+Between two thermal sides T^(3/2) is linear in the position, with temperature jumps at the sides, and n T Z is constant.
+A flow that gravity drives along periodic sides is compared with Poiseuille flow (`flow`).
 """
 
 import math
@@ -37,32 +37,30 @@ if TYPE_CHECKING:
     from idealgas.analysis.core.style import Panel
 
 BINS = 20
-"""Number of strips unless it is given."""
+"""Default number of strips."""
 
 DILUTE = 0.02
-"""Largest packing fraction of a strip for a theory that is that of a dilute gas; n and T are then off by about 4 %."""
+"""Largest packing fraction of a strip for theories of a dilute gas; n and T are then off by about 4 %."""
 
 LAYERED = 0.02
-"""Part by which layers at walls may raise the density of the strips there without a caveat."""
+"""Fraction by which layers at walls may raise the density of the strips there without a caveat."""
 
 CLEAR = 5.0
-"""Difference of two strips, in standard errors, from which on the summary reports it."""
-
+"""Difference of two strips, in standard errors, above which the summary reports it."""
 
 SHEARED = "Errors of the pressure in strips of a sheared gas may be up to 1.4 times too small."
-"""Caveat of a profile between sheared sides, as measured in 50 runs of 50 discs."""
+"""Caveat of a profile between sheared sides, from 50 runs of 50 discs."""
 
 
 @dataclass(frozen=True)
 class SpeciesProfile:
-    """Profiles of one species, one value for each strip.
+    """Profiles of one species, with one value for each strip.
 
-    species: name. density: discs per area, 1/length². temperature: mean m v²/2 per disc, relative to the flow, energy.
-    spin: mean I ω² per disc, energy; None for discs without spin. velocity: of the flow, the mean velocity of the mass
-    along the axis along which gravity drives the gas, length/time; None without such a flow. gradient: slope of the
-    straight line through the temperatures, each with the weight of its discs, energy/length; None where fewer than two
-    strips have a temperature. density_test, temperature_test: of all strips together; None unless the gas is uniform by
-    theory.
+    species: name of the species. density: discs per area, 1/length². temperature: mean m v²/2 per disc, relative to the
+    flow, energy. spin: mean I ω² per disc, energy; None without spin. velocity: mass-weighted velocity of the flow that
+    gravity drives, length/time; None without a flow. gradient: slope of a straight line through the temperatures, each
+    weighted with its number of discs, energy/length; None with fewer than two temperatures. density_test,
+    temperature_test: tests of all strips together; None unless the gas is uniform by theory.
     """
 
     species: str
@@ -80,7 +78,7 @@ class Profile(Result):
     """Profiles of all species in K strips along one axis.
 
     Attributes:
-        window: the time that was used.
+        window: window of time that was used.
         axis: "x" or "y".
         flow: axis along which gravity drives a flow, "x" or "y"; None without one.
         edges: (K + 1,), edges of the strips, length.
@@ -88,9 +86,9 @@ class Profile(Result):
         frames: number of averaged frames.
         law: name of the theory; None without one.
         species: profiles of each species.
-        pressure: (K,) each, components "xx", "yy" and "xy" of the pressure tensor relative to the flow, energy/length².
-        heat: energy per time that each wall gives to the discs, by the name of the wall; sheared sides are one.
-        heat_flow: heat per time from the lower to the higher thermal side; None without two of unlike temperatures.
+        pressure: components "xx", "yy" and "xy" of the pressure tensor relative to the flow, (K,) each, energy/length².
+        heat: energy per time that each wall gives to the discs, by the name of the wall; sheared sides count as one.
+        heat_flow: heat per time from the lower to the higher thermal side; None unless their temperatures differ.
     """
 
     window: Window
@@ -107,7 +105,7 @@ class Profile(Result):
 
     @property
     def middles(self) -> np.ndarray:
-        """Coordinates (K,) of the centres of the strips, length."""
+        """Coordinates of the centres of the strips, (K,), length."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
 
@@ -140,9 +138,9 @@ class ProfileAnalysis(Analysis):
     ) -> Profile:
         """Measure density, temperature and pressure in strips across an axis, and the heat of walls, between two times.
 
-        Averages are taken over states at least as far apart as the events of a disc. Theory, if there is one, is a
-        uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille's for a flow, to which
-        temperatures then are relative.
+        Averages are taken over states that are at least one event per disc apart. Theory, if it is available, is a
+        uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille flow. With a flow,
+        temperatures are relative to it.
 
         Raises:
             UserError: without events or positions, or if the window is empty.
@@ -175,7 +173,7 @@ class ProfileAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Profile) -> list[Table]:
-        """Tables of density, temperature and pressure in every strip, and of the heat given by walls."""
+        """Return the tables of density, temperature and pressure in every strip, and of the heat given by walls."""
         axis, edges = result.axis, result.edges
         strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
         tables = []
@@ -205,9 +203,9 @@ class ProfileAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Profile) -> str:
-        """Density and temperature of the first and the last known strip, and whether all strips agree with theory."""
+        """Return density and temperature of the first and last known strip, and the agreement of all with theory."""
         middles = [f"{result.axis} = {x:.4g}" for x in result.middles]
-        found: list[str] = []
+        sentences: list[str] = []
         rows: list[tuple[str, Estimate | PValue]] = []
         for entry in result.species:
             columns = {"density": entry.density, "temperature": entry.temperature}
@@ -218,22 +216,22 @@ class ProfileAnalysis(Analysis):
                 if not known:
                     continue
                 (x0, first), (x1, last) = known[0], known[-1]
-                if name == "velocity":  # of a flow between sides it is the largest in the middle
+                if name == "velocity":  # between sides the flow is fastest in the middle
                     x1, last = max(known, key=lambda entry: abs(entry[1].value - known[0][1].value))
                 if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
                     ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
-                    found.append(f"The {name} of {entry.species} is {ends}.")
+                    sentences.append(f"The {name} of {entry.species} is {ends}.")
         same = "Nothing differs clearly between the first and the last strip."
         law = f"theory, {result.law}"
         rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(result)]
         if flow := result.heat_flow:
-            said = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
-            found.append(f"Heat flows along {result.axis} at the rate {format_estimate(flow)}; {said}.")
-        return f"{' '.join(found) or same} In strips: {agreement(rows, law)}."
+            verdict = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
+            sentences.append(f"Heat flows along {result.axis} at the rate {format_estimate(flow)}; {verdict}.")
+        return f"{' '.join(sentences) or same} In strips: {agreement(rows, law)}."
 
     @staticmethod
     def figure(result: Profile) -> "Figure":
-        """Picture of density, temperature, pressure and flow, theory dashed; spin temperature as crosses."""
+        """Draw density, temperature, pressure and flow, theory dashed, the spin temperature as crosses."""
         from idealgas.analysis.core.style import BLACK, Strips, curve_style, panels
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
@@ -273,7 +271,7 @@ class ProfileAnalysis(Analysis):
 
 
 def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:
-    """Name of each quantity of a species that has a theory, with the test of all of its strips."""
+    """Yield the name of each quantity of a species that has a theory, with the test of all of its strips."""
     for entry in result.species:
         for name, test in (("density", entry.density_test), ("temperature", entry.temperature_test)):
             if test is not None:
@@ -281,9 +279,9 @@ def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
-    """Sentence for each species that is found too rarely in some strips."""
+    """Yield a caveat for each species that is too rare in some strips."""
     for entry in species:
-        if missing := sum(np.isnan(found.value) for found in entry.temperature):
+        if missing := sum(np.isnan(estimate.value) for estimate in entry.temperature):
             yield (
                 f"{missing} of {len(entry.temperature)} strips hold a disc of {entry.species} in fewer than "
                 f"{FEWEST_FRAMES} frames; they have no temperature."
@@ -293,13 +291,10 @@ def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
 def _limits(
     log: Log, axis: int, width: float, species: Sequence[SpeciesProfile], expected: Expected | None
 ) -> Iterator[str]:
-    """Sentences where a law of dilute gases, of gases without layers at walls, or of many discs does not hold.
-
-    width: of a strip, length.
-    """
+    """Yield a caveat if a law of dilute gases, or of gases without layers at walls, does not hold; width: of a strip."""
     if expected is None:
         return
-    density = np.array([[found.value for found in entry.density] for entry in species])
+    density = np.array([[estimate.value for estimate in entry.density] for entry in species])
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if not expected.dilute:
         if expected.layers.max() > LAYERED:
@@ -319,7 +314,7 @@ def _of_species(
     flow: Sequence[Theory] | None,
     memory: float,
 ) -> SpeciesProfile:
-    """Profiles of one species from its sums (F, K, 5); strip: area of a strip, length². memory: of the window."""
+    """Return the profiles of one species from its sums (F, K, 5); strip: area of a strip, length²."""
     strips = range(sums.shape[1])
 
     def per_disc(k: int, column: int, by: int = 0, theory: Theory | None = None) -> Estimate:
@@ -330,7 +325,7 @@ def _of_species(
         return ratio(sums[:, k, column], sums[:, k, by], theory, memory)
 
     density_test = temperature_test = None
-    if expected is not None and not expected.dilute:  # χ² would find the errors of a law of dilute gases
+    if expected is not None and not expected.dilute:  # χ² would detect the errors of a dilute-gas law
         number = strip * expected.density[s]
         density, warmth = ([of(s, k) for k in strips] for of in (expected.of_density, expected.of_temperature))
         excess = sums[..., 1] - [estimate.value for estimate in warmth] * sums[..., 0]

@@ -1,4 +1,4 @@
-"""Theory of the flow that gravity along periodic sides drives between two thermal sides: Poiseuille flow with slip."""
+"""Theory of the flow that gravity drives along periodic sides between two thermal sides: Poiseuille flow with slip."""
 
 import math
 from collections.abc import Iterator
@@ -17,32 +17,38 @@ LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
 """Name of the law."""
 
 SLIP, SLIP_ERROR = 1.016, 0.031
-"""Velocity to which the flow away from a thermal side extends there, in units of its gradient times ℓ, and its
-difference from that of hard spheres; ℓ is η √(2T/m)/nT of a dilute gas with the same mean free path.
+"""Velocity at a thermal side to which the flow far away from it extrapolates, over its gradient times ℓ.
 
-Source: the BGK equation, Albertoni, Cercignani & Gotusso, Phys. Fluids 6, 993 (1963), which is the same in two
+SLIP_ERROR is its difference from that of hard spheres, and ℓ is η √(2T/m)/nT of a dilute gas with the same mean free
+path. Source: the BGK equation, Albertoni, Cercignani & Gotusso, Phys. Fluids 6, 993 (1963), which is the same in two
 dimensions; hard spheres have 0.985: Sharipov, Proc. EuroSimE, 243 (2004).
 """
 
 SECOND_ORDER, LAYER = 0.77, 0.31
-"""What the first order of slip lacks, as a part of the error: BGK adds 0.77 ℓ² times the second derivative, and right
-beside a side the gas is slower by 0.31 ℓ times the gradient: Cercignani, J. Math. Anal. Appl. 10, 93 (1965)."""
+"""Corrections to first-order slip, which are counted as errors.
+
+The BGK equation adds 0.77 ℓ² times the second derivative, and next to a side the gas is slower by 0.31 ℓ times the
+gradient: Cercignani, J. Math. Anal. Appl. 10, 93 (1965).
+"""
 
 LARGEST_ERROR = 0.1
-"""Largest error relative to the velocity in the middle: above, the gap is too narrow or the flow heats the gas."""
+"""Largest error relative to the velocity in the middle; above it the gap is too narrow or the flow heats the gas."""
 
 STEADY, LEAST_WINDOW = 4.0, 10.0
-"""Time from which a flow is steady, to 2 %, and least length of a window, in relaxation times."""
+"""Time after which a flow is steady to 2 %, and shortest length of a window, in relaxation times."""
 
 
 class Flow(NamedTuple):
-    """Flow by theory. velocity: along the other axis, by strip. relaxation: its time, H²/π²ν with the gap H."""
+    """Flow by theory.
+
+    velocity: velocity along the other axis, in each strip. relaxation: relaxation time H²/π²ν for the gap H.
+    """
 
     velocity: list[Theory]
     relaxation: float
 
     def caveats(self, window: Window) -> Iterator[str]:
-        """Sentence on a window in which the flow develops, or that is too short for its fluctuations."""
+        """Yield a caveat if the flow still develops in the window, or if the window is too short for the errors."""
         if window.start < STEADY * self.relaxation or window.duration < LEAST_WINDOW * self.relaxation:
             yield (
                 f"The flow relaxes in t = {self.relaxation:.3g}: it is steady from {STEADY * self.relaxation:.3g} on, "
@@ -51,11 +57,11 @@ class Flow(NamedTuple):
 
 
 def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
-    """Velocity along the other axis in strips between edges (K + 1,) along an axis; None if unknown.
+    """Return the velocity along the other axis in strips between edges (K + 1,) along an axis; None if unknown.
 
-    The stress of the flow of density ρ carries its weight: u = ρg/2η (y (H - y) + sH), with y from 0 to H where centres
-    can be and the slip length s. It holds for equal elastic discs without spin, with the wide gap and the slow flow
-    that LARGEST_ERROR demands: the heat of the flow raises the temperature between the sides, and so η.
+    The stress carries the weight of the gas of density ρ: u = ρg/2η (y (H - y) + sH), where y goes from 0 to H over the
+    range of the centres and s is the slip length. This holds for equal elastic discs without spin. LARGEST_ERROR
+    requires a wide gap and a slow flow, as viscous heating raises the temperature between the sides and with it η.
     """
     properties, gas = log.scene.properties, log.discs
     emits = [properties.emits[side] for side in sides_across(axis)]
@@ -96,5 +102,5 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     middle = off * abs(fastest) + abs(curvature) * missing.min()
     if middle > LARGEST_ERROR * abs(fastest):
         return None
-    velocity = [Theory(*one, LAW) for one in zip(value.tolist(), error.tolist(), strict=True)]
+    velocity = [Theory(*strip, LAW) for strip in zip(value.tolist(), error.tolist(), strict=True)]
     return Flow(velocity, (gap / math.pi) ** 2 * mass * density / viscosity)

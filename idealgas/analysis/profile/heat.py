@@ -14,13 +14,13 @@ from idealgas.log import Log
 from idealgas.physics.collision_rates import contact_value
 
 SHEARED_SIDES = "bottom and top"
-"""Name of two sheared sides, of whose energies only the sum has a meaning."""
+"""Name of both sheared sides together, as only the sum of their energies has a meaning."""
 
 
 def heat_of_walls(log: Log, window: Window) -> dict[str, Estimate]:
     """Return the energy per time that each wall gave to the discs, by its name, from the samples in the window.
 
-    Sheared sides are one: a disc that crosses them takes the energy from both, and how it is divided is a convention.
+    Sheared sides count as one: a disc that crosses them receives energy from both, and its division is a convention.
     """
     steps, gains = _gains(log, window)
     heat = {wall.name: gains[:, k] for k, wall in enumerate(log.walls[: gains.shape[1]]) if gains[:, k].any()}
@@ -30,9 +30,10 @@ def heat_of_walls(log: Log, window: Window) -> dict[str, Estimate]:
 
 
 def heat_flow(log: Log, axis: int, window: Window) -> Estimate | None:
-    """Return the heat per time from the lower to the higher thermal side across an axis; None without two of them.
+    """Return the heat per time from the lower to the higher thermal side across an axis.
 
-    It is the mean of what one side gives and the other takes. Theory is Fourier's law with Enskog's conductivity.
+    It is the mean of the heat that one side gives and the heat that the other side takes. Theory is Fourier's law with
+    Enskog's conductivity. The result is None unless the two sides have different temperatures.
     """
     sides = sides_across(axis)
     temperatures = [log.scene.properties.emits[side] for side in sides]
@@ -44,7 +45,10 @@ def heat_flow(log: Log, axis: int, window: Window) -> Estimate | None:
 
 
 def _fourier(log: Log, axis: int) -> Theory | None:
-    """Heat per time by Fourier's law: the conductivity is proportional to √T, so that T^(3/2) falls evenly."""
+    """Return the heat per time by Fourier's law.
+
+    The conductivity is proportional to √T, so that T^(3/2) is linear in the position.
+    """
     gas, ends = log.discs, conduction(log, axis)
     if ends is None or gas.packing_fraction > hard_discs.HIGHEST:
         return None
@@ -57,7 +61,7 @@ def _fourier(log: Log, axis: int) -> Theory | None:
 
 
 def _gains(log: Log, window: Window) -> tuple[np.ndarray, np.ndarray]:
-    """Times (n,) between samples in the window, and energy (n, walls) that each wall gave in them."""
+    """Return the times (n,) between samples in the window, and the energy (n, walls) that each wall gave in them."""
     if "wall_energy" not in log.observables:
         return np.empty(0), np.empty((0, 0))
     time, given = log.observables["wall_energy"]

@@ -1,4 +1,4 @@
-"""Pressure tensor in strips: momentum that discs carry, and that collisions pass on."""
+"""Pressure tensor in strips: the momentum that discs carry and that collisions transfer."""
 
 import numpy as np
 
@@ -19,19 +19,19 @@ def pressure_of_strips(
     stored: np.ndarray,
     progress: Progress | None,
 ) -> dict[str, tuple[Estimate, ...]]:
-    """Components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
+    """Return the components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
-    xy is the flow along the axis of momentum across it. Between walls, the component along the axis is the force
-    through a line across the box over the width of the box. Smooth walls across the axis pass none of the momentum
-    along them on: what has gone through a line then is no more than what the gas on one side of it has lost.
+    xy is the flow, across the axis, of momentum along it. Between walls, the component along the axis is the force
+    through a line across the box over the width of the box. Smooth walls across the axis transfer no momentum along
+    themselves. The momentum that has gone through a line is then only what the gas on one side of it has lost.
 
     Args:
         log: log of the gas.
         axis: axis of the strips, 0 for x or 1 for y.
-        edges: of the strips, length.
-        times: (F,), of the frames.
-        carried: (F, K, 3), what the discs of each frame carry of xx, yy and xy, energy.
-        stored: (F, K), momentum across the axis of the discs below a line, mean over the lines of a strip.
+        edges: edges of the strips, length.
+        times: (F,), times of the frames.
+        carried: (F, K, 3), parts of xx, yy and xy that the discs of each frame carry, energy.
+        stored: (F, K), momentum, across the axis, of the discs below a line, averaged over the lines of a strip.
         progress: called with the numbers of rows read and of all rows.
     """
     passed_on = PassedOn(axis, edges, log.periodic, log.scene.properties.shear)
@@ -43,6 +43,6 @@ def pressure_of_strips(
     components = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
     if not log.periodic[axis] and conserved_momentum(log)[1 - axis]:
         lost = -np.diff(stored, axis=0) / np.diff(times)[:, None] / log.box[1 - axis]
-        shear = pressure[..., 2]  # less what was lost, it is the scatter of what discs carry at single instants
+        shear = pressure[..., 2]  # minus the loss, only the scatter of single instants remains
         components["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)
     return components

@@ -1,4 +1,4 @@
-"""Sums over the discs of each strip; the slope of the temperature, and a test of all strips against theory."""
+"""Sums over the discs of each strip, the slope of the temperature, and a test of all strips against theory."""
 
 from dataclasses import dataclass
 
@@ -14,18 +14,20 @@ from idealgas.log import Log
 from idealgas.physics.shear import flow_at
 
 FEWEST_FRAMES = 32
-"""Smallest number of frames with a disc in a strip for an estimate of its temperature."""
+"""Smallest number of frames with a disc in a strip for which its temperature is estimated."""
 
 LEAST_VISITS = 50.0
-"""Expected number of discs in a strip, summed over all frames, below which it is left out: it hardly is normal."""
+"""Expected number of discs in a strip, summed over all frames, below which it is not normally distributed."""
 
 
 @dataclass(frozen=True)
 class StripTest:
     """χ² test of all strips of a profile against theory.
 
-    chi_squared: sum of the squares of normal deviates, one for each wave (no unit). waves: their number. p_value:
-    probability of at least this sum by chance and the errors of theory.
+    Attributes:
+        chi_squared: sum of the squares of normal deviates, one for each wave (no unit).
+        waves: number of waves.
+        p_value: probability of at least this sum by chance, given the errors of theory.
     """
 
     chi_squared: float
@@ -36,12 +38,16 @@ class StripTest:
 def collect(
     log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: Progress | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sums (F, S, K, 5) of 1, m v²/2, I ω², m u and m over discs of a strip, and (F, K, 3) of m vx², m vy², m vx vy.
+    """Sum the discs of each strip at F times.
 
-    And (F, K) of the momentum across the axis of the discs at lower coordinates than lines across the box, averaged
-    over the lines of a strip. All are at F times. u: velocity along the axis `flow`, if there is a flow; v is then
-    relative to the mean of u in the strip.
-    Between sheared sides v is relative to their flow.
+    The velocity v is relative to the mean flow of the strip if there is one, and between sheared sides to their flow; u
+    is the velocity along the axis `flow`.
+
+    Returns:
+        sums: (F, S, K, 5), sums of 1, m v²/2, I ω², m u and m over the discs of each species and strip.
+        carried: (F, K, 3), sums of m vx², m vy² and m vx vy over the discs of each strip.
+        stored: (F, K), momentum, across the axis, of the discs below a line across the box, averaged over the lines of
+            a strip.
     """
     gas, frame = log.discs, centre_of_mass_velocity(log)
     shape = (len(gas.species_names), len(edges) - 1)
@@ -79,19 +85,20 @@ def collect(
 
 
 def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory: float = 0.0) -> StripTest | None:
-    """Test of a series (F, K) over K strips whose deviations from theory are 0 on the average; None with few discs.
+    """Test a series (F, K) over K strips whose deviations from theory are 0 on average; None with few discs.
 
-    Strips of one gas fluctuate together, as discs are not lost and long waves die out slowly. So each wave across the
-    gas is a number of its own, with the error of its own time series: waves w of increasing order in the part of the
-    discs below a place, with Σ weight w w' = 0 for any two of them and for each with a constant. Instantaneous
-    amplitudes of independent discs are then uncorrelated exactly, and their relaxation is nearly that of modes of the
-    gas. Each amplitude over its error becomes a normal deviate by Student's distribution.
+    The strips of one gas fluctuate together, as discs are conserved and long waves decay slowly. The test therefore
+    uses waves across the gas, each with the error of its own time series. The waves w have increasing order in the
+    fraction of the discs below a position, with Σ weight w w' = 0 for any two of them and for each with a constant. The
+    instantaneous amplitudes of independent discs are then exactly uncorrelated, and they relax nearly like modes of the
+    gas. Each amplitude over its error is converted to a normal deviate by Student's distribution.
 
     Args:
-        series: one for each frame and strip, with a mean of weight times a constant by theory, or of 0.
+        series: values of each frame and strip, whose mean by theory is the weight times a constant, or 0.
         weight: (K,), mean number of discs in a strip by theory.
-        error: (K,), error of theory of the mean of the series; in each wave strips add up as badly as they can.
-        memory: number of frames per independent one, if it is known.
+        error: (K,), error of theory of the mean of the series; in each wave the errors of strips add up in the worst
+            way.
+        memory: number of frames per independent frame, if it is known.
     """
     from scipy import special
 
@@ -115,9 +122,10 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory
 def gradient(
     counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int, memory: float
 ) -> Estimate | None:
-    """Slope of the temperature from counts and energies (F, K) of the discs in strips; a slope is linear in all T.
+    """Return the slope of the temperature from counts and energies (F, K) of the discs in strips.
 
-    Theory may be too high at one end and too low at the other. memory: number of frames per independent one.
+    The slope is linear in the temperatures. Theory may be too high at one end and too low at the other. memory: number
+    of frames per independent frame.
     """
     known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
     if np.count_nonzero(known) < 2:

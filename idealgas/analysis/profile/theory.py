@@ -14,34 +14,35 @@ from idealgas.columns import sides_across
 from idealgas.log import Log
 
 UNIFORM = "uniform"
-"""Name of the law of a gas that is the same everywhere."""
+"""Name of the law of a uniform gas."""
 
 LEAST = 1e-100
-"""Density and temperature where the energy lifts no disc, relative to those at the lowest place: as good as 0."""
+"""Density and temperature, relative to those at the lowest position, where the energy lifts no disc; practically 0."""
 
 POINTS = 64
-"""Number of points in a strip over which the theory is averaged."""
+"""Number of points in a strip over which theory is averaged."""
 
 MOST_KINDS = 16
-"""Kinds of discs up to which there is a theory of a column of fixed energy: its time grows as their square."""
+"""Largest number of kinds of discs in the theory of a column of fixed energy, whose cost grows as the square of it."""
 
 JUMP = 2.7
-"""Length over which the gradient extends beyond a side that takes up discs completely, in mean free paths.
+"""Length over which the gradient extends beyond a side that accommodates discs completely, in mean free paths.
 
-Temperatures in ten strips were measured with boxes 2.8 to 23 mean free paths wide and walls of 1 and 2, or 1 and 4.
+It was fitted to temperatures in ten strips of boxes 2.8 to 23 mean free paths wide, with walls of temperatures 1 and 2,
+or 1 and 4.
 """
 
 JUMP_ERROR = 0.3
-"""Root mean square of their deviations from this law, relative to the mean jump; 0.17 to 0.28 were found."""
+"""Root mean square deviation from this law, relative to the mean jump; measured values are 0.17 to 0.28."""
 
 LEAST_INSIDE = 0.4
-"""Least part of the difference of temperatures that is left in the gas; in narrower boxes the law is another."""
+"""Smallest fraction of the temperature difference that remains in the gas; narrower boxes follow another law."""
 
 ROUNDS, STEP = 200, 0.25
-"""Number of iterations for the pressure and for the temperatures beside the sides, and step of the latter."""
+"""Number of iterations for the pressure and for the temperatures beside the sides, and step size of the latter."""
 
 GRID = 4097
-"""Number of points of the tables of the density between two sides and of the equation of state."""
+"""Number of points in the tables of the density between two sides and of the equation of state."""
 
 
 @dataclass(frozen=True)
@@ -50,13 +51,13 @@ class Expected:
 
     Attributes:
         law: name of the law.
-        dilute: whether it holds in dilute gases only, at least for the temperature.
+        dilute: whether the law is restricted to dilute gases, at least for the temperature.
         density: (S, K), mean number density of each strip, 1/length².
         temperature: (S, K), mean temperature of each strip, energy.
         share: (S,), mean m v²/2 of a disc over the temperature, without a conserved motion of the whole gas; no unit.
-        error: of temperatures, energy.
-        layers: (2,), part by which layers at walls may raise the density of the first and the last strip,
-            (1 - 1/Z) R/width: at φ = 0.1 and 0.5, by ten and twenty strips, 0.7 to 0.9 times that was found.
+        error: error of temperatures, energy.
+        layers: (2,), fraction by which layers at walls may raise the density of the first and the last strip, (1 - 1/Z)
+            R/width. Measured values at φ = 0.1 and 0.5, with ten and twenty strips, are 0.7 to 0.9 times that.
     """
 
     law: str
@@ -68,31 +69,34 @@ class Expected:
     layers: np.ndarray
 
     def of_density(self, s: int, k: int) -> Theory:
-        """Density of species s in strip k; errors of all temperatures change the pressure, which all strips have."""
+        """Return the density of species s in strip k; the errors of all temperatures change the common pressure."""
         density, cold = self.density[s], self.error / self.temperature[s]
         last = len(density) - 1
         low, high = self.layers
-        layers = low if k == 0 else high if k == last else (low + high) / (last - 1)  # the others have that much less
+        layers = low if k == 0 else high if k == last else (low + high) / (last - 1)  # inner strips lack these discs
         error = math.hypot(cold[k], density @ cold / density.sum(), layers)
         return Theory(float(density[k]), float(density[k] * error), self.law)
 
     def of_temperature(self, s: int, k: int) -> Theory:
-        """Mean m v²/2 of species s in strip k."""
+        """Return the mean m v²/2 of species s in strip k."""
         return self.of_spin(s, k).times(float(self.share[s]))
 
     def of_spin(self, s: int, k: int) -> Theory:
-        """Mean I ω² of species s in strip k."""
+        """Return the mean I ω² of species s in strip k."""
         return Theory(float(self.temperature[s, k]), self.error, self.law)
 
 
 def flow_axis(log: Log) -> int | None:
-    """Axis along which gravity drives a flow, 0 for x or 1 for y; None without one."""
+    """Return the axis along which gravity drives a flow, 0 for x or 1 for y; None without one."""
     falls = log.scene.properties.free_fall_axes
     return falls.index(True) if any(falls) else None
 
 
 def natural_axis(log: Log) -> int:
-    """Axis (0 for x, 1 for y) across a flow, of gravity, or of two thermal sides of different temperatures; else x."""
+    """Return the axis across a flow, of gravity, or of two thermal sides of different temperatures, else x.
+
+    0 stands for x and 1 for y.
+    """
     if (along := flow_axis(log)) is not None:
         return 1 - along
     if log.gravity[1] != 0 or log.scene.properties.shear:
@@ -102,7 +106,7 @@ def natural_axis(log: Log) -> int:
 
 
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
-    """Profiles by theory in the strips between edges (K + 1,), for a gas from time `start` on; None if unknown."""
+    """Return the profiles by theory in strips between edges (K + 1,), for a gas from a time on; None if unknown."""
     properties, discs = log.scene.properties, classes(log.discs)
     if (
         properties.shear
@@ -115,10 +119,10 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     inside = np.clip(edges, reach[:, None], log.box[axis] - reach[:, None])
     size = np.diff(inside)
     places = inside[:, :-1, None] + size[:, :, None] * (np.arange(POINTS) + 0.5) / POINTS
-    found = _curve(log, axis, places, discs)
-    if found is None:
+    curve = _curve(log, axis, places, discs)
+    if curve is None:
         return None
-    law, weight, temperature, error = found
+    law, weight, temperature, error = curve
     parts = weight.mean(axis=2) * size
     number = discs.number[:, None] * parts / parts.sum(axis=1, keepdims=True)
     strips = np.diff(edges) * log.box[1 - axis]
@@ -129,20 +133,18 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
         phi = math.pi * discs.radius**2 @ (number / strips)[:, [0, -1]]
         z = hard_discs.compressibility_factor(np.minimum(phi, hard_discs.HIGHEST))
         layers = (1 - 1 / z) * min(float(discs.radius.max() / np.diff(edges).min()), 1.0)
-    if len(discs.members) < len(number):  # means over the kinds of a species
+    if len(discs.members) < len(number):  # average over the kinds of a species
         mean_temperature = discs.members @ (number * mean_temperature) / (discs.members @ number)
     return Expected(law, law != UNIFORM, discs.members @ (number / strips), mean_temperature, share, error, layers)
 
 
 Curve = tuple[str, np.ndarray, np.ndarray, float]
+"""Name of the law, relative density and temperature at coordinates (S, K, P), and the error of temperatures."""
 
 
 def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve | None:
-    """Name of the law, relative density and temperature at the coordinates `places` (S, K, P), and the error of T.
-
-    None if unknown.
-    """
-    one = np.ones_like(places)
+    """Return the law, density and temperature at the coordinates `places` (S, K, P); None if unknown."""
+    ones = np.ones_like(places)
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))
     if len(properties.temperatures) == 2 and low is not None and high is not None:
@@ -154,47 +156,52 @@ def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve
             few = len(discs.mass) <= MOST_KINDS
             return _fixed_energy(log, axis, places, discs, t) if few else None
         weight = np.exp(discs.mass[:, None, None] * log.gravity[axis] * (places - log.box[axis] / 2) / t)
-        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * one, 0.0
+        return f"barometric: n ~ exp(-m g h/T), T = {t:.6g} at all heights", weight, t * ones, 0.0
     equilibrium = known_ensemble(log)
     if equilibrium is None:
         return None
-    return UNIFORM, one, equilibrium.temperature * one, 0.0
+    return UNIFORM, ones, equilibrium.temperature * ones, 0.0
 
 
 def _fixed_energy(log: Log, axis: int, places: np.ndarray, discs: Composition, mean: float) -> Curve:
-    """Barometric law of a fixed energy, which leaves less to the discs the higher one of them is.
+    """Return the barometric law at fixed energy: the higher a disc is, the less energy remains for all discs.
 
     mean: temperature of the whole column, energy.
     """
     low = places if log.gravity[axis] < 0 else log.box[axis] - places
     profiles = column_profiles(log, axis)
     above = list(zip(low - discs.radius[:, None, None], profiles, strict=True))
-    weight = np.stack([np.interp(h, found.above, found.density, right=0.0) for h, found in above])
-    temperature = np.stack([np.interp(h, found.above, found.temperature) for h, found in above])
+    weight = np.stack([np.interp(h, profile.above, profile.density, right=0.0) for h, profile in above])
+    temperature = np.stack([np.interp(h, profile.above, profile.temperature) for h, profile in above])
     warmest = profiles[0].temperature[0]
     law = f"barometric at fixed energy, T = {mean:.6g} on average over the discs"
     return law, np.maximum(weight, LEAST), np.maximum(temperature, LEAST * warmest), 0.0
 
 
 def conduction(log: Log, axis: int) -> "Conduction | None":
-    """Temperatures beside two thermal sides across an axis, for equal discs without spin and no other heat."""
+    """Return the temperatures beside two thermal sides across an axis.
+
+    The result is None unless equal discs without spin get heat from these sides only.
+    """
     properties, gas = log.scene.properties, log.discs
     low, high = (properties.emits[side] for side in sides_across(axis))
-    others = properties.bath is not None or any(properties.emits[side] is not None for side in sides_across(1 - axis))
+    has_other_heat = properties.bath is not None or any(
+        properties.emits[side] is not None for side in sides_across(1 - axis)
+    )
     alike = properties.straight_flight and properties.collisions_conserve_energy and not properties.spins
-    if low is None or high is None or others or not alike or len(gas.species_names) > 1 or gas.unlike:
+    if low is None or high is None or has_other_heat or not alike or len(gas.species_names) > 1 or gas.unlike:
         return None
     return conduct(low, high, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
 
 
 def _conduction(log: Log, axis: int, places: np.ndarray) -> Curve | None:
-    """Fourier's law between two thermal sides across an axis."""
-    gas, found = log.discs, conduction(log, axis)
-    if found is None:
+    """Return Fourier's law between two thermal sides across an axis."""
+    gas, ends = log.discs, conduction(log, axis)
+    if ends is None:
         return None
 
     def temperature(place: np.ndarray) -> np.ndarray:
-        power = found.low**1.5 + (found.high**1.5 - found.low**1.5) * place / log.box[axis]
+        power = ends.low**1.5 + (ends.high**1.5 - ends.low**1.5) * place / log.box[axis]
         return np.asarray(power ** (2 / 3))
 
     radius, size = float(gas.radius[0]), log.box[axis]
@@ -203,24 +210,27 @@ def _conduction(log: Log, axis: int, places: np.ndarray) -> Curve | None:
     fraction = _equal_pressure(temperature(grid), mean_fraction)
     if fraction is None:
         return None
-    beside = f"from {found.low:.6g} to {found.high:.6g} beside the walls"
+    beside = f"from {ends.low:.6g} to {ends.high:.6g} beside the walls"
     law = f"T^(3/2) in a straight line (Fourier) and the same pressure n T Z, {beside}"
-    return law, np.interp(places, grid, fraction), temperature(places), found.error
+    return law, np.interp(places, grid, fraction), temperature(places), ends.error
 
 
 def _equal_pressure(temperature: np.ndarray, mean_fraction: float) -> np.ndarray | None:
-    """Packing fractions of hard discs at temperatures (n,) that have one pressure n T Z; None beyond the fluid."""
+    """Return the packing fractions of hard discs at temperatures (n,) with a common pressure n T Z.
+
+    The result is None beyond the fluid.
+    """
     fraction = np.linspace(0.0, hard_discs.HIGHEST, GRID)
     pressure = fraction * hard_discs.compressibility_factor(fraction)  # over T, in units of 1/πR²
     common = mean_fraction * temperature.mean()
     for _ in range(ROUNDS):
-        found = np.interp(common / temperature, pressure, fraction)
-        common *= mean_fraction / found.mean()
-    return found if found.max() < hard_discs.HIGHEST else None
+        candidate = np.interp(common / temperature, pressure, fraction)
+        common *= mean_fraction / candidate.mean()
+    return candidate if candidate.max() < hard_discs.HIGHEST else None
 
 
 class Conduction(NamedTuple):
-    """Temperatures of the gas at the lower and at the higher side, and the error of temperatures, energy."""
+    """Temperatures of the gas at the lower and the higher side, and the error of temperatures, energy."""
 
     low: float
     high: float
@@ -228,10 +238,10 @@ class Conduction(NamedTuple):
 
 
 def conduct(low: float, high: float, size: float, density: float, diameter: float) -> Conduction | None:
-    """Temperatures of a gas between sides of temperatures low and high, energy; None where the jumps are too large.
+    """Return the temperatures of a gas at its sides of temperatures low and high; None if the jumps are too large.
 
-    T^(3/2) changes evenly from side to side, as the conductivity is proportional to √T, and nT is the same everywhere.
-    Where no disc comes from behind, the gas next to a thermal side is not at its temperature: T differs from it by the
+    T^(3/2) is linear from side to side, as the conductivity is proportional to √T, and nT is the same everywhere. No
+    disc comes from behind a thermal side. The gas next to it is therefore not at its temperature: T differs by the
     gradient times JUMP mean free paths. Source: Maxwell, Phil. Trans. 170, 231 (1879).
 
     Args:
@@ -239,10 +249,10 @@ def conduct(low: float, high: float, size: float, density: float, diameter: floa
         high: temperature of the higher side, energy.
         size: distance of the sides, length.
         density: mean number density, 1/length².
-        diameter: of a disc, length.
+        diameter: diameter of a disc, length.
     """
     ratio = high / low
-    a, b = 1.0, ratio  # in units of the lower side's
+    a, b = 1.0, ratio  # in units of the temperature of the lower side
     for _ in range(ROUNDS):
         if (b - a) / (ratio - 1) < LEAST_INSIDE / 2:
             return None
