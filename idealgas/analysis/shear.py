@@ -40,26 +40,36 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STRIPS, INSTANTS = 20, 200
-"""Strips of the profile of the flow, and instants at which it is taken."""
+"""Number of strips of the flow profile, and number of instants at which it is sampled."""
 
 FAST = 0.1
-"""Shear rate over the collision rate of a disc above which the viscosity of a dilute gas is 2 % less, and rate of a
-heat bath over it above which theory has no viscosity."""
+"""Limit of two rates, relative to the collision rate of a disc.
+
+At this shear rate the viscosity of a dilute gas is lower by 2 %. Above this rate of a heat bath, theory gives no
+viscosity.
+"""
 
 DRIFT = 0.1
-"""Relative change of the temperature in the window above which it is no longer that of one state."""
+"""Relative change of the temperature in the window above which it is not the temperature of a single state."""
 
 
 @dataclass(frozen=True)
 class ShearFlow(Result):
     """Shear flow of a gas, with velocities relative to the mean flow.
 
-    window: the time that was used. rate: shear rate, 1/time. reduced_rate: the same over the collision rate of a disc.
-    temperature: mean of m c²/2, energy. viscosity: -P_xy/rate at this temperature T, mass/time, as that over √T of all
-    blocks times √T. pressure: (P_xx + P_yy)/2 at this temperature, energy/length², as that over T times T.
-    normal_stress: (P_xx - P_yy) over the pressure. slope: of the mean velocity against y, over the rate. y, velocity:
-    (20,), middles of strips, length, and mean velocity along x in them, relative to the flow in the middle of the box,
-    length/time. temperatures, viscosities: (B,), of each block that was read.
+    Attributes:
+        window: window of time that was used.
+        rate: shear rate, 1/time.
+        reduced_rate: shear rate over the collision rate of a disc.
+        temperature: temperature T, mean of m c²/2, energy.
+        viscosity: -P_xy/rate at T, mass/time: the mean over all blocks of the viscosity over √T, times √T.
+        pressure: (P_xx + P_yy)/2 at T, energy/length²: the mean over all blocks of the pressure over T, times T.
+        normal_stress: (P_xx - P_yy) over the pressure.
+        slope: slope of the mean velocity against y, over the rate.
+        y: (20,), middles of the strips, length.
+        velocity: (20,), mean velocity along x in the strips, relative to the flow in the middle of the box, length/time.
+        temperatures: (B,), temperature of each block that was read, energy.
+        viscosities: (B,), viscosity of each block that was read, mass/time.
     """
 
     window: Window
@@ -77,10 +87,12 @@ class ShearFlow(Result):
 
 
 class Carried:
-    """Momentum that discs carry relative to the flow, and the part of their velocity that grows with y.
+    """Momentum that discs carry relative to the flow, and the correlation of their velocity with y.
 
-    stress: (B, 3), integrals of m c_x², m c_y² and m c_x c_y over time. excess: (B,), integral of m y c_x, with y from
-    the middle. moment: (B,), integral of m y².
+    Attributes:
+        stress: (B, 3), integrals of m c_x², m c_y² and m c_x c_y over time.
+        excess: (B,), integral of m y c_x, with y from the middle.
+        moment: (B,), integral of m y².
     """
 
     columns = ("disc", "block", "start", "end", "velocity", "position")
@@ -91,11 +103,11 @@ class Carried:
         self._rate, self._height, self._drift = rate, height, drift
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with a number of blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._mass, self._sums = gas.mass, np.zeros((5, len(edges) - 1))
 
     def add(self, flights: Flights) -> None:
-        """Add flights, with velocities relative to the gas: along each, c_x and y are linear in time."""
+        """Add the next flights, along which c_x and y relative to the gas are linear in time."""
         assert flights.position is not None
         mass, t = self._mass.take(flights.disc), flights.end - flights.start
         y, (vx, vy) = flights.position[:, 1], flights.velocity.T
@@ -112,12 +124,12 @@ class Carried:
             add_to(sums, flights.block, mass * values)
 
     def finish(self) -> None:
-        """Make the sums known."""
+        """Set the attributes from the sums."""
         self.stress, self.excess, self.moment = self._sums[:3].T, self._sums[3], self._sums[4]
 
 
 def _product(a: np.ndarray, da: np.ndarray, b: np.ndarray, db: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Integral of (a + da t)(b + db t) from 0 to t."""
+    """Return the integral of (a + da t)(b + db t) from 0 to t."""
     return t * (a * b + t * ((a * db + b * da) / 2 + t * (da * db / 3)))
 
 
@@ -127,10 +139,10 @@ def shear(
     end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> ShearFlow:
-    """Measure viscosity, temperature and normal stresses of a gas between sheared sides, between two times of its log.
+    """Measure viscosity, temperature and normal stress of a gas between sheared sides, between two times of its log.
 
-    The pressure tensor P is that of the velocities c relative to the flow: P A is the mean of Σ m c c and of the
-    momentum that collisions pass on per time, times their distance. The viscosity is -P_xy/rate.
+    The pressure tensor P is that of the velocities c relative to the flow: P A is the mean of Σ m c c plus, per time,
+    the momentum that collisions transfer times the distance of the discs. The viscosity is -P_xy/rate.
 
     Raises:
         UserError: without sheared sides or events, or if the gas does not become steady.
@@ -153,7 +165,7 @@ def shear(
     reduced, heats = viscosities / np.sqrt(temperatures), bool(nonstationary_reason(log))
     series = [reduced] if heats else [reduced, temperatures]
     first = _first(log, edges, series) if start is None else 0
-    memory = memory_time(one[first:] for one in series) * block
+    memory = memory_time(values[first:] for values in series) * block
     slowest = Exchange(memory, "the flow and its temperature forget their values")
     window = Window(edges, first, start is None, kind_of_state(log), slowest)
     p, t = pressure[first:], temperatures[first:]
@@ -180,19 +192,20 @@ def shear(
 
 
 def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
-    """Index of the first block from which on series (B,) are steady."""
+    """Return the index of the first block from which on series (B,) are steady."""
     begin = after_changes(log, edges)
-    first = detect_equilibration(Observable(one[begin:]) for one in series)
+    first = detect_equilibration(Observable(values[begin:]) for values in series)
     if first is None:
         raise not_steady(log, "it still changes in the second half of the log")
     return begin + first
 
 
 def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | None]:
-    """Viscosity by Enskog's theory and pressure, both at T = 1, of equal smooth elastic discs; None for others.
+    """Return Enskog's viscosity and the pressure at T = 1 of equal smooth elastic discs; None for other discs.
 
-    Of the viscosity a shear rate of a times the collision rate takes a part of 2a², and a heat bath of x times that
-    rate a part of x: both are parts of its error, and a stronger heat bath than FAST leaves it unknown.
+    A shear rate of a times the collision rate lowers the viscosity by a fraction 2a², and a heat bath of x times that
+    rate by a fraction x. Both are included in its error; if the heat bath is stronger than FAST, the viscosity is
+    unknown.
     """
     gas, properties = log.discs, log.scene.properties
     if not (properties.elastic and properties.collisions_conserve_energy) or properties.spins:
@@ -203,7 +216,7 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
     chi = hard_discs.fluid_contact_value(phi)
     viscosity = hard_discs.enskog_viscosity(2 * gas.radius[0], density, 1.0, gas.mass[0], chi)
     bath = reduced_rate * properties.thermostat_rate / properties.shear
-    of_finite = (z.value - 1) / len(gas)  # by which the collisional part differs in a gas of N discs
+    of_finite = (z.value - 1) / len(gas)  # relative difference of the collisional part for N discs
     error = enskog_error("viscosity", phi) + bath + 2 * reduced_rate**2
     return (
         Theory(viscosity, error * viscosity, "Enskog") if bath <= FAST and reduced_rate < math.inf else None,
@@ -212,9 +225,9 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
 
 
 def _profile(log: Log, times: np.ndarray) -> np.ndarray:
-    """Mean velocity along x (20,), length/time, in strips at times (T,), relative to the flow in the middle of the box.
+    """Return the mean velocity along x in strips, (20,), length/time, at times (T,); nan in strips without discs.
 
-    It is nan in strips without discs.
+    It is relative to the flow in the middle of the box.
     """
     momentum, mass = np.zeros((2, STRIPS))
     (common, drift), rate = centre_of_mass_velocity(log), log.scene.properties.shear
@@ -227,30 +240,30 @@ def _profile(log: Log, times: np.ndarray) -> np.ndarray:
 
 
 def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: bool) -> tuple[str, ...]:
-    """Sentences on a temperature (B,) that changes, as shear heats the gas or not, and on a fast shear.
+    """Return caveats on a temperature (B,) that changes, and on a fast shear.
 
-    known: whether theory gives the viscosity.
+    heats: whether the shear heats the gas. known: whether theory gives the viscosity.
     """
-    found = []
+    sentences = []
     quarter = max(len(temperatures) // 4, 1)
     before, after = float(temperatures[:quarter].mean()), float(temperatures[-quarter:].mean())
     if abs(after - before) > DRIFT * temperatures.mean():
         reason = ", as shear heats the gas" if heats else ""
         which = "that at the mean temperature, as" if heats else "that of one state only if"
-        found.append(
+        sentences.append(
             f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity is {which} "
             "it is proportional to √T."
         )
     if reduced_rate > FAST:
-        found.append(
+        sentences.append(
             f"The shear rate is {reduced_rate:.2g} of the collision rate of a disc: the viscosity may be less than "
             f"that of a slow flow{', which theory gives' if known else ''}."
         )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _rows(result: ShearFlow) -> list[tuple[str, Estimate]]:
-    """Everything that was measured, by its name."""
+    """Return the name and the estimate of each quantity."""
     return [
         ("temperature T (energy)", result.temperature),
         ("viscosity η (mass/time)", result.viscosity),
@@ -274,7 +287,7 @@ class ShearAnalysis(Analysis):
 
     @staticmethod
     def tables(result: ShearFlow) -> list[Table]:
-        """Table of viscosity, temperature, pressure, normal stress and flow."""
+        """Return the table of viscosity, temperature, pressure, normal stress and flow."""
         notes = (
             f"{describe(result.window)}; shear rate {result.rate:.6g}, {result.reduced_rate:.3g} of the collision rate",
             "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
@@ -283,26 +296,26 @@ class ShearAnalysis(Analysis):
 
     @staticmethod
     def summary(result: ShearFlow) -> str:
-        """Viscosity and temperature, and whether the viscosity agrees with theory."""
-        found = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
+        """Return viscosity and temperature, and whether the viscosity agrees with theory."""
+        viscosity = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
         why = "known for equal smooth elastic discs in no or a weak heat bath only"
-        return f"{found}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
+        return f"{viscosity}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
 
     @staticmethod
     def figure(result: ShearFlow) -> "Figure":
-        """Picture of viscosity and temperature in time, and of the profile of the flow."""
+        """Draw viscosity and temperature against time, and the profile of the flow."""
         from idealgas.analysis.core.style import COLOURS, GREY, panels
 
         figure, (above, middle, below) = panels(3)
         viscosity, edges = result.viscosity, result.window.edges
-        for ax, values, found, name in (
+        for ax, values, average, name in (
             (above, result.viscosities, viscosity, "viscosity η (mass/time)"),
             (middle, result.temperatures, result.temperature, "temperature T (energy)"),
         ):
             ax.stairs(values, edges, baseline=None, color=COLOURS[0], linewidth=0.9, label="blocks of time")
-            ax.plot([result.window.start, result.window.end], [found.value] * 2, color=COLOURS[1], label="mean")
-            if found.theory is not None:
-                ax.theory(None, found.theory, found.theory_error, "Enskog")
+            ax.plot([result.window.start, result.window.end], [average.value] * 2, color=COLOURS[1], label="mean")
+            if average.theory is not None:
+                ax.theory(None, average.theory, average.theory_error, "Enskog")
             if result.window.first:
                 ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
             ax.time_axis()

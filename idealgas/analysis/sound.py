@@ -1,6 +1,7 @@
-"""Measure the speed and the damping of sound by the longest waves of density in a periodic box.
+"""Measure the speed and the damping of sound from the longest density waves in a periodic box.
 
-Theory: the speed by the equation of state, the damping by Enskog's viscosities and thermal conductivity.
+In theory the speed follows from the equation of state, and the damping from Enskog's viscosities and thermal
+conductivity.
 """
 
 import math
@@ -30,44 +31,54 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STEPS = 12
-"""Instants in a period of the sound that is expected."""
+"""Number of instants per expected period of the sound."""
 
 DECAYS, PERIODS = 3.0, 6.0
-"""Longest time for which a wave is followed: so many of its expected decay times or, if that is less, periods."""
+"""Longest time for which a wave is followed, in expected decay times and in periods; the shorter time counts."""
 
 SEGMENTS = 32
-"""Parts of the window; the spread over them gives the error bars."""
+"""Number of parts of the window, whose scatter gives the error bars."""
 
 ROUGH = 0.025
-"""Largest relative error of the speed with which error bars do not depend on what was found."""
+"""Largest relative error of the speed for which error bars do not depend on the measured values."""
 
 FEWEST_DECAYS = 100
-"""Number of decay times of sound that an estimate takes."""
+"""Number of decay times of sound that an estimate requires."""
 
 MOST_FRAMES = 2**17
 """Largest number of instants."""
 
 HYDRODYNAMIC = 0.5
-"""Largest k times the mean free path, and k times the diameter, at which waves are those of a fluid."""
+"""Largest k times the mean free path, and k times the diameter, for which waves are hydrodynamic."""
 
 
 ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
 """Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
 
 FASTER = 0.15
-"""Sound of waves of finite length is faster than theory by up to this part of Γk/c: measured at φ = 0.3 with 300, 600
-and 2400 discs, 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions currents have long tails, so that what is
-neglected here is not small as k²."""
+"""Fraction of Γk/c by which the sound of waves of finite length may be faster than theory.
+
+At φ = 0.3 with 300, 600 and 2400 discs, it is faster by 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions
+currents have long-time tails, so that the neglected terms do not decrease as k².
+"""
 
 
 @dataclass(frozen=True)
 class Wave:
-    """The longest waves of density along the axes of the box, or along one of them.
+    """The longest density waves along the axes of the box, or along one axis.
 
-    axes: their names. wavelength: length. lag: (L,), time. correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit). error: (L,),
-    its standard error. fitted: the law that is nearest to it. theory: the law by theory; None without one. speed: of
-    sound, length/time. damping: Γ, length²/time. spreading: thermal diffusivity χ, length²/time. exponent: adiabatic
-    exponent γ (no unit).
+    Attributes:
+        axes: names of the axes.
+        wavelength: length.
+        lag: (L,), time.
+        correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit).
+        error: (L,), its standard error.
+        fitted: law that fits it best.
+        theory: law by theory; None without one.
+        speed: speed of sound, length/time.
+        damping: damping Γ, length²/time.
+        spreading: thermal diffusivity χ, length²/time.
+        exponent: adiabatic exponent γ (no unit).
     """
 
     axes: str
@@ -87,7 +98,10 @@ class Wave:
 class Sound(Result):
     """Sound in the gas of one log.
 
-    window: the time that was used. frames: number of instants. waves: one entry, of both axes, in a square box.
+    Attributes:
+        window: window of time that was used.
+        frames: number of instants.
+        waves: longest waves along each periodic axis; in a square box a single entry for both axes.
     """
 
     window: Window
@@ -112,7 +126,7 @@ class SoundAnalysis(Analysis):
         """Measure the speed and the damping of sound between two times of a log.
 
         The amplitude ρ(t) = Σ exp(-ikx) of the longest wave along each periodic axis is followed in time. Its
-        correlation is fitted by hydrodynamics, as sound and heat conduction. Error bars are by the jackknife over 32
+        correlation is fitted with hydrodynamics: sound and heat conduction. Error bars are by the jackknife over 32
         parts of the window.
 
         Raises:
@@ -140,7 +154,7 @@ class SoundAnalysis(Analysis):
 
     @staticmethod
     def tables(result: Sound) -> list[Table]:
-        """Table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
+        """Return the table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
         tables = [
             estimates(
                 f"Waves along {wave.axes}, {wave.wavelength:.4g} long",
@@ -162,26 +176,28 @@ class SoundAnalysis(Analysis):
 
     @staticmethod
     def summary(result: Sound) -> str:
-        """Speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
+        """Return speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
         rows = [
-            (f"{name} along {wave.axes}", one)
+            (f"{name} along {wave.axes}", estimate)
             for wave in result.waves
-            for name, one in (("speed", wave.speed), ("γ", wave.exponent))
+            for name, estimate in (("speed", wave.speed), ("γ", wave.exponent))
         ]
         (_, speed), (_, exponent), *_ = rows
-        found = f"The speed of sound is {format_estimate(speed)}, γ is {format_estimate(exponent)} (2 for an ideal gas)"
-        return f"{found}; {agreement(rows, 'hydrodynamics')}."
+        measured = (
+            f"The speed of sound is {format_estimate(speed)}, γ is {format_estimate(exponent)} (2 for an ideal gas)"
+        )
+        return f"{measured}; {agreement(rows, 'hydrodynamics')}."
 
     @staticmethod
     def figure(result: Sound) -> "Figure":
-        """Picture of the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
+        """Draw the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
         from idealgas.analysis.core.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(result.waves))
         for ax, wave in zip(axes, result.waves, strict=True):
             every = max(len(wave.lag) // 60, 1)
-            lag, found, error = (values[::every] for values in (wave.lag, wave.correlation, wave.error))
-            ax.errorbar(lag, found, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="measured")
+            lag, values_at_lags, error = (values[::every] for values in (wave.lag, wave.correlation, wave.error))
+            ax.errorbar(lag, values_at_lags, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="measured")
             fine = np.linspace(0, wave.lag[-1], 500)
             ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
             if wave.theory is not None:
@@ -195,7 +211,7 @@ class SoundAnalysis(Analysis):
 
 
 def _doubt(time: np.ndarray, wave: Wave) -> np.ndarray:
-    """Error of a wave's correlation (L,) by theory at times (L,), from those of its properties."""
+    """Return the error of the correlation of a wave by theory at times (L,), from the errors of its properties."""
     assert wave.theory is not None
     law, square = wave.theory, np.zeros_like(time)
     for name in ("speed", "damping", "spreading"):
@@ -205,7 +221,10 @@ def _doubt(time: np.ndarray, wave: Wave) -> np.ndarray:
 
 
 def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:
-    """Correlation of waves with the wave number k by theory, and relative errors of its fluid; None above freezing."""
+    """Return the correlation of waves of wave number k by theory, and the relative errors of the fluid.
+
+    The errors are None above freezing.
+    """
     gas, temperature = log.discs, ensemble(log).temperature
     phi, mass, diameter = gas.packing_fraction, float(gas.mass[0]), 2 * float(gas.radius[0])
     fluid = sound_of_discs(phi, temperature, mass, diameter)
@@ -215,7 +234,7 @@ def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:
 
 
 def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
-    """Time between two instants, and number of them for which a wave is followed."""
+    """Return the time between two instants, and the number of instants for which a wave is followed."""
     k, fluid = expected.k, expected.fluid
     decay_time, period = 1 / (fluid.damping * k**2), 2 * math.pi / (fluid.speed * k)
     longest = min(DECAYS * decay_time, PERIODS * period, window.duration / 8)
@@ -229,17 +248,20 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
 
 
 def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Progress | None) -> np.ndarray:
-    """Σ exp(-ikx) over all discs (A, G) at G times, complex, of the longest waves along the axes."""
-    found = np.empty((len(axes), len(times)), complex)
-    for some, places, _ in trajectories(log, times, progress):
+    """Return Σ exp(-ikx) over all discs at G times, (A, G), complex, for the longest wave along each of A axes."""
+    amplitudes = np.empty((len(axes), len(times)), complex)
+    for instants, places, _ in trajectories(log, times, progress):
         for a, axis in enumerate(axes):
             phase = places[:, :, axis] * (2 * math.pi / log.box[axis])
-            found[a, some] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
-    return found
+            amplitudes[a, instants] = np.cos(phase).sum(axis=1) - 1j * np.sin(phase).sum(axis=1)
+    return amplitudes
 
 
 def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray:
-    """⟨ρ(t + lag) ρ*(t)⟩ (segments, lags) of amplitudes (A, G), averaged over A and over the starts of each segment."""
+    """Return ⟨ρ(t + lag) ρ*(t)⟩ of amplitudes (A, G) for each segment of starting times, (segments, lags).
+
+    It is averaged over the A amplitudes and the starting times of a segment.
+    """
     starts = amplitudes.shape[1] - lags + 1
     edges = np.linspace(0, starts, segments + 1).astype(int)[:-1]
     counts = np.diff(np.append(edges, starts))
@@ -251,15 +273,15 @@ def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray
 def _wave(
     log: Log, axes: tuple[int, ...], theory: tuple[Decay, Fluid | None], lag: np.ndarray, amplitudes: np.ndarray
 ) -> Wave:
-    """Wave along some axes from its amplitudes (A, G), with theory and its relative errors."""
+    """Return the wave along the axes from its amplitudes (A, G), with theory and its relative errors."""
     expected, errors = theory
     parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
     whole = parts.mean(axis=0)
     thermal = ensemble(log).temperature / float(log.discs.mass[0])
     fitted = fit(lag, whole, expected._replace(size=float(whole[0])), thermal)
     rest = (whole * SEGMENTS - parts) / (SEGMENTS - 1)
-    others = [] if fitted is None else [fit(lag, one, fitted, thermal) for one in rest]
-    without = [other.fluid for other in others if other is not None]
+    refits = [] if fitted is None else [fit(lag, part, fitted, thermal) for part in rest]
+    without = [refit.fluid for refit in refits if refit is not None]
     if fitted is None or len(without) < SEGMENTS:
         raise UserError(f"{log.path}: the density waves are not those of a fluid, or too few for a fit")
     error = np.sqrt((SEGMENTS - 1) * np.var(without, axis=0))  # the jackknife
@@ -280,7 +302,7 @@ def _wave(
 
 
 def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
-    """Sentences on what does not hold for a wave."""
+    """Yield caveats on conditions that a wave does not meet."""
     gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
     diameter = 2 * float(gas.radius[0])
     short = max(diameter, hard_discs.mean_free_path(diameter, len(gas) / gas.area, gas.packing_fraction))

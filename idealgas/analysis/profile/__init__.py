@@ -291,7 +291,7 @@ def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
 def _limits(
     log: Log, axis: int, width: float, species: Sequence[SpeciesProfile], expected: Expected | None
 ) -> Iterator[str]:
-    """Yield a caveat if a law of dilute gases, or of gases without layers at walls, does not hold; width: of a strip."""
+    """Yield a caveat if a law of dilute gases, or of gases without layers at walls, fails; width: of a strip."""
     if expected is None:
         return
     density = np.array([[estimate.value for estimate in entry.density] for entry in species])

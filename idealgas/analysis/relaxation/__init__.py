@@ -1,7 +1,7 @@
 """Measure the relaxation of the velocities to the Maxwell-Boltzmann distribution.
 
-The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error is that
-of the fluctuations of a gas of so many discs. Several logs are drawn in one picture.
+The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error follows from the
+fluctuations of a gas with this number of discs. Several logs are drawn in one figure.
 """
 
 from collections.abc import Iterator, Sequence
@@ -43,20 +43,20 @@ if TYPE_CHECKING:
 SAMPLES = 320
 
 SETTLED = 3.0
-"""Relaxation times after which a gas counts as settled: 5 % of the distance is left."""
+"""Number of relaxation times after which a gas counts as settled: 5 % of the initial deviation is left."""
 
 LINEAR = 2.0
 """Relaxation time of the kurtosis near equilibrium, in collisions per disc, for equal discs.
 
-First Sonine approximation: van Noije & Ernst, Granular Matter 1, 57 (1998), elastic discs in two dimensions. Far from
-equilibrium it takes longer: nearly 3 on the whole way from equal speeds.
+It follows from the first Sonine approximation for elastic discs in two dimensions: van Noije & Ernst, Granular Matter
+1, 57 (1998). Far from equilibrium it is longer: nearly 3 for the whole relaxation from equal speeds.
 """
 
 MAXWELLIAN = 2.0
 """Kurtosis of an infinite gas in equilibrium."""
 
 FEW = 100
-"""Number of discs below which the error of the relaxation time is not known well."""
+"""Number of discs below which the error of the relaxation time is not well known."""
 
 HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")
 
@@ -68,29 +68,30 @@ NOTES = (
 )
 
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
-"""Ticks of the axis of distances, which has both small and large values."""
+"""Ticks of the axis of distances, which covers both small and large values."""
 
 
 @dataclass(frozen=True)
 class Relaxation(Result):
     """Relaxation of the gas of one log at K instants.
 
-    All measures take the reduced energy x = m v²/2T of a disc, whose density in equilibrium is exp(-x) whatever its
-    mass. As the energy is conserved, Boltzmann's H = ⟨ln f⟩ above its equilibrium value is the relative entropy of the
-    two distributions.
+    All measures use the reduced energy x = m v²/2T of a disc, whose density in equilibrium is exp(-x) for any mass. As
+    the energy is conserved, the excess of Boltzmann's H = ⟨ln f⟩ over its equilibrium value is the relative entropy of
+    the two distributions.
 
     Attributes:
-        path: of the log.
-        number: of discs.
+        path: path of the log.
+        number: number of discs.
         time: (K,), times.
         collisions: (K,), collisions per disc since the first instant.
-        kurtosis: (K,), ⟨v⁴⟩/⟨v²⟩² in reduced energies, from 1 of equal speeds to 2.
+        kurtosis: (K,), ⟨v⁴⟩/⟨v²⟩² in reduced energies: 1 for equal speeds, 2 in equilibrium.
         distance: (K,), Kolmogorov-Smirnov distance.
         entropy: (K,), H - H_eq per disc.
         equilibrium_kurtosis: mean kurtosis of this number of discs in equilibrium.
-        critical_distance: distance that one in twenty gases of this number of discs in equilibrium exceeds.
-        in_time, in_collisions: fitted relaxation time of the kurtosis, in units of time and in collisions per disc;
-            None if the kurtosis at the start is within its fluctuations in equilibrium.
+        critical_distance: distance that one in twenty gases of this number of discs exceeds in equilibrium.
+        in_time: fitted relaxation time of the kurtosis, time; None if the initial kurtosis is within its fluctuations
+            in equilibrium.
+        in_collisions: the same in collisions per disc.
         first_indistinguishable: index of the first instant at which the distance is below the critical distance; None
             if there is none.
         acceptance: acceptance of Monte Carlo trials; None for other methods.
@@ -167,11 +168,11 @@ class RelaxationAnalysis(Analysis):
         progress: Progress | None = None,
         every: float | None = None,
     ) -> Relaxation:
-        """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit its time.
+        """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit the relaxation time.
 
         Raises:
-            UserError: if no two discs collide in between, or if the energy of the discs is not constant, so that they
-                tend to no distribution.
+            UserError: if no two discs collide in the window, or if the energy of the discs is not constant, so that
+                they do not approach a stationary distribution.
         """
         check_steady(log)
         first, last = colliding_span(log, start, end)
@@ -211,23 +212,25 @@ class RelaxationAnalysis(Analysis):
         return Relaxations(tuple(results))
 
     @staticmethod
-    def tables(found: Relaxations) -> list[Table]:
-        """Tables of speed distributions, if they were counted, of relaxation times, and of Monte Carlo trials."""
-        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in found.logs]
-        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in found.logs]
-        tried = {r.path: r.acceptance for r in found.logs if r.acceptance is not None}
+    def tables(relaxations: Relaxations) -> list[Table]:
+        """Return the tables of speed distributions, if they were counted, relaxation times, and Monte Carlo trials."""
+        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in relaxations.logs]
+        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in relaxations.logs]
+        tried = {r.path: r.acceptance for r in relaxations.logs if r.acceptance is not None}
         return [
-            *(speed_table(r.path, r.speeds) for r in found.logs if r.speeds is not None),
+            *(speed_table(r.path, r.speeds) for r in relaxations.logs if r.speeds is not None),
             Table("Relaxation to Maxwell-Boltzmann, in units of time", HEADS, in_time, NOTES),
             Table("The same in collisions per disc", HEADS, in_collisions),
             *(acceptance_tables(tried) if tried else ()),
         ]
 
     @staticmethod
-    def summary(found: Relaxations) -> str:
-        """Relaxation time of each gas, beside that of theory near equilibrium."""
+    def summary(relaxations: Relaxations) -> str:
+        """Return the relaxation time of each gas, and the theory near equilibrium."""
         times = [
-            f"{one.number} discs in {format_estimate(one.in_collisions)}" for one in found.logs if one.in_collisions
+            f"{log.number} discs in {format_estimate(log.in_collisions)}"
+            for log in relaxations.logs
+            if log.in_collisions
         ]
         theory = f"Theory: {LINEAR:g} near equilibrium; none for the whole way from equal speeds, which takes longer."
         if not times:
@@ -235,27 +238,27 @@ class RelaxationAnalysis(Analysis):
         return f"Velocities relax to Maxwell–Boltzmann's: {', '.join(times)} collisions per disc. {theory}"
 
     @staticmethod
-    def figure(found: Relaxations) -> "Figure":
-        """Picture of kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
+    def figure(relaxations: Relaxations) -> "Figure":
+        """Draw kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
 
-        Of several logs it has the same against collisions per disc, on the left.
+        With several logs, the same is drawn against collisions per disc on the left.
         """
         from idealgas.analysis.core.style import panels
 
-        if len(found.logs) == 1:
+        if len(relaxations.logs) == 1:
             figure, axes = panels(3)
-            _draw(axes, found, in_time=True)
+            _draw(axes, relaxations, in_time=True)
         else:
             figure, axes = panels(3, columns=2)
-            _draw(axes[::2], found, in_time=False)
-            _draw(axes[1::2], found, in_time=True)
+            _draw(axes[::2], relaxations, in_time=False)
+            _draw(axes[1::2], relaxations, in_time=True)
         return figure
 
 
 def _caveats(
     fit: Estimate | None, collisions: np.ndarray, kurtosis: np.ndarray, number: int, late: bool
 ) -> Iterator[str]:
-    """Sentences on a relaxation time in collisions per disc; late: whether it begins after the start of the log."""
+    """Yield caveats on a relaxation time in collisions per disc; late: whether the window starts after the log."""
     if fit is None:
         return
     if collisions[-1] < fit.value:
@@ -285,14 +288,14 @@ def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[
     )
 
 
-def _draw(axes: "Sequence[Panel]", found: Relaxations, in_time: bool) -> None:
+def _draw(axes: "Sequence[Panel]", relaxations: Relaxations, in_time: bool) -> None:
     """Draw three panels against time, or against collisions per disc."""
     from matplotlib.ticker import FixedLocator, NullLocator
 
     from idealgas.analysis.core.style import BLACK, curve_style
 
     kurtosis, distance, entropy = axes
-    for k, result in enumerate(found.logs):
+    for k, result in enumerate(relaxations.logs):
         colour, line, _ = curve_style(k)
         name = f"{Path(result.path).stem}, N = {result.number}"
         x, fit = (result.time, result.in_time) if in_time else (result.collisions, result.in_collisions)

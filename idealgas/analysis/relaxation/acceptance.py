@@ -18,25 +18,28 @@ from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
 
 PUBLISHED = 6_552
-"""Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970): 200 molecules, v_ref 5 times their
-speed. This number is 6.7 % below what theory expects."""
+"""Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970).
+
+Their gas has 200 molecules, and v_ref is 5 times their speed. The number is 6.7 % below that expected by theory.
+"""
 
 V_REF = "v_ref"
-"""The observable of logs whose v_ref may rise."""
+"""Name of the observable of logs whose v_ref may rise."""
 
-MANY = 2000  # largest number of discs for which the mean over pairs takes all discs
+MANY = 2000  # largest number of discs whose pairs are all averaged
 
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptance of the trials of a Monte Carlo run: share of the trials that became collisions.
+    """Acceptance of the trials of a Monte Carlo run: fraction of the trials that became collisions.
 
     Attributes:
-        number: of trials.
-        collisions, collisions_per_disc: number of accepted trials, and that number per disc.
-        acceptance: measured share; its theory is that of these discs in equilibrium.
-        at_start: share expected for the velocities at the start.
-        expected: share expected in equilibrium, by the name of the ensemble.
+        number: number of trials.
+        collisions: number of accepted trials.
+        collisions_per_disc: collisions per disc.
+        acceptance: measured fraction; its theory is that of these discs in equilibrium.
+        at_start: fraction expected for the initial velocities.
+        expected: fraction expected in equilibrium, by the name of the ensemble.
         published: published number of collisions; None for other scenes.
         raises: number of trials before each v_ref and the v_ref from then on (length/time), in order of time.
     """
@@ -85,12 +88,12 @@ def acceptance(log: Log) -> Acceptance | None:
 
 
 def last_trial(log: Log) -> int:
-    """Number of the last trial that became a collision; 0 if there is none."""
+    """Return the number of the last trial that became a collision; 0 if there is none."""
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
 def _raises(log: Log) -> tuple[tuple[int, float], ...]:
-    """Each v_ref of a log (length/time) with the number of trials before it: that of the start, then raised ones."""
+    """Return the number of trials before each v_ref of a log and the v_ref, length/time, starting with the first."""
     if V_REF not in log.observables:  # the scene gives the only one
         return ((0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
     values = log.observables[V_REF][1]
@@ -100,18 +103,18 @@ def _raises(log: Log) -> tuple[tuple[int, float], ...]:
 
 
 def _mean_reference_speed(raises: tuple[tuple[int, float], ...], number: int) -> float:
-    """Harmonic mean of the v_ref, length/time, over all trials: it accepts as many of them as those of the run."""
+    """Return the harmonic mean of v_ref over all trials, length/time, which accepts as many of them as the run."""
     starts = np.array([trials for trials, _ in raises] + [max(number, raises[-1][0] + 1)])
     return float(np.diff(starts).sum() / (np.diff(starts) / [v_ref for _, v_ref in raises]).sum())
 
 
 def _largest_product(log: Log, v_ref: float) -> float:
-    """Sum of radii times relative speed of a pair at which a trial is always accepted, length²/time."""
+    """Return the sum of radii times relative speed at which a trial is always accepted, length²/time."""
     return float(np.sort(log.discs.radius)[-2:].sum()) * v_ref
 
 
 def _equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: float = math.inf) -> float:
-    """Acceptance in equilibrium: mean of the sum of radii times relative speed over its largest value.
+    """Return the acceptance in equilibrium: the mean of the sum of radii times relative speed over its largest value.
 
     It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
     """
@@ -123,16 +126,16 @@ def _equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: flo
 
 
 def _start_acceptance(log: Log, v_ref: float) -> float:
-    """Acceptance for the velocities at the start: (4/π)/5 for equal speeds in random directions."""
+    """Return the acceptance for the initial velocities: (4/π)/5 for equal speeds in random directions."""
     gas = log.discs
-    some = slice(None, None, -(-len(gas) // MANY))
-    v, r = gas.velocity[some], gas.radius[some]
+    chosen = slice(None, None, -(-len(gas) // MANY))
+    v, r = gas.velocity[chosen], gas.radius[chosen]
     product = (r[:, None] + r) * np.hypot(*(v[:, None] - v).T)
     return float(product.sum() / (len(r) * (len(r) - 1)) / _largest_product(log, v_ref))
 
 
 def _is_published(scene: Scene) -> bool:
-    """Whether a scene is that of the published run of Novak & Bortz (1970)."""
+    """Return whether a scene is that of the published run of Novak & Bortz (1970)."""
     run = scene.run
     if len(scene.species) != 1 or len(scene.given) or run.trials != 28_000 or run.events or run.collisions_per_disc:
         return False
@@ -141,29 +144,36 @@ def _is_published(scene: Scene) -> bool:
 
 
 def acceptance_tables(tried: dict[str, Acceptance]) -> list[Table]:
-    """Tables of the acceptance of each log, compared with theory and with the value of the published run."""
+    """Return the tables of the acceptance of each log, with theory and the value of the published run."""
     counts = [
-        (path, Number(found.number, ","), Number(found.collisions, ","), Number(found.collisions_per_disc, ".5g"))
-        for path, found in tried.items()
+        (
+            path,
+            Number(trials_of_log.number, ","),
+            Number(trials_of_log.collisions, ","),
+            Number(trials_of_log.collisions_per_disc, ".5g"),
+        )
+        for path, trials_of_log in tried.items()
     ]
-    expected = [row for path, found in tried.items() for row in _expected(path, found)]
+    expected = [row for path, trials_of_log in tried.items() for row in _expected(path, trials_of_log)]
     raised = [
         (path, Number(trials, ","), Number(v_ref, ".6g"))
-        for path, found in tried.items()
-        for trials, v_ref in found.raises
+        for path, trials_of_log in tried.items()
+        for trials, v_ref in trials_of_log.raises
     ]
     return [
         Table("Trials of pairs", ("", "trials", "collisions", "collisions per disc"), counts),
-        estimates("Acceptance of trials", [(path, found.acceptance) for path, found in tried.items()]),
+        estimates("Acceptance of trials", [(path, trials_of_log.acceptance) for path, trials_of_log in tried.items()]),
         Table("Acceptance expected", ("", "value", "collisions"), expected),
         Table("Reference speed", ("", "after trials", "v_ref"), raised),
     ]
 
 
-def _expected(path: str, found: Acceptance) -> Iterator[tuple[Cell, ...]]:
-    shares = {"at the start": found.at_start} | {f"in equilibrium, {name}": x for name, x in found.expected.items()}
+def _expected(path: str, trials_of_log: Acceptance) -> Iterator[tuple[Cell, ...]]:
+    shares = {"at the start": trials_of_log.at_start} | {
+        f"in equilibrium, {name}": x for name, x in trials_of_log.expected.items()
+    }
     for name, share in shares.items():
-        yield f"{path}: {name}", Number(share, ".5f"), Number(share * found.number, ",.0f")
-    if found.published is not None:
-        share = found.published / found.number
-        yield f"{path}: published, Novak & Bortz (1970)", Number(share, ".5f"), Number(found.published, ",")
+        yield f"{path}: {name}", Number(share, ".5f"), Number(share * trials_of_log.number, ",.0f")
+    if trials_of_log.published is not None:
+        share = trials_of_log.published / trials_of_log.number
+        yield f"{path}: published, Novak & Bortz (1970)", Number(share, ".5f"), Number(trials_of_log.published, ",")

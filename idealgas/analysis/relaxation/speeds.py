@@ -1,6 +1,6 @@
-"""Speeds of discs against their distribution in equilibrium: distances from it, relaxation time, classes of speed.
+"""Speeds of discs and their distribution in equilibrium: distances from it, relaxation time, classes of speed.
 
-The reduced energy of a disc has the density exp(-x) in equilibrium.
+In equilibrium the reduced energy of a disc has the density exp(-x).
 """
 
 import math
@@ -34,14 +34,14 @@ CELLS = 32
 """Number of cells of equal probability for H."""
 
 LEAST_RELAXATION = 4.0
-"""Smallest deviation of the kurtosis at the start for a fit, in its standard deviations in equilibrium."""
+"""Smallest initial deviation of the kurtosis for a fit, in its standard deviations in equilibrium."""
 
 MEMORY = 2 / 3
-"""Time for which fluctuations of the kurtosis last, in units of the relaxation time on the whole way: 2 over 3."""
+"""Correlation time of the fluctuations of the kurtosis (2) over the relaxation time of the whole relaxation (3)."""
 
 
 def check_steady(log: Log) -> None:
-    """Check that the velocities of a log can relax to Maxwell-Boltzmann's distribution.
+    """Check that the velocities of a log can relax to the Maxwell-Boltzmann distribution.
 
     Raises:
         UserError: if the log has no events, if the kinetic energy of its discs is not constant, or if no disc moves.
@@ -54,41 +54,41 @@ def check_steady(log: Log) -> None:
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
-    """First and last time to follow; by default it ends after HORIZON collisions per disc or at the end of the log.
+    """Return the first and last time of the window, by default up to HORIZON collisions per disc or the end of the log.
 
     Raises:
         UserError: if no discs collide between the two times.
     """
     first, last = span(log, start, end)
     most = HORIZON * len(log.discs) if end is None else math.inf
-    found = 0
+    collisions = 0
     for rows in log.chunks(("time", "partner"), log.row_at(first, "right"), log.row_at(last, "right")):
         pairs = np.flatnonzero(rows.partner >= 0)
-        if found + len(pairs) > most:
-            return first, float(rows.time[pairs[int(most) - found]])
-        found += len(pairs)
-    if not found:
+        if collisions + len(pairs) > most:
+            return first, float(rows.time[pairs[int(most) - collisions]])
+        collisions += len(pairs)
+    if not collisions:
         raise UserError(f"{log.path}: no two discs collide between t = {first:g} and {last:g}")
     return first, last
 
 
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """Reduced energy m vx²/2Tx + m vy²/2Ty of every disc (no unit), with its temperatures in equilibrium."""
+    """Return the reduced energy m vx²/2Tx + m vy²/2Ty of every disc (no unit), for its equilibrium temperatures."""
     gas = log.discs
     square = (velocity - equilibrium.centre_of_mass_velocity) ** 2 / equilibrium.of_axes[gas.species]
     return gas.mass * square.sum(axis=1) / 2
 
 
 def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
-    """Distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
+    """Return the distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
     return -np.expm1(-energy)
 
 
 def relative_entropy(energy: np.ndarray) -> float:
-    """Relative entropy ∫ p ln(p/e^(-x)) dx of reduced energies (N,), estimated in cells of equal probability (no unit).
+    """Return the relative entropy ∫ p ln(p/e^(-x)) dx of reduced energies (N,), from cells of equal probability.
 
-    The bias (cells - 1)/2N is subtracted: Miller (1955). The estimate is at most ln(cells), for equal speeds, whose
-    relative entropy is infinite.
+    The bias (cells - 1)/2N is subtracted: Miller (1955). For equal speeds, whose relative entropy is infinite, the
+    estimate is at most ln(cells).
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
@@ -99,22 +99,24 @@ def relative_entropy(energy: np.ndarray) -> float:
 
 
 def critical_distance(number: int) -> float:
-    """Kolmogorov-Smirnov distance that one in twenty gases of `number` discs in equilibrium exceeds (no unit).
+    """Return the Kolmogorov-Smirnov distance that one in twenty gases of `number` discs exceeds in equilibrium.
 
-    It is that of an exponential law with fitted mean, as the total energy is fixed: Stephens, J. Am. Stat. Assoc. 69,
-    730 (1974), table 1.5.
+    It is the critical value for an exponential law with a fitted mean, as the total energy is fixed: Stephens, J. Am.
+    Stat. Assoc. 69, 730 (1974), table 1.5.
     """
     root = math.sqrt(number)
     return 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / number
 
 
 def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float) -> Estimate | None:
-    """Relaxation time of the kurtosis (S,) from its first value to its target by least squares, in the unit of `time`.
+    """Fit the relaxation time of the kurtosis (S,) from its first value to its target, in the unit of `time`.
 
-    The error is that of the fluctuations of a gas of `number` discs. Their variance in equilibrium, about 4/N, is that
-    of equally probable shares of the energy. They start from none and grow as the gas relaxes: in 300 runs each of 200
-    and 500 discs from equal speeds the errors are right to 2 % ± 4 %. Discs are not independent of each other, as a
-    collision changes two at once.
+    The error follows from the fluctuations of a gas of `number` discs. Their variance in equilibrium, about 4/N, is
+    that of equally probable shares of the energy. The fluctuations grow from zero as the gas relaxes. Discs are not
+    independent of each other, as a collision changes two at once. In 300 runs each of 200 and 500 discs from equal
+    speeds, the errors are right to 2 % ± 4 %.
+
+    Return None if the initial deviation is within the fluctuations in equilibrium.
     """
     if abs(kurtosis[0] - target) < LEAST_RELAXATION * 2 / math.sqrt(number):
         return None
@@ -122,7 +124,9 @@ def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float
     left = np.exp(-time / value)
     slope = (target - kurtosis[0]) * time / value**2 * left
     n = number
-    variance = 4 * n**2 * (n - 1) / ((n + 1) ** 2 * (n + 2) * (n + 3))  # n² times that of the sum of squared spacings
+    variance = (
+        4 * n**2 * (n - 1) / ((n + 1) ** 2 * (n + 2) * (n + 3))
+    )  # n² times the variance of the sum of squared spacings
     scatter = variance * np.outer(1 - left, 1 - left)
     scatter *= np.exp(-np.abs(np.subtract.outer(time, time)) / (MEMORY * value))
     error = math.sqrt(float(slope @ scatter @ slope)) / float(slope @ slope)
@@ -130,7 +134,7 @@ def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float
 
 
 def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """Relaxation time τ of target + (series[0] - target) exp(-time/τ), fitted to a series by least squares.
+    """Fit τ in target + (series[0] - target) exp(-time/τ) to a series by least squares.
 
     time, series: (S,). The result has the unit of `time`.
     """
@@ -142,8 +146,8 @@ def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
     low, high = math.log(time[time > 0][0] / 10), math.log(10 * time[-1])
     start = min(np.linspace(low, high, 40), key=misfit)
     step = (high - low) / 39
-    found = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")
-    return math.exp(found.x)
+    result = optimize.minimize_scalar(misfit, bounds=(start - step, start + step), method="bounded")
+    return math.exp(result.x)
 
 
 # ── classes of speed ──
@@ -157,12 +161,13 @@ class SpeedDistributions:
 
     Attributes:
         time: (K,), times.
-        trials: (K,), Monte Carlo trials until then; None for a method without trials.
-        collisions: (K,), collisions per disc until then.
+        trials: (K,), number of Monte Carlo trials up to each time; None for a method without trials.
+        collisions: (K,), collisions per disc up to each time.
         distance: (K,), Kolmogorov-Smirnov distance from the Maxwell-Boltzmann distribution.
         rms: root-mean-square speed, length/time.
         edges: (C,), lower ends of the classes, length/time.
-        counts, expected: (K, C) and (C,), numbers of discs, and those of the Maxwell-Boltzmann distribution.
+        counts: (K, C), numbers of discs.
+        expected: (C,), numbers of discs by the Maxwell-Boltzmann distribution.
     """
 
     time: np.ndarray
@@ -208,7 +213,7 @@ def speed_distributions(
 
 
 def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of trials, and time of the last collision up to each of them."""
+    """Return numbers of trials, and the time of the last collision up to each of them."""
     total = log.summary["trials"] if log.complete else last_trial(log)
     _check_number(total / every)
     wanted = np.arange(0, total + 1, max(int(every), 1))
@@ -225,17 +230,23 @@ def _check_number(instants: float) -> None:
         raise UserError(f"{instants:.3g} instants are too many for a table (allowed <= {MOST_INSTANTS})")
 
 
-def speed_table(path: str, found: SpeedDistributions) -> Table:
-    """Table of the numbers of discs by speed, one row for each instant; Maxwell-Boltzmann's numbers in the last row."""
-    title = f"{path}: discs by speed, in classes from multiples of {found.rms:.4g} (rms)"
-    classes = (f"{edge / found.rms:.1f}" for edge in found.edges)
-    clock = [Number(t, ".4g") for t in found.time.tolist()]
-    if found.trials is not None:
-        clock = [Number(trial, ",") for trial in found.trials.tolist()]
-    columns = zip(clock, found.collisions.tolist(), found.distance.tolist(), found.counts.tolist(), strict=True)
+def speed_table(path: str, distributions: SpeedDistributions) -> Table:
+    """Return the table of the numbers of discs by speed, one row per instant; the last row is Maxwell-Boltzmann."""
+    title = f"{path}: discs by speed, in classes from multiples of {distributions.rms:.4g} (rms)"
+    classes = (f"{edge / distributions.rms:.1f}" for edge in distributions.edges)
+    clock = [Number(t, ".4g") for t in distributions.time.tolist()]
+    if distributions.trials is not None:
+        clock = [Number(trial, ",") for trial in distributions.trials.tolist()]
+    columns = zip(
+        clock,
+        distributions.collisions.tolist(),
+        distributions.distance.tolist(),
+        distributions.counts.tolist(),
+        strict=True,
+    )
     rows: list[tuple[Cell, ...]] = [
         (instant, Number(collisions, ".2f"), Number(distance, ".3f"), *(Number(n, "d") for n in counts))
         for instant, collisions, distance, counts in columns
     ]
-    rows.append(("law", "", "", *(Number(number, ".1f") for number in found.expected.tolist())))
-    return Table(title, ("time" if found.trials is None else "trials", "coll/disc", "KS", *classes), rows)
+    rows.append(("law", "", "", *(Number(number, ".1f") for number in distributions.expected.tolist())))
+    return Table(title, ("time" if distributions.trials is None else "trials", "coll/disc", "KS", *classes), rows)

@@ -1,7 +1,7 @@
 """Measure density and current correlations in space and time: F(k, t), S(k, ω), self part and currents.
 
-In a periodic box, for wave vectors along its sides; with both parts of the van Hove function, G_s(r, t) and G_d(r, t),
-and the non-Gaussian parameter of displacements.
+The box must be periodic, and wave vectors lie along its sides. The analysis also gives both parts of the van Hove
+function, G_s(r, t) and G_d(r, t), and the non-Gaussian parameter of displacements.
 """
 
 import math
@@ -34,22 +34,22 @@ STEP = 0.25
 """Time between two instants, in units of 1/(k √(T/m)), in which a disc flies 1/k."""
 
 LAGS, FEWEST_LAGS = 65, 17
-"""Number of lags of a wave, and least number of them."""
+"""Number of lags of a wave, and smallest number of lags."""
 
 FEWEST_DECAYS = 100.0
-"""Length of a window in decay times of sound from which on segments are independent."""
+"""Length of a window, in decay times of sound, from which on segments are independent."""
 
 
 @dataclass(frozen=True)
 class Wave:
     """Correlations of the waves of one wave number.
 
-    name: k as text. k: wave number, 1/length. time: (L,). density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx) (no
-    unit). self_part: F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of the
-    currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,),
-    S(k, ω) = ∫ F exp(iωt) dt with the lags tapered by cos², time. structure: S(k) =
-    F(k, 0) (no unit). longitudinal_square, transverse_square: ⟨|j|²⟩/N along and across k, (length/time)²; k² times the
-    first is the second moment of S(k, ω). early: F_s at the first lag.
+    name: k as text. k: wave number, 1/length. time: (L,), lags. density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx)
+    (no unit). self_part: F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of the
+    currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,), S(k,
+    ω) = ∫ F exp(iωt) dt with the lags tapered by cos², time. structure: S(k) = F(k, 0) (no unit). longitudinal_square,
+    transverse_square: ⟨|j|²⟩/N along and across k, (length/time)²; k² times the first is the second moment of S(k, ω).
+    early: F_s at the first lag.
     """
 
     name: str
@@ -68,16 +68,21 @@ class Wave:
 
 
 SMALL_ERRORS = "Standard errors of some curves may be up to 1.3 times too small, those of the longest wave above all."
-"""Caveat of all results: rows of the table of calibration are up to 1.26."""
+"""Caveat of all results, as the calibrated rms deviation over error reaches 1.26."""
 
 
 @dataclass(frozen=True)
 class Scattering(Result):
     """Density and current correlations of the gas of one log.
 
-    window: the time that was used. thermal_speed: √(T/m), length/time. waves: from the longest to the shortest.
-    van_hove: for the time in which a free disc flies 4/k, of each wave. distinct: for t = 0 and the same times; empty
-    for a single disc. time: (D,). non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in this time (no unit).
+    Attributes:
+        window: window of time that was used.
+        thermal_speed: √(T/m), length/time.
+        waves: correlations of each wave number, from the longest to the shortest wave.
+        van_hove: self part for the time in which a free disc flies 4/k, for each wave.
+        distinct: distinct part at t = 0 and at the same times; empty for a single disc.
+        time: (D,), times.
+        non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in these times (no unit).
     """
 
     window: Window
@@ -110,9 +115,9 @@ class ScatteringAnalysis(Analysis):
     ) -> Scattering:
         """Measure how waves of density and of current decay, between two times of a log.
 
-        Errors are from the spread over 32 segments of the window. Exact for any density are the currents at t = 0, with
-        ⟨|j|²⟩/N = (1 - S(k)/N) T/m as the momentum of all discs is 0. F_s after the first lag is compared with free
-        flight and the first collision by Enskog's rate.
+        Errors are from the scatter of 32 segments of the window. The currents at t = 0 have an exact theory at any
+        density: ⟨|j|²⟩/N = (1 - S(k)/N) T/m, as the momentum of all discs is 0. F_s at the first lag is compared with
+        free flight and the first collision, at Enskog's rate.
 
         Raises:
             UserError: unless the box is periodic, for several species, with effects other than periodic sides, or if
@@ -133,29 +138,29 @@ class ScatteringAnalysis(Analysis):
                 sums = list(segments(log, k, lags, series, edges))
                 waves.append(_wave(log, k, time, sums, speed))
                 displaced.append(van_hove(float(time[APART]), edges, sums))
-                moments.append((time, np.array([one.moments for one in sums])))
+                moments.append((time, np.array([segment.moments for segment in sums])))
             if progress is not None:
                 progress(done, len(numbers))
         if not waves:
             least = 8 * FEWEST_LAGS * STEP * float(2 * log.discs.radius[0]) / (2 * math.pi * speed)
             raise UserError(f"{log.path}: window too short for waves as long as a diameter (allowed >= {least:.3g})")
         caveats = (SMALL_ERRORS, *narrow(log), *_too_short(log, window, numbers[0], waves[0].k))
-        others = distinct_parts(log, window, [0.0, *(own.time for own in displaced)])
+        distinct = distinct_parts(log, window, [0.0, *(self_part.time for self_part in displaced)])
         return Scattering(
-            window, speed, tuple(waves), tuple(displaced), others, *non_gaussian(moments), caveats=caveats
+            window, speed, tuple(waves), tuple(displaced), distinct, *non_gaussian(moments), caveats=caveats
         )
 
     @staticmethod
     def tables(result: Scattering) -> list[Table]:
-        """Tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
+        """Return the tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
         rows = [
-            (f"{name}, {one.name}", found)
-            for one in result.waves
-            for name, found in (
-                ("S(k) (no unit)", one.structure),
-                ("⟨|j|²⟩/N along k ((length/time)²)", one.longitudinal_square),
-                ("⟨|j|²⟩/N across k ((length/time)²)", one.transverse_square),
-                (f"F_s at t = {one.time[1]:.3g} (no unit)", one.early),
+            (f"{name}, {wave.name}", estimate)
+            for wave in result.waves
+            for name, estimate in (
+                ("S(k) (no unit)", wave.structure),
+                ("⟨|j|²⟩/N along k ((length/time)²)", wave.longitudinal_square),
+                ("⟨|j|²⟩/N across k ((length/time)²)", wave.transverse_square),
+                (f"F_s at t = {wave.time[1]:.3g} (no unit)", wave.early),
             )
         ]
         notes = [
@@ -166,29 +171,29 @@ class ScatteringAnalysis(Analysis):
             "of the third wave (1.19)",
         ]
         tables = [estimates("Waves of density and current", rows, notes)]
-        for one in result.waves:
-            curves = {"F": one.density, "F_s": one.self_part, "along": one.longitudinal, "across": one.transverse}
-            tables.append(_series(f"Correlations, {one.name}", {"t": one.time}, curves))
-            tables.append(_series(f"Spectrum, {one.name}", {"ω": one.frequency}, {"S(k, ω)": one.spectrum}))
-        for own in result.van_hove:
-            columns = {"r": own.distance, "normal": own.gaussian}
-            tables.append(_series(f"Displacements, G_s(r, {own.time:.4g})", columns, {"G_s": own.density}))
-        for other in result.distinct:
-            title = f"Other discs, G_d(r, {other.time:.4g})"
-            tables.append(_series(title, {"r": other.distance}, {"G_d": other.density}))
+        for wave in result.waves:
+            curves = {"F": wave.density, "F_s": wave.self_part, "along": wave.longitudinal, "across": wave.transverse}
+            tables.append(_series(f"Correlations, {wave.name}", {"t": wave.time}, curves))
+            tables.append(_series(f"Spectrum, {wave.name}", {"ω": wave.frequency}, {"S(k, ω)": wave.spectrum}))
+        for moved in result.van_hove:
+            columns = {"r": moved.distance, "normal": moved.gaussian}
+            tables.append(_series(f"Displacements, G_s(r, {moved.time:.4g})", columns, {"G_s": moved.density}))
+        for around in result.distinct:
+            title = f"Other discs, G_d(r, {around.time:.4g})"
+            tables.append(_series(title, {"r": around.distance}, {"G_d": around.density}))
         title = "Non-Gaussian parameter of displacements (no unit)"
         return [*tables, _series(title, {"t": result.time}, {"α₂": result.non_gaussian})]
 
     @staticmethod
     def summary(result: Scattering) -> str:
-        """S(k) of the longest wave, and whether the moments of all waves agree with theory."""
+        """Return S(k) of the longest wave, and whether the moments of all waves agree with theory."""
         rows = [
-            (f"{name}, {one.name}", found)
-            for one in result.waves
-            for name, found in (
-                ("along", one.longitudinal_square),
-                ("across", one.transverse_square),
-                ("F_s", one.early),
+            (f"{name}, {wave.name}", estimate)
+            for wave in result.waves
+            for name, estimate in (
+                ("along", wave.longitudinal_square),
+                ("across", wave.transverse_square),
+                ("F_s", wave.early),
             )
         ]
         first = result.waves[0]
@@ -196,25 +201,25 @@ class ScatteringAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Scattering) -> "Figure":
-        """Picture of F, F_s, S(k, ω), both currents, α₂, G_s and G_d; free flight and normal distribution dashed."""
+        """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d, with free flight and normal distribution dashed."""
         from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
 
-        figure, (density, own, spectrum, along, across, gaussian, displaced, others) = panels(4, 2)
-        for index, one in enumerate(result.waves):
+        figure, (density, self_part, spectrum, along, across, gaussian, displaced, distinct) = panels(4, 2)
+        for index, wave in enumerate(result.waves):
             colour, line, _ = curve_style(index)
-            rate, square = one.k * result.thermal_speed, result.thermal_speed**2
+            rate, square = wave.k * result.thermal_speed, result.thermal_speed**2
             for ax, x, curve, unit in (
-                (density, one.time * rate, one.density, 1.0),
-                (own, one.time * rate, one.self_part, 1.0),
-                (spectrum, one.frequency / rate, one.spectrum, 1 / rate),
-                (along, one.time * rate, one.longitudinal, square),
-                (across, one.time * rate, one.transverse, square),
+                (density, wave.time * rate, wave.density, 1.0),
+                (self_part, wave.time * rate, wave.self_part, 1.0),
+                (spectrum, wave.frequency / rate, wave.spectrum, 1 / rate),
+                (along, wave.time * rate, wave.longitudinal, square),
+                (across, wave.time * rate, wave.transverse, square),
             ):
                 y, error = curve.value / unit, curve.error / unit
-                ax.plot(x, y, line, color=colour, label=one.name)
+                ax.plot(x, y, line, color=colour, label=wave.name)
                 ax.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
         free = np.linspace(0, 5, 100)
-        own.theory(free, np.exp(-(free**2) / 2), label="free flight")
+        self_part.theory(free, np.exp(-(free**2) / 2), label="free flight")
         y, error = result.non_gaussian.value, result.non_gaussian.error
         gaussian.errorbar(result.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
         gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
@@ -227,28 +232,28 @@ class ScatteringAnalysis(Analysis):
         displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
         displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
         displaced.legend()
-        for index, other in enumerate(result.distinct, -1):  # colours of G_s, and another one for t = 0
+        for index, around in enumerate(result.distinct, -1):  # the colours of G_s, and a new colour for t = 0
             colour, line, _ = curve_style(index % len(result.distinct))
-            x, y, error = other.distance, other.density.value, other.density.error
-            others.plot(x, y, line, color=colour, label=f"t = {other.time:.4g}")
-            others.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
-        others.set(xlabel="r (length)", ylabel="G_d(r, t) (1/length²)")
-        others.legend()
+            x, y, error = around.distance, around.density.value, around.density.error
+            distinct.plot(x, y, line, color=colour, label=f"t = {around.time:.4g}")
+            distinct.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        distinct.set(xlabel="r (length)", ylabel="G_d(r, t) (1/length²)")
+        distinct.legend()
         density.set_ylabel("F(k, t) (no unit)")
-        own.set_ylabel("self part F_s(k, t) (no unit)")
+        self_part.set_ylabel("self part F_s(k, t) (no unit)")
         spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
         along.set_ylabel("current along k, over T/m (no unit)")
         across.set_ylabel("current across k, over T/m (no unit)")
-        for ax in (density, own, along, across):
+        for ax in (density, self_part, along, across):
             ax.set_xlabel("k √(T/m) t (no unit)")
-        for ax in (density, own, spectrum, along, across):
+        for ax in (density, self_part, spectrum, along, across):
             ax.legend()
         return figure
 
 
 def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> Wave:
-    """Wave from the sums of all segments; speed: √(T/m)."""
-    density, self_part, along, across, *_ = (np.array(one) for one in zip(*sums, strict=True))
+    """Return the wave from the sums of all segments; speed: √(T/m)."""
+    density, self_part, along, across, *_ = (np.array(parts) for parts in zip(*sums, strict=True))
     taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
     frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
     spectrum = density @ (taper[:, None] * np.cos(time[:, None] * frequency))
@@ -271,7 +276,7 @@ def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) 
 
 
 def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve]) -> Table:
-    """Table of curves with their errors."""
+    """Return the table of curves with their errors."""
     columns: dict[str, np.ndarray | None] = {**argument}
     for name, curve in curves.items():
         columns |= {name: curve.value, f"± {name}": curve.error}
@@ -279,27 +284,27 @@ def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve
 
 
 def _first(parts: np.ndarray, lag: int, theory: float | None = None, theory_error: float = 0.0) -> Estimate:
-    """Estimate of a correlation at one lag, from segments (S, L)."""
+    """Return the estimate of a correlation at one lag, from segments (S, L)."""
     curve = curve_of(parts)
     return Estimate(float(curve.value[lag]), float(curve.error[lag]), float(len(parts)), theory, theory_error)
 
 
 def _free_flight(log: Log, time: float, k: float) -> tuple[float | None, float]:
-    """F_s and its error after a time; none after more than a collision.
+    """Return F_s and its error after a time; None after more than one collision.
 
-    The slope of the velocity correlation at 0 is exact, and its second derivative is the error.
+    The initial slope of the velocity correlation is exact, and its second derivative is counted as the error.
     """
     gas, collisions = log.discs, _correlation_rate(log) * time
     if gas.packing_fraction > hard_discs.HIGHEST or collisions >= 1:
         return None, 0.0
-    others = 1 - 1 / len(gas)
-    half = (k * time) ** 2 * ensemble(log).temperature / float(gas.mass[0]) * others / 2
-    value = math.exp(-k * k * others * _mean_square(log, time) / 4)
+    relative = 1 - 1 / len(gas)
+    half = (k * time) ** 2 * ensemble(log).temperature / float(gas.mass[0]) * relative / 2
+    value = math.exp(-k * k * relative * _mean_square(log, time) / 4)
     return value, value * (half * collisions**2 / 24 + half**2 / (2 * len(gas)))
 
 
 def _correlation_rate(log: Log) -> float:
-    """Rate T/(mD) of the velocity correlation with Enskog's D, 1/time; above HIGHEST, that of HIGHEST."""
+    """Return the rate T/(mD) of the velocity correlation, 1/time, with Enskog's D at a φ of at most HIGHEST."""
     gas, temperature, mass = log.discs, ensemble(log).temperature, float(log.discs.mass[0])
     chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
     diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), len(gas) / gas.area, temperature, mass, chi)
@@ -307,14 +312,14 @@ def _correlation_rate(log: Log) -> float:
 
 
 def _mean_square(log: Log, time: float) -> float:
-    """Mean square displacement 4(T/m)(ωt - 1 + exp(-ωt))/ω² of many discs after a time, length²."""
+    """Return the mean square displacement 4(T/m)(ωt - 1 + exp(-ωt))/ω² of many discs after a time, length²."""
     rate = _correlation_rate(log)
     square = 4 * ensemble(log).temperature / float(log.discs.mass[0])
     return square * (rate * time + math.expm1(-rate * time)) / rate**2
 
 
 def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:
-    """Sentences on a window that is too short for the longest waves, or for how slowly those of wave number k decay."""
+    """Yield caveats if the window is too short for the longest waves, or for the decay of waves of wave number k."""
     if k != longest:
         yield f"The window is too short for waves longer than that of k = {k:.4g}."
     gas, temperature, phi = log.discs, ensemble(log).temperature, log.discs.packing_fraction

@@ -20,8 +20,12 @@ class Curve:
 class VanHove:
     """Self part of the van Hove function at one time: density of the displacements of discs.
 
-    time: time. distance: (BINS,), length. density: (BINS,), G_s(r, t), mean over a bin, 1/length². gaussian: (BINS,),
-    normal distribution with the same ⟨Δr²⟩, 1/length². square: ⟨Δr²⟩, length².
+    Attributes:
+        time: time.
+        distance: (BINS,), distances, length.
+        density: (BINS,), G_s(r, t), averaged over a bin, 1/length².
+        gaussian: (BINS,), normal distribution with the same ⟨Δr²⟩, 1/length².
+        square: ⟨Δr²⟩, length².
     """
 
     time: float
@@ -32,31 +36,34 @@ class VanHove:
 
 
 def curve_of(parts: np.ndarray) -> Curve:
-    """Mean of the segments (S, L) and its standard error."""
+    """Return the mean of the segments (S, L) and its standard error."""
     return Curve(parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts)))
 
 
 def van_hove(time: float, edges: np.ndarray, sums: list[Sums]) -> VanHove:
-    """Self part of the van Hove function from the distances in all segments, in bins of these edges (BINS + 1,)."""
+    """Return the self part of the van Hove function from the distances in all segments.
+
+    edges: (BINS + 1,), edges of the bins of distances, length.
+    """
     area = math.pi * np.diff(edges**2)
-    square = float(np.mean([one.moments[APART.bit_length() - 1, 0] for one in sums]))
+    square = float(np.mean([segment.moments[APART.bit_length() - 1, 0] for segment in sums]))
     normal = -np.diff(np.exp(-(edges**2) / square))
-    density = curve_of(np.array([one.distances for one in sums]) / area)
+    density = curve_of(np.array([segment.distances for segment in sums]) / area)
     return VanHove(time, (edges[1:] + edges[:-1]) / 2, density, normal / area, square)
 
 
 def non_gaussian(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, Curve]:
-    """Times and non-Gaussian parameter from times (L,) and moments (S, P, 2) of each wave number.
+    """Return times and the non-Gaussian parameter from times (L,) and moments (S, P, 2) of each wave number.
 
-    Long times are from the long waves, short ones from the short waves.
+    Long times are taken from the long waves, and short ones from the short waves.
     """
-    found: list[tuple[float, float, float]] = []
+    points: list[tuple[float, float, float]] = []
     for time, moments in reversed(parts):
         for lag, (square, fourth) in zip(powers_of_two(len(time)), np.moveaxis(moments, 0, 2), strict=True):
-            if not found or time[lag] > found[-1][0] * 1.01:
+            if not points or time[lag] > points[-1][0] * 1.01:
                 second = square.mean()
                 change = (fourth - fourth.mean()) - 2 * fourth.mean() / second * (square - second)
                 error = float(change.std(ddof=1)) / math.sqrt(len(change)) / (2 * second**2)
-                found.append((float(time[lag]), float(fourth.mean() / (2 * second**2) - 1), float(error)))
-    times, values, errors = np.array(found).T
+                points.append((float(time[lag]), float(fourth.mean() / (2 * second**2) - 1), float(error)))
+    times, values, errors = np.array(points).T
     return times, Curve(values, errors)

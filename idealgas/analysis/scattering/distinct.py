@@ -1,4 +1,4 @@
-"""Distinct part of the van Hove function: the other discs around the place where a disc was a time before."""
+"""Distinct part of the van Hove function: the other discs around the position of a disc at an earlier time."""
 
 import math
 from collections.abc import Sequence
@@ -20,10 +20,12 @@ STARTS = 4
 
 @dataclass(frozen=True)
 class Distinct:
-    """Distinct part of the van Hove function at one time: density of the other discs around the former place of a disc.
+    """Distinct part of the van Hove function at one time: density of other discs around the former position of a disc.
 
-    time: time. distance: (B,), middles of bins, length. density: (B,), G_d(r, t), mean over a bin, 1/length²: ρ g(r) at
-    t = 0, and after long times that of the other discs in the box, (N - 1)/A.
+    Attributes:
+        time: time.
+        distance: (B,), middles of bins, length.
+        density: (B,), G_d(r, t), averaged over a bin, 1/length²: ρ g(r) at t = 0, and (N - 1)/A after long times.
     """
 
     time: float
@@ -32,10 +34,10 @@ class Distinct:
 
 
 def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Distinct, ...]:
-    """Distinct part after each of some times, at distances up to half the box; none for a single disc.
+    """Return the distinct part after each of several times, at distances up to half the box; none for a single disc.
 
-    Places are relative to the centre of mass. The log is read once, and an instant is kept until its last pair is
-    counted. Errors are by SEGMENTS parts of the window.
+    Positions are relative to the centre of mass. The log is read once, and an instant is kept until its last pair is
+    counted. Errors are from SEGMENTS parts of the window.
     """
     number, diameter = len(log.discs), 2 * float(log.discs.radius[0])
     if number < 2:
@@ -54,16 +56,16 @@ def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Di
         for k, start in np.argwhere(second == now):
             counts[k, start] = _pairs(places[first[start]], places[now], box, edges)
         waiting = first[second.max(axis=0) > now]
-        places = {n: one for n, one in places.items() if n in waiting}
+        places = {n: positions for n, positions in places.items() if n in waiting}
     densities = counts.reshape(len(times), SEGMENTS, STARTS, bins).mean(axis=2) / (number * math.pi * np.diff(edges**2))
     middles = (edges[1:] + edges[:-1]) / 2
-    return tuple(Distinct(time, middles, curve_of(one)) for time, one in zip(times, densities, strict=True))
+    return tuple(Distinct(time, middles, curve_of(parts)) for time, parts in zip(times, densities, strict=True))
 
 
 def _pairs(before: np.ndarray, after: np.ndarray, box: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Number of pairs of two discs (bins,) by the distance from the place of one before to that of the other after."""
+    """Count pairs of two discs by the distance from the earlier position of one to the later position of the other."""
     counts = cKDTree(before, boxsize=box).count_neighbors(cKDTree(after, boxsize=box), edges[1:], cumulative=False)
     moved = after - before
     moved -= box * np.rint(moved / box)
-    own = np.hypot(*moved.T)
-    return counts - np.histogram(own, edges)[0]
+    self_distances = np.hypot(*moved.T)
+    return counts - np.histogram(self_distances, edges)[0]

@@ -11,29 +11,29 @@ from idealgas.analysis.core.stream import trajectories
 from idealgas.log import Log
 
 WAVES = 4
-"""Number of wave numbers, evenly spaced in their logarithm from that of the box to that of a diameter."""
+"""Number of wave numbers, evenly spaced on a logarithmic scale from that of the box to that of a diameter."""
 
 STARTS = 64
-"""Number of instants in a segment from which lags count, unless segments with all of them hold few more instants."""
+"""Number of instants in a segment at which lags start, unless segments without gaps contain hardly more instants."""
 
 SEGMENTS = 32
-"""Parts of the window; the spread over them gives the error bars."""
+"""Number of parts of the window, whose scatter gives the error bars."""
 
 MOST_PLACES = 2**20
-"""Number of positions that are kept at all instants; of more discs a part gives the self part and displacements."""
+"""Number of positions that are kept at all instants; in a larger gas only a part of the discs gives the self part."""
 
 APART = 16
-"""Lag after which distances are counted, in steps."""
+"""Lag at which distances are counted, in steps."""
 
 BINS, FARTHEST = 30, 3.0
-"""Number of bins of distances, and their end in root-mean-square displacements by theory."""
+"""Number of bins of distances, and their upper end in root-mean-square displacements by theory."""
 
 
 class Sums(NamedTuple):
     """Correlations (L,) in one segment, and displacements.
 
-    moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`. distances: (BINS,), shares of the discs that
-    are at distances in bins from their place APART steps before.
+    moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`. distances: (BINS,), fractions of the discs at
+    distances in each bin from their position APART steps earlier.
     """
 
     density: np.ndarray
@@ -45,11 +45,15 @@ class Sums(NamedTuple):
 
 
 class Series(NamedTuple):
-    """A wave at G instants, in units of the time between two: amplitudes, and places of some discs.
+    """A wave at G instants, in units of the time between two instants: amplitudes, and positions of sampled discs.
 
-    at: (G,), whole numbers from the start of the window on. starts: number of starts of lags in each segment. begins:
-    (SEGMENTS,), indices of their first instants. axes: A axes along which the wave runs. waves: (3, A, G), Σ exp(-ikx)
-    and the currents along and across k. places: (2, G, M), x and y, unwrapped, length.
+    Attributes:
+        at: (G,), whole numbers of steps from the start of the window.
+        starts: number of starts of lags in each segment.
+        begins: (SEGMENTS,), indices of the first instants of the segments.
+        axes: the A axes along which the wave runs.
+        waves: (3, A, G), Σ exp(-ikx) and the currents along and across k.
+        places: (2, G, M), x and y, unwrapped, length.
     """
 
     at: np.ndarray
@@ -61,20 +65,21 @@ class Series(NamedTuple):
 
 
 def wave_numbers(log: Log) -> np.ndarray:
-    """Numbers of waves in the longest side, up to one in a diameter."""
+    """Return numbers of waves in the longest side, up to one wave per diameter."""
     most = max(max(log.box) / (2 * float(log.discs.radius[0])), 1.0)
     return np.unique(np.geomspace(1, int(most), WAVES).round())
 
 
 def powers_of_two(lags: int) -> np.ndarray:
-    """Powers of two below a number of lags, after which displacements are measured."""
+    """Return the powers of two below a number of lags, after which displacements are measured."""
     return 2 ** np.arange((lags - 1).bit_length())
 
 
 def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
-    """Read a wave of the wave number k along the longest sides, each instant once.
+    """Read a wave of wave number k along the longest sides, each instant once.
 
-    Segments have all instants of a short window as starts, and STARTS each, with gaps between them, of a long one.
+    In a short window the segments have all their instants as starts. In a long window they have STARTS each, with gaps
+    between the segments.
     """
     apart = int((window.duration / step - lags + 2) / SEGMENTS)
     starts = apart if apart <= STARTS + lags else STARTS
@@ -84,8 +89,8 @@ def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
     chosen = np.arange(len(log.discs))[:: -(-len(log.discs) * len(at) // MOST_PLACES)]
     waves, places = np.empty((3, len(axes), len(at)), complex), np.empty((2, len(at), len(chosen)))
     for part in np.split(np.arange(len(at)), np.flatnonzero(np.diff(at) > 1) + 1):
-        for some, place, velocity in trajectories(log, np.minimum(window.start + step * at[part], window.end)):
-            now = part[some]
+        for instants, place, velocity in trajectories(log, np.minimum(window.start + step * at[part], window.end)):
+            now = part[instants]
             for a, axis in enumerate(axes):
                 phase, along, across = k * place[:, :, axis], velocity[:, :, axis], velocity[:, :, 1 - axis]
                 cos, sin = np.cos(phase), np.sin(phase)
@@ -97,29 +102,31 @@ def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
 
 
 def segments(log: Log, k: float, lags: int, series: Series, edges: np.ndarray) -> Iterator[Sums]:
-    """Sums of each segment of a wave; edges: of the bins of distances, length."""
+    """Yield the sums of each segment of a wave; edges: edges of the bins of distances, length."""
     starts, number = series.starts, len(series.axes)
     phases = [np.exp(-1j * k * series.places[axis]) for axis in series.axes]
     for first in series.begins:
-        some = slice(first, first + starts + lags - 1)
-        places = series.places[:, some]
-        waves = (correlation(one.T, lags) / (number * len(log.discs)) for one in series.waves[:, :, some])
+        instants = slice(first, first + starts + lags - 1)
+        places = series.places[:, instants]
+        waves = (correlation(wave.T, lags) / (number * len(log.discs)) for wave in series.waves[:, :, instants])
         density, longitudinal, transverse = waves
-        own = np.sum([correlation(one[some], lags) for one in phases], axis=0) / (number * places.shape[2])
+        self_part = np.sum([correlation(phase[instants], lags) for phase in phases], axis=0) / (
+            number * places.shape[2]
+        )
         squares = [squares_after(places, lag, starts) for lag in powers_of_two(lags)]
         moments = np.array([(square.mean(), (square * square).mean()) for square in squares])
-        found = np.histogram(squares[APART.bit_length() - 1], edges**2)[0] / squares[0].size
-        yield Sums(density, own, longitudinal, transverse, moments, found)
+        fractions = np.histogram(squares[APART.bit_length() - 1], edges**2)[0] / squares[0].size
+        yield Sums(density, self_part, longitudinal, transverse, moments, fractions)
 
 
 def squares_after(places: np.ndarray, lag: int, starts: int) -> np.ndarray:
-    """Squares (starts, M) of displacements after a number of instants, from places (2, n, M)."""
+    """Return squared displacements (starts, M) after a number of instants, from positions (2, n, M)."""
     x, y = places[:, lag : lag + starts] - places[:, :starts]
     return np.asarray(x * x + y * y)
 
 
 def correlation(series: np.ndarray, lags: int) -> np.ndarray:
-    """Sum over all series of the mean of Re x(t + lag) x*(t) (lags,) over the first n - lags + 1 times.
+    """Return the mean of Re x(t + lag) x*(t) over the first n - lags + 1 times, summed over all series, (lags,).
 
     series: (n, M), complex.
     """

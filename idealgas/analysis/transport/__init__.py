@@ -1,9 +1,9 @@
 """Measure diffusion, viscosities and thermal conductivity, collision rates, free paths and the pair distribution.
 
-They are compared with Enskog's theory and the rates of kinetic theory. Viscosities, thermal conductivity and the
-pressure tensor take a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution
-of free paths. Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over
-Enskog's against the packing fraction.
+The results are compared with Enskog's theory and the rates of kinetic theory. Viscosities and thermal conductivity
+require a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution of free paths.
+Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over Enskog's values against
+the packing fraction.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class TransportAnalysis(Analysis):
-    """Declaration of the analysis; its docstring for users is that of `transport`."""
+    """Declaration of the analysis `transport`; users see the docstring of that function."""
 
     position = 70
     headline = "diffusion.*.coefficient"
@@ -49,7 +49,7 @@ class TransportAnalysis(Analysis):
 
     @staticmethod
     def figure(result: Any) -> "Figure":
-        """Picture of the result; matplotlib is imported where it is drawn."""
+        """Draw the result; matplotlib is imported only here."""
         from idealgas.analysis.transport.figure import transport_figure
 
         return transport_figure(result)

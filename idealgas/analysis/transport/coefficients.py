@@ -22,12 +22,14 @@ from idealgas.log import Log
 from idealgas.state import Gas
 
 STEPS = 100  # number of steps up to the longest lag
-MOST_BLOCKS = 2**18  # of the currents; a longer run has longer steps
+MOST_BLOCKS = 2**18  # largest number of blocks of the currents; a longer run has longer steps
 PLATEAU_FROM = 0.5  # share of the longest lag from which on a coefficient is averaged
 
 DIRECTIONS = 3.0
-"""Part by which η by its two routes differs for N discs in a square periodic box, times N: 50 discs at φ = 0.2 have
-(5.6 ± 1.1) % less by xy."""
+"""Relative difference of η by its two routes for N discs in a square periodic box, times N.
+
+For 50 discs at φ = 0.2, η by xy is lower by (5.6 ± 1.1) %.
+"""
 
 SYMBOLS = {"viscosity": "η", "thermal_conductivity": "λ", "bulk_viscosity": "ζ", "mutual_diffusion": "D₁₂"}
 """Symbols of the coefficients, by their names."""
@@ -37,10 +39,14 @@ SYMBOLS = {"viscosity": "η", "thermal_conductivity": "λ", "bulk_viscosity": "�
 class Coefficient:
     """Transport coefficient of the whole gas, by Einstein's and Helfand's route.
 
-    unit: its unit. times: (L,), time. running, running_error: (L,), half the slope of the spread of the current's
-    integral after these times, and its standard error, in this unit. value: the coefficient, mean of the running one
-    over the plateau; its theory is Enskog's. routes: by the current of each direction alone. difference: of the first
-    two routes, 0 in an isotropic gas; None for a single route.
+    Attributes:
+        unit: unit of the coefficient.
+        times: (L,), time.
+        running: (L,), half the slope of the mean square integral of the current at these times, in this unit.
+        running_error: (L,), its standard error.
+        value: the coefficient, the mean of the running one over the plateau; its theory is Enskog's.
+        routes: coefficient from the current of each direction alone.
+        difference: difference of the first two routes, 0 in an isotropic gas; None for a single route.
     """
 
     unit: str
@@ -56,9 +62,11 @@ class Coefficient:
 class Collective:
     """Transport coefficients from the currents of a whole gas.
 
-    plateau: first and last time over which coefficients are averaged. coefficients: by name; no thermal conductivity
-    for several species, where energy also comes along with discs that diffuse, and from samples without sums
-    of the heat; mutual diffusion of two species, from events.
+    Attributes:
+        plateau: first and last time over which coefficients are averaged.
+        coefficients: coefficients by name. There is no thermal conductivity for several species, where energy is also
+            carried by discs that diffuse, or from samples without sums of the heat. Mutual diffusion is given for two
+            species with events.
     """
 
     plateau: tuple[float, float]
@@ -68,9 +76,13 @@ class Collective:
 def flow_in_events(
     log: Log, window: Window, longest: float, progress: Callable[[int, int], None] | None = None
 ) -> tuple[np.ndarray, float]:
-    """Integrals (B, 2, 7) of the currents over blocks of a window, from the events of a log, and the width of a block.
+    """Return integrals of the currents over blocks of a window, (B, 2, 7), from events, and the width of a block.
 
-    longest: lag up to which currents are followed, time. progress(done, in all) is called as events are read.
+    Args:
+        log: log of the gas.
+        window: window of time.
+        longest: lag up to which currents are followed, time.
+        progress: called as progress(done, total) while events are read.
     """
     currents = Currents()
     blocks = min(round(STEPS * window.duration / longest), MOST_BLOCKS)
@@ -79,10 +91,10 @@ def flow_in_events(
 
 
 def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarray, float]:
-    """The same from the sums in the samples of a log, by blocks no shorter than the time between two samples.
+    """Return the same from the sums in the samples of a log, in blocks no shorter than the time between two samples.
 
-    With snapshots blocks begin and end with them, so that the integrals are exact; without, sums grow evenly from one
-    sample to the next. Without sums of the heat its current is not a number, nor is that of a species.
+    With snapshots the blocks begin and end at them, so that the integrals are exact. Without snapshots the sums are
+    interpolated between samples. The current of heat is nan without its sums, and so is the current of a species.
     """
     observed, still = log.observables, centre_of_mass_velocity(log)
     edges = _sample_edges(log, window, longest)
@@ -93,13 +105,13 @@ def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarra
         flow[:, part, : YY + 1] = in_blocks(*observed[momentum], edges)[:, : YY + 1]
         if heat in observed:
             flow[:, part, HEAT_X : HEAT_Y + 1] = in_blocks(*observed[heat], edges)
-    whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]]  # samples have the motion of the gas as a whole
+    whole = log.discs.mass.sum() * still[[0, 0, 1]] * still[[0, 1, 1]]  # samples include the motion of the whole gas
     flow[:, CARRIED, : YY + 1] -= np.diff(edges)[:, None] * whole
     return flow, float(edges[1] - edges[0])
 
 
 def _sample_edges(log: Log, window: Window, longest: float) -> np.ndarray:
-    """Times (B + 1,) between blocks of equal width in a window, at snapshots if there are any, else near samples."""
+    """Return times (B + 1,) between blocks of equal width in a window, at snapshots if there are any."""
     time = log.observables["kinetic_flow"][0]
     inside = (time >= window.start) & (time <= window.end)
     every = log.scene.log.snapshot_every
@@ -120,24 +132,30 @@ def collective(
     longest: float,
     theory: tuple[Enskog | None, Theory | None],
 ) -> Collective:
-    """Coefficients of the gas of a log in a periodic box, from integrals (B, 2, 7) of its currents over blocks.
+    """Return the coefficients of a gas in a periodic box from integrals of its currents over blocks.
 
-    width: of a block, time. longest: lag up to which currents are followed, time. theory: Enskog's coefficients,
-    and the diffusion of two species in each other.
+    Args:
+        flow: (B, 2, 7), integrals of the currents.
+        width: width of a block, time.
+        log: log of the gas.
+        equilibrium: ensemble of the gas.
+        longest: lag up to which currents are followed, time.
+        theory: Enskog's coefficients, and the mutual diffusion coefficient of two species.
     """
     lags, gas = lags_of(width, longest, PLATEAU_FROM), log.discs
     conducts = len(gas.species_names) == 1 and not np.isnan(flow[0, CARRIED, HEAT_X])
-    found = _coefficients(flow, lags, gas, equilibrium.temperature, conducts, theory[0])
+    coefficients = _coefficients(flow, lags, gas, equilibrium.temperature, conducts, theory[0])
     if len(gas.species_names) == 2 and not np.isnan(flow[0, CARRIED, APART_X]):
-        found["mutual_diffusion"] = _mutual_diffusion(flow[:, CARRIED], lags, gas, theory[1])
-    return Collective(lags.plateau, found)
+        coefficients["mutual_diffusion"] = _mutual_diffusion(flow[:, CARRIED], lags, gas, theory[1])
+    return Collective(lags.plateau, coefficients)
 
 
 def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | None) -> Coefficient:
-    """Maxwell's and Stefan's coefficient of two species from integrals (B, 7) of currents.
+    """Return the Maxwell–Stefan coefficient of two species from integrals (B, 7) of the currents.
 
-    N₁N₂/N times half the slope of the spread of one species relative to the other, along a direction: Zhou & Miller,
-    J. Phys. Chem. 100, 5516 (1996). Fick's coefficient is this one times the thermodynamic factor of the mixture.
+    It is N₁N₂/N times half the slope of the mean square displacement of one species relative to the other, along one
+    direction: Zhou & Miller, J. Phys. Chem. 100, 5516 (1996). Fick's coefficient is this one times the thermodynamic
+    factor of the mixture.
     """
     first, second = np.bincount(gas.species, minlength=2)
     apart = {"x": flow[:, APART_X], "y": flow[:, APART_Y]}
@@ -147,38 +165,46 @@ def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | N
 def _coefficients(
     flow: np.ndarray, lags: Lags, gas: Gas, temperature: float, conducts: bool, enskog: Enskog | None
 ) -> dict[str, Coefficient]:
-    """Coefficients by name from integrals (B, 2, 7) of the currents; conducts: whether heat goes by conduction only."""
+    """Return coefficients by name from integrals (B, 2, 7) of the currents.
+
+    conducts: whether heat is transported by conduction only.
+    """
     whole = flow.sum(axis=1).T
     shear = {"xy": whole[XY], "(xx - yy)/2": (whole[XX] - whole[YY]) / 2}
     heat, trace = {"x": whole[HEAT_X], "y": whole[HEAT_Y]}, {"(xx + yy)/2": (whole[XX] + whole[YY]) / 2}
     factor = 1 / (gas.area * temperature)
-    found = {"viscosity": _coefficient(shear, lags, factor, "mass/time", gas, enskog.viscosity if enskog else None)}
+    coefficients = {
+        "viscosity": _coefficient(shear, lags, factor, "mass/time", gas, enskog.viscosity if enskog else None)
+    }
     if conducts:
         theory = enskog.conductivity if enskog else None
-        found["thermal_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", gas, theory)
-    found["bulk_viscosity"] = _coefficient(
+        coefficients["thermal_conductivity"] = _coefficient(heat, lags, factor / temperature, "1/time", gas, theory)
+    coefficients["bulk_viscosity"] = _coefficient(
         trace, lags, factor, "mass/time", gas, enskog.bulk_viscosity if enskog else None
     )
-    return found
+    return coefficients
 
 
 def _coefficient(
     currents: dict[str, np.ndarray], lags: Lags, factor: float, unit: str, gas: Gas, theory: Theory | None
 ) -> Coefficient:
-    found = growth(np.array([*currents.values()]), lags)
+    measured = growth(np.array([*currents.values()]), lags)
     return Coefficient(
         unit,
         lags.times,
-        factor * found.running,
-        factor * found.error,
-        mean(factor * found.series.mean(axis=0), theory),
-        {name: mean(factor * series) for name, series in zip(currents, found.series, strict=True)},
-        _difference(factor * found.series, gas) if len(currents) > 1 else None,
+        factor * measured.running,
+        factor * measured.error,
+        mean(factor * measured.series.mean(axis=0), theory),
+        {name: mean(factor * series) for name, series in zip(currents, measured.series, strict=True)},
+        _difference(factor * measured.series, gas) if len(currents) > 1 else None,
     )
 
 
 def _difference(series: np.ndarray, gas: Gas) -> Estimate:
-    """Difference of two routes, from the series of both; in a square box theory expects none, but for few discs."""
+    """Return the difference of two routes from the series of both.
+
+    In a square box theory predicts that it is 0, except for few discs.
+    """
     error = DIRECTIONS / len(gas) * abs(float(series.mean()))
     theory = Theory(0.0, error, "isotropy") if gas.box[0] == gas.box[1] else None
     return mean(series[0] - series[1], theory)

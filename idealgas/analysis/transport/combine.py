@@ -19,7 +19,10 @@ DIFFUSION = "D"
 class Sample(Result):
     """Transport coefficients of one run over Enskog's, by their symbols.
 
-    packing_fraction: φ. number: of discs. coefficients: those that the run and theory have (no unit).
+    Attributes:
+        packing_fraction: packing fraction φ.
+        number: number of discs.
+        coefficients: coefficients that the run measured and theory predicts, over theory (no unit).
     """
 
     packing_fraction: float
@@ -29,10 +32,16 @@ class Sample(Result):
 
 @dataclass(frozen=True)
 class State:
-    """Transport coefficients at one packing fraction and one number of discs, means over runs of one kind of gas.
+    """Transport coefficients at one packing fraction and one number of discs, averaged over runs of one kind of gas.
 
-    name: φ, N, seeds and kind of gas in words. packing_fraction: φ. number: of discs. kind: kind of gas in words; empty
-    if unknown. runs: number of runs. seeds: of the runs. coefficients: over Enskog's, by symbol (no unit).
+    Attributes:
+        name: φ, N, seeds and kind of gas in words.
+        packing_fraction: packing fraction φ.
+        number: number of discs.
+        kind: kind of gas in words; empty if unknown.
+        runs: number of runs.
+        seeds: seeds of the runs.
+        coefficients: coefficients over Enskog's, by symbol (no unit).
     """
 
     name: str
@@ -52,37 +61,39 @@ class States(Result):
 
 
 def combine_transport(results: Sequence[Transport | Sample]) -> Transport | States:
-    """Transport in the gas of a single log, or the coefficients of several logs or of a sweep."""
+    """Return the transport in the gas of a single log, or the coefficients of several logs or points of a sweep."""
     if len(results) == 1 and isinstance(results[0], Transport):
         return results[0]
-    samples = (_sample_of(found) if isinstance(found, Transport) else found for found in results)
+    samples = (_sample_of(result) if isinstance(result, Transport) else result for result in results)
     return States(tuple(_state(kind, runs) for kind, runs in by_state(samples)))
 
 
-def restore_transport(found: dict[str, Any], label: str) -> Sample:
-    """Coefficients of one point of a sweep, whose name is `label`."""
-    whole, diffusion = found["collective"] or {}, found["diffusion"]
+def restore_transport(stored: dict[str, Any], label: str) -> Sample:
+    """Return the coefficients of the point of a sweep that is named `label`, from its stored values."""
+    whole, diffusion = stored["collective"] or {}, stored["diffusion"]
     coefficients = {DIFFUSION: diffusion[0]["coefficient"]} if len(diffusion) == 1 else {}
     coefficients |= {symbol: whole[name]["coefficient"] for name, symbol in SYMBOLS.items() if name in whole}
-    estimates = {symbol: Estimate.from_dict(one) for symbol, one in coefficients.items() if one}
-    return Sample(found["packing_fraction"], found["number"], _over_theory(estimates))
+    estimates = {symbol: Estimate.from_dict(estimate) for symbol, estimate in coefficients.items() if estimate}
+    return Sample(stored["packing_fraction"], stored["number"], _over_theory(estimates))
 
 
-def _sample_of(found: Transport) -> Sample:
-    alone = found.diffusion[0].coefficient if len(found.diffusion) == 1 else None
+def _sample_of(result: Transport) -> Sample:
+    alone = result.diffusion[0].coefficient if len(result.diffusion) == 1 else None
     coefficients = {DIFFUSION: alone} if alone else {}
-    if found.collective:
-        coefficients |= {SYMBOLS[name]: one.value for name, one in found.collective.coefficients.items()}
-    return Sample(found.packing_fraction, found.number, _over_theory(coefficients), origin=found.origin)
+    if result.collective:
+        coefficients |= {
+            SYMBOLS[name]: coefficient.value for name, coefficient in result.collective.coefficients.items()
+        }
+    return Sample(result.packing_fraction, result.number, _over_theory(coefficients), origin=result.origin)
 
 
 def _over_theory(coefficients: dict[str, Estimate]) -> dict[str, Estimate]:
-    """Coefficients that have a theory, in units of it."""
-    return {symbol: one.times(1 / one.theory) for symbol, one in coefficients.items() if one.theory}
+    """Return the coefficients that have a theory, in units of it."""
+    return {symbol: estimate.times(1 / estimate.theory) for symbol, estimate in coefficients.items() if estimate.theory}
 
 
 def _state(kind: str, runs: Sequence[Sample]) -> State:
-    """Mean over runs of one state, of all coefficients that every run has."""
+    """Return the mean over the runs of one state, for all coefficients that every run has."""
     symbols = [symbol for symbol in runs[0].coefficients if all(symbol in run.coefficients for run in runs)]
     means = {symbol: mean_of_replicates([run.coefficients[symbol] for run in runs]) for symbol in symbols}
     phi, number, seeds = runs[0].packing_fraction, runs[0].number, seeds_of(runs)

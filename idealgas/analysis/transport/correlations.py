@@ -1,26 +1,26 @@
-"""Correlations in time of velocities and of positions, by Fourier transforms."""
+"""Correlations in time of velocities and positions, by Fourier transforms."""
 
 import numpy as np
 from scipy import fft
 
 
 def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Correlation ⟨a(t)·b(t + lag)⟩ (segments, L) of two series, averaged over discs and the times t of each segment.
+    """Return ⟨a(t)·b(t + lag)⟩ (segments, L) of two series, averaged over discs and the times t of each segment.
 
     first, second: (segments, L, discs, 2), at equal steps.
     """
     length = first.shape[1]
     padded = fft.next_fast_len(2 * length - 1, real=True)
     transform = np.fft.rfft(first, padded, axis=1)
-    other = transform if second is first else np.fft.rfft(second, padded, axis=1)
-    power = (transform.conj() * other).sum(axis=3).mean(axis=2)
+    transform_of_second = transform if second is first else np.fft.rfft(second, padded, axis=1)
+    power = (transform.conj() * transform_of_second).sum(axis=3).mean(axis=2)
     return np.fft.irfft(power, padded, axis=1)[:, :length] / np.arange(length, 0, -1)
 
 
 def velocity_integral(velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Integral of ⟨v(t)·v(t + lag)⟩ (segments, L) from 0 to each lag, length²/time.
+    """Return the integral of ⟨v(t)·v(t + lag)⟩ from 0 to each lag, (segments, L), length²/time.
 
-    It is the sum of ⟨v(t)·[r(t + lag + step) - r(t + lag)]⟩, which is exact however long the steps are.
+    It is the sum of ⟨v(t)·[r(t + lag + step) - r(t + lag)]⟩, which is exact for steps of any length.
 
     velocities, places: (segments, L, discs, 2), at equal steps.
     """
@@ -29,10 +29,10 @@ def velocity_integral(velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 
 def mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """Mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t of a segment, length².
+    """Return the mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t, length².
 
-    places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the
-    positions: Calandrini et al., Collection SFN 12, 201 (2011).
+    places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the positions:
+    Calandrini et al., Collection SFN 12, 201 (2011).
     """
     length = places.shape[1]
     places = places - places[:, :1]  # smaller numbers keep more digits

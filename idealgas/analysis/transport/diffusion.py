@@ -22,26 +22,36 @@ LAGS = 200  # number of steps of the correlation functions
 MOST_SEGMENTS = 64
 MOST_SAMPLES = 2**21  # largest number of discs times instants
 FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
-LEAST_LAG = 10.0  # mean free times; D from shorter lags is too small, as velocities still remember where they came from
+LEAST_LAG = 10.0  # mean free times; at shorter lags velocities are still correlated and D is too small
 LEAST_MEMORIES = 4.0  # velocity correlation times; the same for discs that keep their velocity for longer
-FREE_SHARE = 0.05  # largest displacement, relative to the way between two walls, that walls hardly change
-FALL = 0.1  # largest part by which D may fall from the quarter before the plateau to the plateau
-FEWEST_LAGS = 4  # steps between which D is taken
-SURE = 0.9999  # level at which it falls without doubt
+FREE_SHARE = 0.05  # largest displacement that walls hardly change, relative to the free length between them
+FALL = 0.1  # largest relative decrease of D from the quarter before the plateau to the plateau
+FEWEST_LAGS = 4  # smallest number of steps from which D is measured
+SURE = 0.9999  # confidence level at which D is taken to decrease
 
 
 @dataclass(frozen=True)
 class Diffusion:
     """Velocity correlation and diffusion of one species at L lags.
 
-    species: name. lag: (L,), time. correlation, correlation_error: (L,), ⟨v(0)·v(t)⟩/⟨v²⟩ and its standard error (no
-    unit). displacement, displacement_error: (L,), mean square displacement and its standard error, length². tail: (L,),
-    correlation at late times by theory; None for several species or above freezing. running, running_error: (L,), a
-    quarter of the slope of the displacement, length²/time, and its standard error. plateau: first and last lag over
-    which D is taken. coefficient: diffusion coefficient D, a quarter of the slope of the displacement there,
-    length²/time; its theory is Enskog's. velocity_correlation_time: mean there of the integral of the correlation up to
-    a lag, time; its theory is that of mD/T. All three are None where D has no plateau: where walls reflect the discs
-    before they diffuse, or where it falls with the lag.
+    The last three attributes are None if D has no plateau: if walls reflect the discs before they diffuse, or if D
+    decreases with the lag.
+
+    Attributes:
+        species: name of the species.
+        lag: (L,), time.
+        correlation: (L,), velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ (no unit).
+        correlation_error: (L,), its standard error.
+        displacement: (L,), mean square displacement, length².
+        displacement_error: (L,), its standard error.
+        tail: (L,), correlation at late times by theory; None for several species or above freezing.
+        running: (L,), a quarter of the slope of the displacement, length²/time.
+        running_error: (L,), its standard error.
+        plateau: first and last lag over which D is measured.
+        coefficient: diffusion coefficient D, a quarter of the slope of the displacement there, length²/time; its theory
+            is Enskog's.
+        velocity_correlation_time: integral of the correlation up to a lag, averaged over the plateau, time; its theory
+            is mD/T.
     """
 
     species: str
@@ -61,8 +71,11 @@ class Diffusion:
 class Limits(NamedTuple):
     """Times and lengths between which discs of a species diffuse.
 
-    rate: collision rate of a disc, 1/time. needed: least lag that D takes. friction_d: D by the friction of these
-    collisions, length²/time. ways: free lengths of a disc between two walls.
+    Attributes:
+        rate: collision rate of a disc, 1/time.
+        needed: smallest lag that D requires.
+        friction_d: D by the friction of these collisions, length²/time.
+        ways: free lengths of a disc between two walls.
     """
 
     rate: float
@@ -76,30 +89,34 @@ class Limits(NamedTuple):
         return FREE_SHARE * min(self.ways, default=math.inf)
 
     def within(self, displacement: np.ndarray) -> int:
-        """Last lag at which a mean square displacement (L,) is not beyond reach."""
+        """Return the last lag at which a mean square displacement (L,) is within reach."""
         return int(np.flatnonzero(displacement <= self.reach**2)[-1])
 
     def are_walls(self, lag: np.ndarray, displacement: np.ndarray) -> bool:
-        """Whether discs are beyond reach before they diffuse."""
+        """Return whether discs are beyond reach before they diffuse."""
         last = self.within(displacement)
         return last < len(lag) - 1 and (lag[last] < self.needed or last < FEWEST_LAGS)
 
     def lost(self, displacement: float) -> float:
-        """Part of D that walls take, by the law of diffusion between them, at a mean square displacement 4Dt.
+        """Return the relative decrease of D by walls at a mean square displacement 4Dt.
 
-        Between walls at a distance a half the slope of ⟨Δx²⟩ is (8D/π²) Σ exp(-n²π²Dt/a²)/n² over odd n, which is
-        D [1 - (4/√π) √(Dt)/a] at first; walls along one axis take half of that.
+        For diffusion between walls at a distance a, half the slope of ⟨Δx²⟩ is (8D/π²) Σ exp(-n²π²Dt/a²)/n² over odd n,
+        which is initially D [1 - (4/√π) √(Dt)/a]; walls along one axis contribute half of the decrease.
         """
         return sum(math.sqrt(displacement / math.pi) / way for way in self.ways)
 
 
 def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[Limits]:
-    """Limits of the diffusion of each species, from measured collision rates.
+    """Return the limits of the diffusion of each species, from measured collision rates.
 
-    A disc of species i forgets its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij; among many species, of whose pairs
-    the rates are not known, with the mean mass of all discs.
+    A disc of species i loses its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij. If there are too many species to know
+    the rates of all pairs, m_j is the mean mass of all discs.
 
-    collisions: (B, S, G), rates of the collisions of all discs of a species with those of a group, 1/time.
+    Args:
+        log: log of the gas.
+        discs: species of the gas.
+        collisions: (B, S, G), rates of the collisions of all discs of a species with those of a group, 1/time.
+        equilibrium: ensemble of the gas.
     """
     diffusions = []
     each = collisions.mean(axis=0) / discs.number[:, None]
@@ -122,11 +139,17 @@ def diffusion(
     limits: Sequence[Limits],
     expected: tuple[Enskog | None, Sequence[Theory | None], Ensemble],
 ) -> tuple[Diffusion, ...]:
-    """Diffusion of each species up to the longest lag, time, or between walls up to the one that they allow.
+    """Return the diffusion of each species up to the longest lag or, between walls, up to the lag that they allow.
 
-    expected: Enskog's theory, D of each species, and the ensemble.
+    Args:
+        log: log of the gas.
+        discs: species of the gas.
+        window: window of time.
+        longest: longest lag, time.
+        limits: limits of each species.
+        expected: Enskog's theory, D of each species, and the ensemble.
     """
-    longest = min(longest, max(max(one.needed, one.reach**2 / (4 * one.friction_d)) for one in limits))
+    longest = min(longest, max(max(limit.needed, limit.reach**2 / (4 * limit.friction_d)) for limit in limits))
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
     lag = np.linspace(0.0, longest, LAGS + 1)
     starts = np.linspace(window.start, window.end - longest, segments)
@@ -144,8 +167,8 @@ def diffusion(
     whole, coefficients, equilibrium = expected
     square = equilibrium.of_species * equilibrium.inverse_mass  # ⟨vx²⟩
     return tuple(
-        _of_species(*part, lag, (whole, alone, float(1 / one)))
-        for part, alone, one in zip(parts, coefficients, square, strict=True)
+        _of_species(*part, lag, (whole, alone, float(1 / mean_square)))
+        for part, alone, mean_square in zip(parts, coefficients, square, strict=True)
     )
 
 
@@ -157,14 +180,17 @@ def _of_species(
     lag: np.ndarray,
     expected: tuple[Enskog | None, Theory | None, float],
 ) -> Diffusion:
-    """Diffusion of one species from positions and velocities (segments, L, discs, 2); expected: theories, and m/T."""
+    """Return the diffusion of one species from positions and velocities (segments, L, discs, 2).
+
+    expected: theories, and m/T.
+    """
     remembered = correlation(velocities, velocities)
     square = remembered[:, 0].mean()
     displacement = mean_square_displacement(places)
     running = np.gradient(displacement, lag, axis=1) / 4
     count = math.sqrt(len(places))
     enskog, alone, inertia = expected
-    found = Diffusion(
+    entry = Diffusion(
         name,
         lag,
         remembered.mean(axis=0) / square,
@@ -178,19 +204,19 @@ def _of_species(
         coefficient=None,
         velocity_correlation_time=None,
     )
-    if limits.are_walls(lag, found.displacement):
-        return found
-    last = limits.within(found.displacement)
+    if limits.are_walls(lag, entry.displacement):
+        return entry
+    last = limits.within(entry.displacement)
     first = int(FITTED_FROM * last)
     late, slope = slice(first, last + 1), _slope(lag, displacement, first, last)
     if _falls(_slope(lag, displacement, int(FITTED_FROM * first), first), slope):
-        return found
+        return entry
     if alone:
-        lost = limits.lost(float(found.displacement[late].mean()))
+        lost = limits.lost(float(entry.displacement[late].mean()))
         alone = replace(alone, error=alone.error + lost * alone.value)
     integral = velocity_integral(velocities, places)[:, late].mean(axis=1) / square
     return replace(
-        found,
+        entry,
         plateau=(float(lag[first]), float(lag[last])),
         coefficient=mean(slope, theory=alone),
         velocity_correlation_time=mean(integral, theory=alone and alone.times(inertia)),
@@ -198,13 +224,13 @@ def _of_species(
 
 
 def _slope(lag: np.ndarray, displacement: np.ndarray, first: int, last: int) -> np.ndarray:
-    """A quarter of the slope of mean square displacements (segments, L) between two lags, by segment."""
+    """Return a quarter of the slope of mean square displacements (segments, L) between two lags, by segment."""
     part = slice(first, last + 1)
     return np.polyfit(lag[part], displacement[:, part].T, 1)[0] / 4
 
 
 def _falls(early: np.ndarray, late: np.ndarray) -> bool:
-    """Whether D falls without doubt, and by much, between an early and a late part of the lags, by segment."""
+    """Return whether D clearly decreases between an early and a late part of the lags, by segment."""
     fall = mean(early - late)
     return fall.value > FALL * early.mean() and fall.interval(SURE)[0] > 0
 
@@ -214,7 +240,7 @@ def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
 
 
 def diffusion_caveats(entry: Diffusion, limits: Limits) -> Iterator[str]:
-    """Sentence on a species that has no diffusion coefficient, or whose discs are followed for too short a time."""
+    """Yield a caveat if a species has no diffusion coefficient, or if its discs are followed for too short a time."""
     longest, name = float(entry.lag[-1]), entry.species
     if limits.are_walls(entry.lag, entry.displacement):
         far = math.sqrt(entry.displacement[entry.lag <= limits.needed][-1])

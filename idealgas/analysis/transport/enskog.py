@@ -17,8 +17,13 @@ from idealgas.log import Log
 class Enskog:
     """Transport coefficients of equal discs by Enskog's theory.
 
-    density: number density n, 1/length². diffusion: D, length²/time. viscosity, bulk_viscosity: η and ζ, mass/time.
-    conductivity: λ, 1/time. kinematic_viscosity: ν = η/nm, length²/time.
+    Attributes:
+        density: number density n, 1/length².
+        diffusion: diffusion coefficient D, length²/time.
+        viscosity: shear viscosity η, mass/time.
+        conductivity: thermal conductivity λ, 1/time.
+        bulk_viscosity: bulk viscosity ζ, mass/time.
+        kinematic_viscosity: ν = η/nm, length²/time.
     """
 
     density: float
@@ -30,56 +35,58 @@ class Enskog:
 
 
 def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> list[Theory | None]:
-    """Diffusion coefficient of each species of a mixture, length²/time, in the first approximation of Enskog's theory.
+    """Return D of each species of a mixture, length²/time, in the first approximation of Enskog's theory.
 
-    That of a species whose discs differ is the mean over its discs. Discs of species i lose their velocity at the rate
-    γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and collision rates Γ_ij: the friction of a Brownian disc
-    among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
+    If the discs of a species differ, D is averaged over them. Discs of species i lose their velocity at the rate γ_i =
+    Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and collision rates Γ_ij: this is the friction of a Brownian
+    disc among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
 
-    Along an axis whose momentum is conserved, with the mass M of all discs, m_i⟨v²⟩ is T(1 - m/M), and the others
-    recoil with -m v/(M - m), so that the relative velocity decays at γ/(1 - m/M). That is exact at the start, as the
-    covariance of a velocity with a relative velocity is T/m as without the condition. Both take a factor 1 - m/M of D.
+    Along an axis whose momentum is conserved, with the mass M of all discs, m_i⟨v²⟩ is T(1 - m/M). The other discs
+    recoil with -m v/(M - m), so that the relative velocity decays at γ/(1 - m/M). This is exact initially, as the
+    covariance of a velocity with a relative velocity is T/m as without the constraint. Each of the two effects
+    multiplies D by 1 - m/M.
 
-    None where theory has no rates. The error is that of equal discs, that of the rates, that of the first
-    approximation, the momentum that discs of the same species take up, and the recoil where walls stop it.
+    The error is the sum of that of equal discs, that of the rates, that of the first approximation, the momentum that
+    discs of the same species take up, and the recoil if walls stop it. The theory is None if the rates are unknown.
     """
     discs, (rate, off) = rates.discs, rates.of_kinds
-    found = np.empty((2, len(discs.mass)))  # value and error
+    values = np.empty((2, len(discs.mass)))  # value and error
     whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log).mean()
     error = enskog_error("diffusion", log.discs.packing_fraction)
-    for i, (mass, others) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
+    for i, (mass, rest) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
         reduced = mass * discs.mass / (mass + discs.mass)
         parts = 2 * reduced * rate[i]
         resistance = float(parts.sum())
         if not resistance > 0:
-            found[:, i] = math.nan
+            values[:, i] = math.nan
             continue
         first = float(parts @ first_order_error(mass, discs.mass)) / resistance
         alike = rates.discs.number[discs.species == discs.species[i]].sum()
-        shared = (alike - 1) * (mass / whole / others) ** 2
+        shared = (alike - 1) * (mass / whole / rest) ** 2
         relative = error + float(off[i].max()) + 2 * walled * mass / whole + shared + first
         value = float((equilibrium.of_axes[discs.species[i]] ** 2).mean()) / equilibrium.temperature / resistance
-        found[:, i] = value, relative * value
-    means = (discs.shares @ found.T).tolist()
+        values[:, i] = value, relative * value
+    means = (discs.shares @ values.T).tolist()
     return [Theory(value, error, "Enskog") if math.isfinite(value) else None for value, error in means]
 
 
 def first_order_error(mass: float, others: np.ndarray) -> np.ndarray:
-    """Part by which D of discs of a mass among those of other masses exceeds the first approximation.
+    """Return the relative excess of D over the first approximation, for discs of a mass among those of other masses.
 
-    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times it, as every speed keeps its own free path; of a Brownian disc it
-    is right, and of equal discs in the dilute limit 2.3 ± 0.2 % were found, which the cube of the share of mass meets.
+    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times the first approximation, as every speed keeps its own free path.
+    For a Brownian disc the approximation is exact, and for equal discs in the dilute limit the measured excess is 2.3 ±
+    0.2 %, which agrees with the cube of the mass fraction.
     """
     return (3 * math.pi / 8 - 1) * (others / (mass + others)) ** 3
 
 
 def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: ExpectedRates) -> Theory | None:
-    """Maxwell's and Stefan's diffusion coefficient of two species in each other, length²/time, in Enskog's theory.
+    """Return the Maxwell–Stefan diffusion coefficient of two species, length²/time, in Enskog's theory.
 
-    In the first approximation velocities of the species relative to each other decay by collisions of unlike discs
-    alone: D₁₂ = x₂ T/(2 μ Γ₁₂), with the share x₂, the reduced mass μ, and the rate Γ₁₂ at which a disc of the first
-    species meets those of the second. For discs that differ by name only it is that of self-diffusion. None for other
-    numbers of species, for discs of one that differ, or where theory has no rates.
+    In the first approximation the relative velocity of the species decays by collisions of unlike discs only: D₁₂ = x₂
+    T/(2 μ Γ₁₂), with the fraction x₂, the reduced mass μ, and the rate Γ₁₂ at which a disc of the first species meets
+    discs of the second. If the species differ only in name, it is the coefficient of self-diffusion. The result is None
+    unless there are two species, each of equal discs, whose rates are known.
     """
     if len(discs.name) != 2 or log.discs.unlike or not rates.rate[0, 1] > 0:
         return None
@@ -90,10 +97,11 @@ def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates:
 
 
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
-    """Enskog's coefficients of the equal discs of a log; None for others, above φ = 0.62, and for one or two discs.
+    """Return Enskog's coefficients of equal discs; None for other discs, above φ = 0.62, and for one or two discs.
 
-    They are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in a dilute gas
-    the mean square of Σ m v_x v_y by a part 2/N, that of Σ m v² v by 6/N. The errors have such a part.
+    The coefficients are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in
+    a dilute gas the mean square of Σ m v_x v_y by a fraction 2/N, that of Σ m v² v by 6/N. The errors include such a
+    term.
     """
     gas = log.discs
     if len(discs.name) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:

@@ -1,4 +1,4 @@
-"""Picture of the transport in a gas."""
+"""Figures of the transport in a gas."""
 
 import math
 from collections.abc import Sequence
@@ -14,29 +14,29 @@ from idealgas.analysis.transport.combine import DIFFUSION, States
 from idealgas.analysis.transport.measure import Transport
 
 FAINTEST = 1e-4
-"""Smallest velocity correlation in the picture."""
+"""Smallest velocity correlation in the figure."""
 
 THIN = 0.12
 """Largest packing fraction at which the pair distribution has a theory beyond contact."""
 
 
 def transport_figure(result: Transport | States) -> Figure:
-    """Picture of one log, or of the coefficients of several logs against the packing fraction."""
+    """Draw the transport in one log, or the coefficients of several logs against the packing fraction."""
     return _of_states(result) if isinstance(result, States) else _of_log(result)
 
 
 def _of_states(result: States) -> Figure:
-    """Picture of coefficients over Enskog's against φ, or against N where all logs have one φ."""
+    """Draw coefficients over Enskog's against φ, or against N if all logs have the same φ."""
     figure, (ax,) = panels(1)
     by_number = len({round(state.packing_fraction, 9) for state in result.states}) == 1 < len(result.states)
     for symbol, colour in zip((DIFFUSION, *SYMBOLS.values()), COLOURS, strict=False):
         shown = [state for state in result.states if symbol in state.coefficients]
         ones = [state.coefficients[symbol] for state in shown]
         places = [state.number if by_number else state.packing_fraction for state in shown]
-        values, errors = [one.value for one in ones], [one.standard_error for one in ones]
+        values, errors = [estimate.value for estimate in ones], [estimate.standard_error for estimate in ones]
         if shown:
             ax.errorbar(places, values, errors, fmt="o-", ms=4, capsize=3, color=colour, label=symbol)
-            _band(ax, places, np.ones(len(ones)), np.array([one.theory_error for one in ones]), colour)
+            _band(ax, places, np.ones(len(ones)), np.array([estimate.theory_error for estimate in ones]), colour)
     ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory, bands: its errors")
     ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
     if by_number:
@@ -50,9 +50,9 @@ def _of_states(result: States) -> Figure:
 
 
 def _of_log(result: Transport) -> Figure:
-    """Picture of velocity correlation, mean square displacement, pair distribution and coefficients against time.
+    """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time.
 
-    Of a log without events there are the coefficients only, among fixed discs no pair distribution.
+    Without events only the coefficients are drawn; among fixed discs there is no pair distribution.
     """
     if not result.diffusion:
         figure, (coefficients,) = panels(1)
@@ -90,13 +90,13 @@ def _draw_diffusion(correlation: Panel, displacement: Panel, result: Transport) 
             law = 4 * d * (lag - tau * (1 - np.exp(-lag / tau)))
             displacement.plot(lag, law, "--", color=GREY, label=f"4D[t - τ(1 - exp(-t/τ))], D = {d:.4g}")
     if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
-        correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # without a number below zero that is resolved
+        correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # no value is significantly negative
     correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
     displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
 
 
 def _curve(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
-    """Draw curve k of several with its standard error on both sides."""
+    """Draw curve k of several with a band of its standard error."""
     colour, line, _ = curve_style(k)
     ax.plot(lag, value, line, color=colour, label=label)
     _band(ax, lag, value, error, colour)
@@ -107,20 +107,20 @@ def _band(ax: Axes, x: Sequence[float] | np.ndarray, value: np.ndarray, error: n
 
 
 def _draw_pairs(ax: Axes, result: Transport) -> None:
-    """Draw the pair distribution of every two species, with its value at contact."""
-    for k, found in enumerate(result.pair_distributions):
+    """Draw the pair distribution of each pair of species, with its value at contact."""
+    for k, pair in enumerate(result.pair_distributions):
         colour, _, marker = curve_style(k)
-        middle = (found.edges[1:] + found.edges[:-1]) / 2
-        label = f"{found.species} and {found.other}"
-        ax.errorbar(middle, found.value, found.error, fmt=marker, ms=2, color=colour, label=label)
+        middle = (pair.edges[1:] + pair.edges[:-1]) / 2
+        label = f"{pair.species} and {pair.other}"
+        ax.errorbar(middle, pair.value, pair.error, fmt=marker, ms=2, color=colour, label=label)
         for contact in result.contacts:
-            if (contact.species, contact.other) == (found.species, found.other):
-                ax.plot(found.contact, contact.value.value, "D", color=colour, label=f"{label}: by collisions")
+            if (contact.species, contact.other) == (pair.species, pair.other):
+                ax.plot(pair.contact, contact.value.value, "D", color=colour, label=f"{label}: by collisions")
                 if (theory := contact.value.theory) is not None:
                     off, label = contact.value.theory_error, "theory at contact"
-                    ax.errorbar(found.contact, theory, off, fmt="+", ms=12, color=GREY, label=label)
-        diameter = found.edges[0]
-        if len(result.pair_distributions) == 1 and found.contact == diameter and result.packing_fraction <= THIN:
+                    ax.errorbar(pair.contact, theory, off, fmt="+", ms=12, color=GREY, label=label)
+        diameter = pair.edges[0]
+        if len(result.pair_distributions) == 1 and pair.contact == diameter and result.packing_fraction <= THIN:
             density = 4 * result.packing_fraction / (math.pi * diameter**2)
             curve = hard_discs.thin_pair_distribution(middle, diameter, density)
             ax.plot(middle, curve, "--", color=GREY, linewidth=0.9, label="first order in φ")
@@ -129,20 +129,23 @@ def _draw_pairs(ax: Axes, result: Transport) -> None:
 
 
 def _draw_coefficients(ax: Panel, result: Transport) -> None:
-    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, over Enskog's or else over their own values."""
+    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, in units of Enskog's values or else of their own."""
     whole = result.collective.coefficients if result.collective else {}
     curves = [
         (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient)
         for entry in result.diffusion
-    ] + [(SYMBOLS[name], one.times, one.running, one.running_error, one.value) for name, one in whole.items()]
+    ] + [
+        (SYMBOLS[name], coefficient.times, coefficient.running, coefficient.running_error, coefficient.value)
+        for name, coefficient in whole.items()
+    ]
     values = [value for *_, value in curves if value]
     by_theory = all(value.theory for value in values)
     for k, (name, times, running, error, value) in enumerate(curves):
-        one = (by_theory and value.theory) or value.value if value else running.max()
-        _curve(ax, times, running / one, error / one, k, name if value else f"{name}: no plateau")
+        unit = (by_theory and value.theory) or value.value if value else running.max()
+        _curve(ax, times, running / unit, error / unit, k, name if value else f"{name}: no plateau")
         if by_theory and value:
-            ax.theory(None, 1.0, value.theory_error / one, None, curve_style(k)[0])
-    plateaus = [result.collective.plateau] if result.collective else [one.plateau for one in result.diffusion]
+            ax.theory(None, 1.0, value.theory_error / unit, None, curve_style(k)[0])
+    plateaus = [result.collective.plateau] if result.collective else [entry.plateau for entry in result.diffusion]
     for first, last in filter(None, plateaus[:1]):
         ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
     ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's, bands: its errors" if by_theory and values else None)

@@ -1,8 +1,8 @@
 """Transport coefficients from the growth of integrated currents: Einstein's and Helfand's route.
 
-The integral G of a fluctuating current over a time t spreads like that of a random walk, ⟨G²⟩ = 2 K t, once the current
-has forgotten where it started. The coefficient is half the slope of ⟨G²⟩; before that it is a function of t, equal to
-Green's and Kubo's integral of the current's autocorrelation up to t.
+The integral G of a fluctuating current over a time t spreads like a random walk, ⟨G²⟩ = 2 K t, once the current has
+lost its memory. The coefficient is half the slope of ⟨G²⟩. At earlier times it is a function of t, equal to the
+Green–Kubo integral of the autocorrelation of the current up to t.
 """
 
 import math
@@ -13,13 +13,16 @@ import numpy as np
 from idealgas.analysis.core.autoregression import unit_of
 
 MOST_PARTS = 64
-"""Largest number of parts of a run whose scatter is the error at every lag."""
+"""Largest number of parts of a run whose scatter gives the error at every lag."""
 
 
 class Lags(NamedTuple):
-    """Lags of a growth: steps of a width up to the last one, and the plateau, from a first one to the last one.
+    """Lags of a growth: steps of equal width, and the plateau from a first to the last step.
 
-    width: of a step, which is that of a block, time. first, last: numbers of steps, 0 < first < last.
+    Attributes:
+        width: width of a step, which is that of a block, time.
+        first: number of steps up to the beginning of the plateau, 0 < first < last.
+        last: number of all steps.
     """
 
     width: float
@@ -33,15 +36,17 @@ class Lags(NamedTuple):
 
     @property
     def times(self) -> np.ndarray:
-        """Middles (last,) of the steps, time."""
+        """Middles of the steps, (last,), time."""
         return (np.arange(self.last) + 0.5) * self.width
 
 
 class Growth(NamedTuple):
-    """Half the slope of ⟨G²⟩ of one current, or of several that are alike.
+    """Half the slope of ⟨G²⟩ of one current, or of several equivalent ones.
 
-    series: (routes, n), its mean over the plateau from each of n starting times, by route. running, error: (last,), its
-    value at the `Lags.times` and its standard error.
+    Attributes:
+        series: (routes, n), its mean over the plateau from each of n starting times, by route.
+        running: (last,), its value at the `Lags.times`.
+        error: (last,), standard error of this value.
     """
 
     series: np.ndarray
@@ -50,16 +55,16 @@ class Growth(NamedTuple):
 
 
 def lags_of(width: float, longest: float, share: float) -> Lags:
-    """Lags up to about the longest one, time, with a plateau from a share of it on, for blocks of a width."""
+    """Return lags up to about the longest one, time, with a plateau from a fraction of it on, for blocks of a width."""
     last = max(round(longest / width), 2)
     return Lags(width, min(max(round(share * last), 1), last - 1), last)
 
 
 def growth(flow: np.ndarray, lags: Lags) -> Growth:
-    """Growth of currents from their integrals (routes, B) over successive blocks.
+    """Return the growth of currents from their integrals (routes, B) over successive blocks.
 
-    The mean current is taken away. As it is that of the run itself, ⟨G²⟩ lacks a part t/τ of a run of length τ, which
-    is restored.
+    The mean current of the run is subtracted. ⟨G²⟩ thereby loses a fraction t/τ in a run of length τ, which is
+    corrected.
     """
     routes, blocks = flow.shape
     total = np.zeros((routes, blocks + 1))

@@ -1,7 +1,7 @@
 """Transport: collision rates, free paths, diffusion, viscosities, thermal conductivity and pair distribution.
 
-Rates and free paths count every event of the window, and so do the currents of momentum and energy. Velocity
-correlation and displacement use the exact positions and velocities of discs at evenly spaced instants.
+Rates, free paths and the currents of momentum and energy count every event of the window. Velocity correlation and
+displacement use the exact positions and velocities of discs at evenly spaced instants.
 """
 
 import math
@@ -46,9 +46,9 @@ from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import MOST_PAIRED
 
-FEWEST_SEGMENTS = 8  # of the window, each as long as the longest lag
-LEAST_WINDOW = 16.0  # longest lags; in one of eight, coefficients of the whole gas are too small by up to a fourth
-SURE_WINDOW = 200.0  # longest lags from which on errors are right; with 75 the rms of deviations is up to 1.25 errors
+FEWEST_SEGMENTS = 8  # smallest number of segments of the window, each as long as the longest lag
+LEAST_WINDOW = 16.0  # longest lags; with 8, coefficients of the whole gas are too small by up to a quarter
+SURE_WINDOW = 200.0  # longest lags from which on errors are right; with 75 the rms deviation is up to 1.25 errors
 
 
 @dataclass(frozen=True)
@@ -64,11 +64,19 @@ class Contact:
 class Transport(Result):
     """Transport in the gas of one log.
 
-    window: the time that was used. packing_fraction: φ. number: of discs. free_times: lag up to which discs and
-    currents are followed, in mean free times of the slowest species. walled: whether walls reflect diffusing discs.
-    collision_rates, contacts, pair_distributions: of each pair of species. free_paths, diffusion: of each species.
-    collective: viscosities and thermal conductivity; None with walls, which change the currents. pressure: xx, yy and
-    xy component of the pressure tensor, energy/length².
+    Attributes:
+        window: window of time that was used.
+        packing_fraction: packing fraction φ.
+        number: number of discs.
+        free_times: lag up to which discs and currents are followed, in mean free times of the slowest species.
+        walled: whether walls reflect diffusing discs.
+        collision_rates: collision rate of each pair of species.
+        free_paths: free path of each species.
+        contacts: contact value of each pair of species.
+        diffusion: diffusion of each species.
+        collective: viscosities and thermal conductivity; None with walls, which change the currents.
+        pressure: components xx, yy and xy of the pressure tensor, energy/length².
+        pair_distributions: pair distribution of each pair of species.
     """
 
     window: Window
@@ -92,13 +100,13 @@ def transport(
     progress: Callable[[int, int], None] | None = None,
     lag: float = 20.0,
 ) -> Transport:
-    """Measure how discs, momentum and heat spread in a gas between two times of its log, beside Enskog's theory.
+    """Measure how discs, momentum and heat spread in a gas between two times of its log, compared with Enskog's theory.
 
-    Collision rates and free paths of each species; the contact value χ of each pair of species; mean square
-    displacement, velocity autocorrelation and from the first the diffusion coefficient; shear and bulk viscosity,
-    thermal conductivity, diffusion of two species in each other and pressure tensor in a periodic box; pair
-    distribution functions. Among fixed discs in a periodic box diffusion is measured only. Without events the sums of
-    `log.pressure = true` and `log.heat_flow = true` give the collision rates and what follows from the currents of a
+    The result has collision rates and free paths of each species, the contact value χ of each pair of species, mean
+    square displacements with diffusion coefficients, velocity autocorrelations, and pair distributions. In a periodic
+    box it also has shear and bulk viscosity, thermal conductivity, the mutual diffusion of two species and the pressure
+    tensor. Among fixed discs in a periodic box only diffusion is measured. Without events, the sums of `log.pressure =
+    true` and `log.heat_flow = true` give the collision rates and the coefficients that follow from the currents of a
     periodic gas.
 
     Raises:
@@ -154,7 +162,7 @@ def transport(
         pressure=pressure_tensor(log, equilibrium, box, window.of(flow)),
         pair_distributions=pair_distributions(log, discs, window.start, window.end) if log.has_events else (),
         caveats=(
-            *(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
+            *(sentence for pair in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*pair)),
             *_short_currents(whole, longest / free_time, window.duration / longest),
         ),
     )
@@ -168,7 +176,7 @@ def _among_fixed_discs(
     progress: Callable[[int, int], None] | None,
     lag: float,
 ) -> Transport:
-    """Diffusion among fixed discs, where a mean free time is that between hits of any disc, fixed or not."""
+    """Return the diffusion among fixed discs, where a mean free time is that between hits of any disc, fixed or not."""
     impacts = Impacts(len(log.walls), log.periodic)
     window = measure(log, [impacts], start, end, progress, ("conserves_motion",))
     gas, discs = log.discs, composition(log.discs)
@@ -190,12 +198,14 @@ def _among_fixed_discs(
         collective=None,
         pressure={},
         pair_distributions=(),
-        caveats=tuple(sentence for one in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*one)),
+        caveats=tuple(
+            sentence for pair in zip(spreading, limits, strict=True) for sentence in diffusion_caveats(*pair)
+        ),
     )
 
 
 def _short_currents(whole: Collective | None, free_times: float, lags: float) -> Iterator[str]:
-    """Sentence on currents that are followed for too short a time, or in a window of too few such times."""
+    """Yield a caveat if currents are followed for too short a time, or in a window of too few such times."""
     if whole and free_times < LEAST_LAG:
         yield (
             f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
@@ -214,11 +224,11 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
 
 
 def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]) -> tuple[Contact, ...]:
-    """Contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
+    """Return contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
     discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
-    others = discs.number - np.eye(len(discs.number))  # a disc does not meet itself
-    random = discs.with_partners(2 * (discs.radius[:, None] + discs.radius) * others / area * speed)
+    partners = discs.number - np.eye(len(discs.number))  # a disc does not meet itself
+    random = discs.with_partners(2 * (discs.radius[:, None] + discs.radius) * partners / area * speed)
     groups = random.shape[1]
     return tuple(
         Contact(rate.species, rate.other, rate.rate.times(1 / alone))
@@ -228,7 +238,7 @@ def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ..
 
 
 def _free_time(impacts: Impacts | SampledImpacts, discs: Composition, window: Window) -> float:
-    """Longest mean free time of a species, time; infinite if none collides."""
+    """Return the longest mean free time of a species, time; infinite if none collides."""
     per_disc = window.of(impacts.collisions).sum(axis=2).mean(axis=0) / discs.number
     colliding = per_disc[per_disc > 0]
     return 1 / float(colliding.min()) if len(colliding) else math.inf

@@ -17,8 +17,13 @@ FRAMES = 64  # number of instants
 class PairDistribution:
     """Pair distribution g(r) of two species (no unit).
 
-    species, other: names of the species. contact: sum of their mean radii, length. edges: (bins + 1,), edges of the
-    bins from the smallest distance of contact on, length. value, error: (bins,), g(r) and its standard error.
+    Attributes:
+        species: name of the first species.
+        other: name of the second species.
+        contact: sum of their mean radii, length.
+        edges: (bins + 1,), edges of the bins, from the smallest distance at contact on.
+        value: (bins,), g(r).
+        error: (bins,), its standard error.
     """
 
     species: str
@@ -30,11 +35,11 @@ class PairDistribution:
 
 
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
-    """Pair distribution of every pair of species between two times; a species of one disc has none with itself.
+    """Return the pair distribution of every pair of species between two times.
 
-    More than MOST_PAIRED species are taken together, as "all" discs.
-
-    In a box with walls the numbers of pairs are divided by those of discs at random positions in the same box.
+    A species of one disc has no pair distribution with itself. More than MOST_PAIRED species are treated together, as
+    "all" discs. In a box with walls the numbers of pairs are divided by those of discs at random positions in the same
+    box.
     """
     if len(discs.partners) < len(discs.name):
         whole = len(log.discs)
@@ -50,7 +55,7 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
         edges[i, j] = np.linspace(first, max(reach, 1.01 * sigma[i, j]), bins + 1)
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.partner == s) for s in range(len(discs.name))]
-    period = np.where(log.periodic, log.box, 0.0)  # 0: no images along this axis
+    period = np.where(log.periodic, log.box, 0.0)  # 0 means no images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
         places = inside(log, state.position)
         trees = [cKDTree(places[ids], boxsize=period) for ids in members]
@@ -61,7 +66,7 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
 
 
 def _smallest(log: Log) -> np.ndarray:
-    """Smallest radius of each species, or of all discs if they are taken together, length."""
+    """Return the smallest radius of each species, or of all discs if they are treated together, length."""
     smallest = np.full(len(log.discs.partners), np.inf)
     np.minimum.at(smallest, log.discs.partner, log.discs.radius)
     return smallest
@@ -70,7 +75,7 @@ def _smallest(log: Log) -> np.ndarray:
 def _normalised(
     log: Log, discs: Composition, i: int, j: int, edges: np.ndarray, counts: np.ndarray
 ) -> PairDistribution:
-    """Pair distribution from numbers of pairs (frames, bins), in which a pair of the same species counts twice."""
+    """Return the pair distribution from numbers of pairs (frames, bins), with pairs of one species counted twice."""
     reach = [
         (side, side) if periodic else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
         for side, periodic in zip(log.box, log.periodic, strict=True)
@@ -82,7 +87,10 @@ def _normalised(
 
 
 def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
-    """Probability that two random points in concentric rectangles of sides `reach` are closer than the distances r."""
+    """Return the probability that two random points in concentric rectangles are closer than the distances r.
+
+    reach: sides of the two rectangles along each axis, length.
+    """
     if all(periodic):
         return np.asarray(math.pi * r**2 / math.prod(a for a, _ in reach))
     angle = (np.arange(720) + 0.5) / 720 * math.pi / 2

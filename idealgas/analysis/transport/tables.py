@@ -27,7 +27,7 @@ WALLS = (
 
 
 def transport_tables(result: Transport | States) -> list[Table]:
-    """Tables of one log, or of the coefficients of several."""
+    """Return the tables of one log, or of the coefficients of several logs."""
     return _of_states(result) if isinstance(result, States) else _of_log(result)
 
 
@@ -37,19 +37,19 @@ def _of_states(result: States) -> list[Table]:
             f"{symbol} at φ = {state.packing_fraction:.5g}",
             Number(state.number, "d"),
             Number(state.runs, "d"),
-            *with_error(one.value, one.standard_error),
-            Number(one.theory_error, ".2g"),
-            Number(one.deviation, "+.2f"),
+            *with_error(estimate.value, estimate.standard_error),
+            Number(estimate.theory_error, ".2g"),
+            Number(estimate.deviation, "+.2f"),
         )
         for state in result.states
-        for symbol, one in state.coefficients.items()
+        for symbol, estimate in state.coefficients.items()
     ]
     heads = ("", "N", "runs", "value", "± s.e.", THEORY_ERROR, "deviation (σ)")
     return [Table("Transport coefficients over Enskog's", heads, rows)]
 
 
 def _of_log(result: Transport) -> list[Table]:
-    """Tables of collisions, pair distribution at contact, diffusion of each species, and of the currents of the gas."""
+    """Return the tables of collisions, pair distribution at contact, diffusion of each species, and coefficients."""
     rates, paths = collision_tables(result.collision_rates, result.free_paths)
     contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in result.contacts]
     diffusion, lags = [], []
@@ -68,12 +68,12 @@ def _of_log(result: Transport) -> list[Table]:
     return [table for table in tables if table.rows or table.notes]
 
 
-def _of_currents(found: Collective, free_times: float) -> list[Table]:
-    first, last = found.plateau
+def _of_currents(collective: Collective, free_times: float) -> list[Table]:
+    first, last = collective.plateau
     plateau = (
         f"plateau: t = {first:.4g} to {last:.4g} ({free_times * first / last:.3g} to {free_times:.3g} mean free times)"
     )
-    rows = {name: _rows(SYMBOLS[name], one) for name, one in found.coefficients.items()}
+    rows = {name: _rows(SYMBOLS[name], coefficient) for name, coefficient in collective.coefficients.items()}
     mutual = rows.pop("mutual_diffusion", [])
     currents = [row for each in rows.values() for row in each]
     return [
@@ -82,35 +82,37 @@ def _of_currents(found: Collective, free_times: float) -> list[Table]:
     ]
 
 
-def _rows(name: str, found: Coefficient) -> list[tuple[str, Estimate]]:
-    """Rows of a coefficient, of its routes if there are several, and of their difference."""
-    rows = [(f"{name}, {found.unit}", found.value)]
-    if found.difference is not None:
-        one, other = found.routes
-        rows += [(f"   by {route}", value) for route, value in found.routes.items()]
-        rows.append((f"   {one} less {other}", found.difference))
+def _rows(name: str, coefficient: Coefficient) -> list[tuple[str, Estimate]]:
+    """Return the rows of a coefficient and, if there are several routes, of each route and of their difference."""
+    rows = [(f"{name}, {coefficient.unit}", coefficient.value)]
+    if coefficient.difference is not None:
+        first_route, second_route = coefficient.routes
+        rows += [(f"   by {route}", value) for route, value in coefficient.routes.items()]
+        rows.append((f"   {first_route} less {second_route}", coefficient.difference))
     return rows
 
 
 def transport_summary(result: Transport | States) -> str:
-    """Diffusion coefficients, else mean free paths, and whether all coefficients agree with Enskog's."""
+    """Return diffusion coefficients, or else mean free paths, and whether all coefficients agree with theory."""
     if isinstance(result, States):
         rows = [
-            (f"{symbol} at φ = {state.packing_fraction:.5g}", one)
+            (f"{symbol} at φ = {state.packing_fraction:.5g}", estimate)
             for state in result.states
-            for symbol, one in state.coefficients.items()
+            for symbol, estimate in state.coefficients.items()
         ]
         last = result.states[-1]
-        found = ", ".join(f"{symbol} = {format_estimate(one)}" for symbol, one in last.coefficients.items())
-        densest = (
-            f"At φ = {last.packing_fraction:.5g}, in units of Enskog's values, {found or 'no coefficient has a theory'}"
-        )
+        values = ", ".join(f"{symbol} = {format_estimate(value)}" for symbol, value in last.coefficients.items())
+        values = values or "no coefficient has a theory"
+        densest = f"At φ = {last.packing_fraction:.5g}, in units of Enskog's values, {values}"
         return f"{densest}; {agreement(rows, 'Enskog')}."
     rows = [(f"D of {entry.species}", entry.coefficient) for entry in result.diffusion if entry.coefficient]
     if result.collective:
-        rows += [(SYMBOLS[name], one.value) for name, one in result.collective.coefficients.items()]
+        rows += [(SYMBOLS[name], estimate.value) for name, estimate in result.collective.coefficients.items()]
     theory = "Enskog's theory"
     if not rows:
-        theory, rows = "kinetic theory", [(f"Mean free path of {one.species}", one.path) for one in result.free_paths]
-    found = ", ".join(f"{name} = {format_estimate(one)}" for name, one in rows)
-    return f"{found}; {agreement(rows, theory)}."
+        theory, rows = (
+            "kinetic theory",
+            [(f"Mean free path of {estimate.species}", estimate.path) for estimate in result.free_paths],
+        )
+    sentence = ", ".join(f"{name} = {format_estimate(estimate)}" for name, estimate in rows)
+    return f"{sentence}; {agreement(rows, theory)}."

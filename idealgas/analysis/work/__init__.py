@@ -1,6 +1,6 @@
 """Measure the work of a piston and compare it with the free energy, by Jarzynski's equality and Crooks' theorem.
 
-DIR is the folder of a sweep with the analysis "work"; strokes of all runs count together.
+The strokes of several logs, or of the folder of a sweep with the analysis "work", are combined.
 """
 
 from collections.abc import Iterator, Sequence
@@ -43,8 +43,11 @@ BINS = 30
 class Work(Result):
     """Work of a piston on a gas in a heat bath.
 
-    temperature: of the heat bath, energy. number: of discs. processes: strokes of each kind. crossings: of every kind
-    of strokes that are also made backwards.
+    Attributes:
+        temperature: temperature of the heat bath, energy.
+        number: number of discs.
+        processes: strokes of each kind.
+        crossings: crossing of each kind of strokes that is also made in reverse.
     """
 
     temperature: float
@@ -71,16 +74,16 @@ class WorkAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
     ) -> Work:
-        """Measure the work of each stroke of a piston and compare it with the free energy ΔF of the gas.
+        """Measure the work of each stroke of a piston and compare it with the free energy difference ΔF of the gas.
 
         Whatever the speed of the piston, ⟨exp(-W/T)⟩ = exp(-ΔF/T) over strokes that begin in equilibrium with a heat
-        bath (Jarzynski, Phys. Rev. Lett. 78, 2690 (1997)), and the distributions of the work forward and of minus the
-        work back cross at ΔF (Crooks, Phys. Rev. E 60, 2721 (1999)). A stroke is the time in which the velocity of the
-        piston is not 0, after a time in which it is.
+        bath (Jarzynski, Phys. Rev. Lett. 78, 2690 (1997)), and the distribution of the work crosses that of minus the
+        work of the reverse strokes at ΔF (Crooks, Phys. Rev. E 60, 2721 (1999)). A stroke is a motion of the piston
+        after a rest.
 
         Raises:
-            UserError: without a single piston, of given velocities, without a thermostat or thermal walls of one
-                temperature, or if no stroke lies in the window.
+            UserError: unless there is a single driven piston and a thermostat or thermal walls of one temperature, or
+                if no stroke lies in the window.
         """
         must_apply(log, 0.0, ("elastic", "collisions_conserve_energy"))
         temperatures = log.scene.properties.temperatures
@@ -89,23 +92,23 @@ class WorkAnalysis(Analysis):
             raise NotApplicableError(f"{log.path}: work requires {needs}")
         (piston,) = log.scene.piston
         first, last = span(log, start, end)
-        observed, own = log.observables, [wall.name for wall in log.walls].index(piston.wall)
+        observed, piston_wall = log.observables, [piston_wall.name for piston_wall in log.walls].index(piston.wall)
         time, given = observed["wall_energy"]
         place, energy = observed["piston_position"][1][:, 0], observed["kinetic_energy"][1]
-        found: dict[tuple[Any, ...], list[tuple[float, float]]] = {}
+        strokes: dict[tuple[Any, ...], list[tuple[float, float]]] = {}
         for begun, ended, protocol in _strokes(piston.velocity_steps, log.end_time):
             if first <= begun and ended <= last:
                 before = int(time.searchsorted(begun, "right")) - 1
                 after = min(int(time.searchsorted(ended)), len(time) - 1)
                 ends = tuple(round(float(place[k]), DIGITS) for k in (before, after))
-                work = float(given[after, own] - given[before, own])
-                found.setdefault((ends, protocol), []).append((work, float(energy[before])))
-        if not found:
+                work = float(given[after, piston_wall] - given[before, piston_wall])
+                strokes.setdefault((ends, protocol), []).append((work, float(energy[before])))
+        if not strokes:
             raise UserError(f"{log.path}: no stroke of the piston after a rest, from t = {first:g} to {last:g}")
         (temperature,), number = temperatures, len(log.discs)
         processes = tuple(
             process(ends, protocol, work, energy, temperature, number, _difference(log, ends, temperature))
-            for (ends, protocol), pairs in found.items()
+            for (ends, protocol), pairs in strokes.items()
             for work, energy in [np.array(pairs).T]
         )
         return Work(temperature, number, processes, crossings(processes, temperature))
@@ -119,64 +122,67 @@ class WorkAnalysis(Analysis):
         """
         must_be_one_gas(results)
         kinds: dict[tuple[Any, ...], list[Process]] = {}
-        for one in (each for result in results for each in result.processes):
-            kinds.setdefault((one.ends, one.protocol), []).append(one)
+        for strokes in (each for result in results for each in result.processes):
+            kinds.setdefault((strokes.ends, strokes.protocol), []).append(strokes)
         temperature, number = results[0].temperature, results[0].number
         processes = tuple(joined(same, temperature, number) for same in kinds.values())
-        caveats = tuple(sentence for one in processes for sentence in poorly_sampled(one, temperature))
+        caveats = tuple(sentence for strokes in processes for sentence in poorly_sampled(strokes, temperature))
         return Work(temperature, number, processes, crossings(processes, temperature), caveats=caveats)
 
     @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Work:
-        """Result of one point of a sweep."""
+    def restore(stored: dict[str, Any], label: str) -> Work:
+        """Return the result of one point of a sweep."""
         processes = []
-        for one in found["processes"]:
-            theory = expectation_of(Estimate.from_dict(one["free_energy"]))
-            ends, protocol = tuple(one["ends"]), tuple(map(tuple, one["protocol"]))
-            series = np.array(one["work"]), np.array(one["start_energy"])
-            processes.append(process(ends, protocol, *series, found["temperature"], found["number"], theory))
-        temperature, number = found["temperature"], found["number"]
+        for strokes in stored["processes"]:
+            theory = expectation_of(Estimate.from_dict(strokes["free_energy"]))
+            ends, protocol = tuple(strokes["ends"]), tuple(map(tuple, strokes["protocol"]))
+            series = np.array(strokes["work"]), np.array(strokes["start_energy"])
+            processes.append(process(ends, protocol, *series, stored["temperature"], stored["number"], theory))
+        temperature, number = stored["temperature"], stored["number"]
         return Work(temperature, number, tuple(processes), crossings(processes, temperature))
 
     @staticmethod
     def tables(result: Work) -> list[Table]:
-        """Tables of work and free energy of each kind of strokes, and of the crossings."""
+        """Return the tables of work and free energy of each kind of strokes, and of the crossings."""
         rows = [
-            (f"{one.name}: {name}", found)
-            for one in result.processes
-            for name, found in (
-                ("free energy, −T ln⟨exp(−W/T)⟩", one.free_energy),
-                ("mean work", one.mean_work),
-                ("kinetic energy before", one.kinetic_energy),
+            (f"{strokes.name}: {name}", estimate)
+            for strokes in result.processes
+            for name, estimate in (
+                ("free energy, −T ln⟨exp(−W/T)⟩", strokes.free_energy),
+                ("mean work", strokes.mean_work),
+                ("kinetic energy before", strokes.kinetic_energy),
             )
         ]
         tables = [estimates(f"Work and free energy, T = {result.temperature:g}, N = {result.number}", rows)]
         crossings = [
-            (f"{one.name}: {name}", found)
-            for one in result.crossings
-            for name, found in (("crossing (energy)", one.free_energy), ("slope, T d ln(P_F/P_R)/dW", one.slope))
+            (f"{strokes.name}: {name}", estimate)
+            for strokes in result.crossings
+            for name, estimate in (
+                ("crossing (energy)", strokes.free_energy),
+                ("slope, T d ln(P_F/P_R)/dW", strokes.slope),
+            )
         ]
         return [*tables, *([estimates("Work forward and minus work back", crossings)] if crossings else [])]
 
     @staticmethod
     def summary(result: Work) -> str:
-        """Free energy of the first kind of strokes, and whether all agree with theory."""
-        rows = [(one.name, one.free_energy) for one in result.processes]
-        rows += [(f"crossing {one.name}", one.free_energy) for one in result.crossings]
+        """Return the free energy of the first kind of strokes, and whether all agree with theory."""
+        rows = [(strokes.name, strokes.free_energy) for strokes in result.processes]
+        rows += [(f"crossing {strokes.name}", strokes.free_energy) for strokes in result.crossings]
         first = result.processes[0]
-        found = f"Free energy difference of the strokes {first.name}: {format_estimate(first.free_energy)}"
-        return f"{found}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
+        difference = f"Free energy difference of the strokes {first.name}: {format_estimate(first.free_energy)}"
+        return f"{difference}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
 
     @staticmethod
     def figure(result: Work) -> "Figure":
-        """Picture of the distributions of the work forward and of minus the work back, and of their ratio."""
+        """Draw the distributions of the work and of minus the work of the reverse strokes, and their ratio."""
         from idealgas.analysis.core.style import COLOURS, panels
 
         if not result.crossings:
             figure, axes = panels(len(result.processes))
-            for ax, one in zip(axes, result.processes, strict=True):
-                ax.hist(one.work, BINS, density=True, histtype="step", color=COLOURS[0], label=one.name)
-                _mark(ax, one.free_energy)
+            for ax, strokes in zip(axes, result.processes, strict=True):
+                ax.hist(strokes.work, BINS, density=True, histtype="step", color=COLOURS[0], label=strokes.name)
+                _mark(ax, strokes.free_energy)
             return figure
         figure, axes = panels(len(result.crossings), 2)
         for crossing, works, ratio in zip(result.crossings, axes[::2], axes[1::2], strict=True):
@@ -186,7 +192,7 @@ class WorkAnalysis(Analysis):
             names = f"W, {crossing.name}", "−W of the reverse strokes"
             for count, work, colour, label in zip(counts, (forward, back), COLOURS, names, strict=False):
                 works.stairs(count / len(work) / np.diff(edges), edges, color=colour, label=label)
-                if still := np.count_nonzero(work == 0):  # an atom, which has no density
+                if still := np.count_nonzero(work == 0):  # a discrete value, which has no density
                     share = f"{100 * still / len(work):.0f} % of {'W' if work is forward else '−W'} are 0"
                     marker = "^" if work is forward else "v"
                     works.plot(0, 0, marker, color=colour, clip_on=False, fillstyle="none", label=share)
@@ -204,10 +210,10 @@ class WorkAnalysis(Analysis):
 
 
 def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Works (n,) and numbers (2, n) of strokes forward and back in the bins that have both, energy.
+    """Return works (n,) and numbers (2, n) of strokes forward and back in the bins that contain both, energy.
 
-    Strokes without work are a value of their own, as no disc may meet the piston. The place of a bin is the mean of its
-    works.
+    Strokes without work have a bin of their own, as it may happen that no disc hits the piston. The position of a bin
+    is the mean of its works.
     """
     works, rows = (forward, back), []
     for low, high in pairwise(edges):
@@ -219,7 +225,7 @@ def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np
 
 
 def _mark(ax: Any, free_energy: Estimate) -> None:
-    """A line at the free energy in a panel of distributions of the work."""
+    """Draw a line at the free energy in a panel with distributions of the work."""
     from idealgas.analysis.core.style import BAND, BLACK
 
     where, error, label = free_energy.value, free_energy.standard_error, "free energy by the work"
@@ -234,7 +240,7 @@ def _mark(ax: Any, free_energy: Estimate) -> None:
 def _strokes(
     steps: Sequence[tuple[float, float]], end: float
 ) -> Iterator[tuple[float, float, tuple[tuple[float, float], ...]]]:
-    """Start, end and protocol (pieces of time and velocity) of each motion that follows a rest."""
+    """Yield start, end and protocol (pieces of time and velocity) of each motion that follows a rest."""
     begun, rested = 0.0, False
     pieces: list[tuple[float, float]] = []
     for (time, velocity), (later, _) in pairwise((*(step for step in steps if step[0] < end), (end, 0.0))):
@@ -250,7 +256,10 @@ def _strokes(
 
 
 def _difference(log: Log, ends: Sequence[float], temperature: float) -> Theory | None:
-    """ΔF between two positions of the piston by theory; None with walls inside, a field or discs that do not fit."""
+    """Return ΔF between two positions of the piston by theory.
+
+    The result is None with walls inside the box or an external field, or if the discs do not fit.
+    """
     properties, (piston,) = log.scene.properties, log.scene.piston
     if (
         piston.inner

@@ -1,4 +1,4 @@
-"""Strokes of one kind, the free energy by their work, and where the works forward and back cross."""
+"""Strokes of one kind, the free energy from their work, and the crossing of the works forward and back."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,27 +14,32 @@ from idealgas.analysis.theory.values import Theory
 FEWEST_EFFECTIVE = 200.0
 """Effective number of strokes in ⟨exp(-W/T)⟩, (Σx)²/Σx², below which its error may be too small.
 
-That of the strokes outwards of the example is by a seventh at 200.
+At 200, the error of the outward strokes of the example is too small by a seventh.
 """
 
 FEWEST_STROKES = 10
-"""Least number of strokes in each direction for the ratio of their distributions."""
+"""Smallest number of strokes in each direction for the ratio of their distributions."""
 
 DIGITS = 9
-"""Decimals in which two strokes of the same kind agree."""
+"""Number of decimals in which two strokes of the same kind agree."""
 
 Protocol = tuple[tuple[float, float], ...]
-"""Velocities of a piston and for how long: (time, length/time)."""
+"""Durations and velocities of the motion of a piston: (time, length/time)."""
 
 
 @dataclass(frozen=True)
 class Process:
     """Strokes of one kind: all begin in equilibrium with the heat bath and move the piston in the same way.
 
-    name: from where to where, in which time. ends: positions of the piston, length. protocol: its motion. work: (n,),
-    energy that the piston gave in each stroke. start_energy: (n,), kinetic energy of all discs before each. mean_work:
-    of a stroke. free_energy: ΔF = -T ln⟨exp(-W/T)⟩. kinetic_energy: mean of start_energy; in equilibrium it is NT, with
-    the variance NT² in its error. All are energies.
+    Attributes:
+        name: start, end and duration in words.
+        ends: positions of the piston, length.
+        protocol: motion of the piston.
+        work: (n,), energy that the piston gave in each stroke.
+        start_energy: (n,), kinetic energy of all discs before each stroke.
+        mean_work: mean work of a stroke, energy.
+        free_energy: ΔF = -T ln⟨exp(-W/T)⟩, energy.
+        kinetic_energy: mean of start_energy; in equilibrium it is NT, and its error follows from the variance NT².
     """
 
     name: str
@@ -49,10 +54,14 @@ class Process:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Distributions P_F of the work of strokes and P_R of minus the work of the same strokes back.
+    """Distribution P_F of the work of strokes, and distribution P_R of minus the work of the reverse strokes.
 
-    name: of the process. free_energy: work at which they cross, by Crooks ΔF, energy. slope: T d ln(P_F/P_R)/dW (no
-    unit), by Crooks 1. forward, back: the works of the strokes, energy.
+    Attributes:
+        name: name of the process.
+        free_energy: work at which they cross, which is ΔF by Crooks' theorem, energy.
+        slope: T d ln(P_F/P_R)/dW, which is 1 by Crooks' theorem (no unit).
+        forward: work of the strokes, energy.
+        back: work of the reverse strokes, energy.
     """
 
     name: str
@@ -62,9 +71,9 @@ class Crossing:
     back: Annotated[np.ndarray, OMITTED]
 
 
-def expectation_of(found: Estimate) -> Theory | None:
-    """Theory of an estimate; None without one."""
-    return None if found.theory is None else Theory(found.theory, found.theory_error, "")
+def expectation_of(estimate: Estimate) -> Theory | None:
+    """Return the theory of an estimate; None without one."""
+    return None if estimate.theory is None else Theory(estimate.theory, estimate.theory_error, "")
 
 
 def process(
@@ -76,7 +85,7 @@ def process(
     number: int,
     difference: Theory | None,
 ) -> Process:
-    """Process of strokes with some work (n,) and energy before (n,), with ΔF by theory."""
+    """Return the process of strokes with work (n,) and kinetic energy before (n,), and with ΔF by theory."""
     least = float(work.min())
     weight = _independent(np.exp(-(work - least) / temperature))
     free, error = least - temperature * math.log(weight.value), temperature * weight.standard_error / weight.value
@@ -93,56 +102,56 @@ def process(
 
 
 def joined(same: Sequence[Process], temperature: float, number: int) -> Process:
-    """Strokes of one kind of several runs together."""
-    work, energy = (np.concatenate([getattr(one, name) for one in same]) for name in ("work", "start_energy"))
+    """Return the strokes of one kind of several runs together."""
+    work, energy = (np.concatenate([getattr(run, name) for run in same]) for name in ("work", "start_energy"))
     first = same[0]
     return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
-def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
-    """Sentence on a process in which few strokes decide the mean of exp(-W/T)."""
-    weight = np.exp(-(one.work - one.work.min()) / temperature)
+def poorly_sampled(strokes: Process, temperature: float) -> Iterator[str]:
+    """Yield a caveat if few strokes dominate the mean of exp(-W/T)."""
+    weight = np.exp(-(strokes.work - strokes.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
+            f"⟨exp(−W/T)⟩ {strokes.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
             "error may be too small."
         )
 
 
 def crossings(processes: Sequence[Process], temperature: float) -> tuple[Crossing, ...]:
-    """Crossings of all processes that are also made backwards, each once."""
-    known = {(one.ends, one.protocol): one for one in processes}
-    found = []
-    for (ends, protocol), one in list(known.items()):
+    """Return the crossing of each process that is also made in reverse, each once."""
+    known = {(forward.ends, forward.protocol): forward for forward in processes}
+    pairs = []
+    for (ends, protocol), forward in list(known.items()):
         del known[ends, protocol]
         back = known.get((ends[::-1], tuple((duration, -velocity) for duration, velocity in protocol[::-1])))
-        if back is not None and min(len(one.work), len(back.work)) >= FEWEST_STROKES:
-            found += [_crossing(one, back, temperature)]
-    return tuple(one for one in found if one is not None)
+        if back is not None and min(len(forward.work), len(back.work)) >= FEWEST_STROKES:
+            pairs += [_crossing(forward, back, temperature)]
+    return tuple(forward for forward in pairs if forward is not None)
 
 
 def _crossing(forward: Process, back: Process, temperature: float) -> Crossing | None:
-    """Crossing of two distributions by logistic regression: Shirts et al., Phys. Rev. Lett. 91, 140601 (2003).
+    """Return the crossing of two distributions by logistic regression, or None if they do not overlap.
 
-    ln(P_F/P_R) = a + bW/T has the largest likelihood of the works being forward or back. The errors are those of a
-    regression whose numbers of strokes are given. None where the distributions do not overlap.
+    ln(P_F/P_R) = a + bW/T maximizes the likelihood of the works being forward or back (Shirts et al., Phys. Rev. Lett.
+    91, 140601 (2003)). The errors are those of a regression with given numbers of strokes.
     """
     works = np.concatenate((forward.work, -back.work)) / temperature
     n, m, middle = len(forward.work), len(back.work), works.mean()
     is_forward, columns = np.arange(n + m) < n, np.stack((np.ones(n + m), works - middle))
-    found = np.zeros(2)
+    coefficients = np.zeros(2)
     for _ in range(50):
-        chance = 1 / (1 + np.exp(-np.clip(math.log(n / m) + found @ columns, -500, 500)))
+        chance = 1 / (1 + np.exp(-np.clip(math.log(n / m) + coefficients @ columns, -500, 500)))
         information = (columns * (chance * (1 - chance))) @ columns.T
         if not np.linalg.det(information) > 1e-12:
             return None
         step = np.linalg.solve(information, columns @ (is_forward - chance))
-        found += step
+        coefficients += step
         if np.abs(step).max() < 1e-10:
             break
     covariance = np.linalg.inv(information)
     covariance[0, 0] -= 1 / n + 1 / m
-    a, b = found.tolist()
+    a, b = coefficients.tolist()
     gradient = np.array([-1 / b, a / b**2])
     error = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
     return Crossing(
@@ -155,7 +164,7 @@ def _crossing(forward: Process, back: Process, temperature: float) -> Crossing |
 
 
 def _independent(values: np.ndarray) -> Estimate:
-    """Mean of independent values."""
+    """Return the mean of independent values."""
     n = len(values)
     return _estimate(values.mean(), values.std(ddof=1) / math.sqrt(n) if n > 1 else math.nan, n, None)
 
