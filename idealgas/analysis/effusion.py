@@ -168,31 +168,31 @@ class EffusionAnalysis(Analysis):
         return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
 
     @staticmethod
-    def restore(stored: dict[str, Any], label: str) -> Effusion:
+    def restore(found: dict[str, Any], label: str) -> Effusion:
         """Return the result of one point of a sweep, which is named by the values of its axes, `label`."""
-        time, beyond = np.array(stored["time"]), np.array(stored["beyond"])
-        law = None if stored["expected"] is None else np.array(stored["expected"])
-        speed = Estimate.from_dict(stored["speed"])
-        return Effusion(label, stored["density"], stored["temperature"], time, beyond, law, speed)
+        time, beyond = np.array(found["time"]), np.array(found["beyond"])
+        law = None if found["expected"] is None else np.array(found["expected"])
+        speed = Estimate.from_dict(found["speed"])
+        return Effusion(label, found["density"], found["temperature"], time, beyond, law, speed)
 
     @staticmethod
-    def tables(result: Effusions) -> list[Table]:
+    def tables(found: Effusions) -> list[Table]:
         """Return the table of the flux over density of each gas, length/time."""
-        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", result.together.items())]
+        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", found.together.items())]
 
     @staticmethod
-    def summary(result: Effusions) -> str:
+    def summary(found: Effusions) -> str:
         """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
-        first, *_ = result.together.values()
-        verdict = agreement(result.together.items(), "⟨v⟩/π of kinetic theory")
+        first, *_ = found.together.values()
+        verdict = agreement(found.together.items(), "⟨v⟩/π of kinetic theory")
         return f"{format_estimate(first)} n discs pass per time and length of the slit at the density n; {verdict}."
 
     @staticmethod
-    def figure(result: Effusions) -> "Figure":
+    def figure(found: Effusions) -> "Figure":
         """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
         from idealgas.analysis.core.style import GREY, curve_style, panels
 
-        groups, together = result.groups, result.together
+        groups, together = found.groups, found.together
         figure, (course, flux) = panels(2)
         for k, (name, runs) in enumerate(groups.items()):
             colour, line, marker = curve_style(k)

@@ -119,12 +119,12 @@ class HeatCapacityAnalysis(Analysis):
         )
 
     @staticmethod
-    def restore(stored: dict[str, Any], label: str) -> Measured:
+    def restore(found: dict[str, Any], label: str) -> Measured:
         """Return the result of one point of a sweep, which is named by the path of its log."""
-        energy, temperature = (Estimate.from_dict(stored[key]) for key in ("energy_per_disc", "temperature"))
-        routes = {name: Estimate.from_dict(route) for name, route in stored["routes"].items()}
+        energy, temperature = (Estimate.from_dict(found[key]) for key in ("energy_per_disc", "temperature"))
+        routes = {name: Estimate.from_dict(route) for name, route in found["routes"].items()}
         plain = {
-            key: stored[key] for key in ("path", "kind", "number", "thermometer", "theory", "excess", "theory_error")
+            key: found[key] for key in ("path", "kind", "number", "thermometer", "theory", "excess", "theory_error")
         }
         return Measured(energy=energy, temperature=temperature, routes=routes, **plain)
 

@@ -21,13 +21,13 @@ def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | Equatio
     return equation_of_state([sample_of(result) if isinstance(result, Pressure) else result for result in results])
 
 
-def restore_pressure(stored: dict[str, Any], label: str) -> Sample:
+def restore_pressure(found: dict[str, Any], label: str) -> Sample:
     """Return the compressibility factor of the point of a sweep that is named `label`, from its stored values.
 
     Raises:
         UserError: if the gas has no equation of state.
     """
-    if not stored["routes"]:
-        raise UserError(f"{label}: {stored['no_theory']}")
-    pairs = next(route["compressibility_factor"] for route in stored["routes"] if route["route"] == PAIRS)
-    return Sample(stored["packing_fraction"], stored["number"], Estimate.from_dict(pairs))
+    if not found["routes"]:
+        raise UserError(f"{label}: {found['no_theory']}")
+    pairs = next(route["compressibility_factor"] for route in found["routes"] if route["route"] == PAIRS)
+    return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

@@ -212,25 +212,23 @@ class RelaxationAnalysis(Analysis):
         return Relaxations(tuple(results))
 
     @staticmethod
-    def tables(relaxations: Relaxations) -> list[Table]:
+    def tables(found: Relaxations) -> list[Table]:
         """Return the tables of speed distributions, if they were counted, relaxation times, and Monte Carlo trials."""
-        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in relaxations.logs]
-        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in relaxations.logs]
-        tried = {r.path: r.acceptance for r in relaxations.logs if r.acceptance is not None}
+        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in found.logs]
+        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in found.logs]
+        tried = {r.path: r.acceptance for r in found.logs if r.acceptance is not None}
         return [
-            *(speed_table(r.path, r.speeds) for r in relaxations.logs if r.speeds is not None),
+            *(speed_table(r.path, r.speeds) for r in found.logs if r.speeds is not None),
             Table("Relaxation to Maxwell-Boltzmann, in units of time", HEADS, in_time, NOTES),
             Table("The same in collisions per disc", HEADS, in_collisions),
             *(acceptance_tables(tried) if tried else ()),
         ]
 
     @staticmethod
-    def summary(relaxations: Relaxations) -> str:
+    def summary(found: Relaxations) -> str:
         """Return the relaxation time of each gas, and the theory near equilibrium."""
         times = [
-            f"{log.number} discs in {format_estimate(log.in_collisions)}"
-            for log in relaxations.logs
-            if log.in_collisions
+            f"{log.number} discs in {format_estimate(log.in_collisions)}" for log in found.logs if log.in_collisions
         ]
         theory = f"Theory: {LINEAR:g} near equilibrium; none for the whole way from equal speeds, which takes longer."
         if not times:
@@ -238,20 +236,20 @@ class RelaxationAnalysis(Analysis):
         return f"Velocities relax to Maxwell–Boltzmann's: {', '.join(times)} collisions per disc. {theory}"
 
     @staticmethod
-    def figure(relaxations: Relaxations) -> "Figure":
+    def figure(found: Relaxations) -> "Figure":
         """Draw kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
 
         With several logs, the same is drawn against collisions per disc on the left.
         """
         from idealgas.analysis.core.style import panels
 
-        if len(relaxations.logs) == 1:
+        if len(found.logs) == 1:
             figure, axes = panels(3)
-            _draw(axes, relaxations, in_time=True)
+            _draw(axes, found, in_time=True)
         else:
             figure, axes = panels(3, columns=2)
-            _draw(axes[::2], relaxations, in_time=False)
-            _draw(axes[1::2], relaxations, in_time=True)
+            _draw(axes[::2], found, in_time=False)
+            _draw(axes[1::2], found, in_time=True)
         return figure
 
 

@@ -68,13 +68,13 @@ def combine_transport(results: Sequence[Transport | Sample]) -> Transport | Stat
     return States(tuple(_state(kind, runs) for kind, runs in by_state(samples)))
 
 
-def restore_transport(stored: dict[str, Any], label: str) -> Sample:
+def restore_transport(found: dict[str, Any], label: str) -> Sample:
     """Return the coefficients of the point of a sweep that is named `label`, from its stored values."""
-    whole, diffusion = stored["collective"] or {}, stored["diffusion"]
+    whole, diffusion = found["collective"] or {}, found["diffusion"]
     coefficients = {DIFFUSION: diffusion[0]["coefficient"]} if len(diffusion) == 1 else {}
     coefficients |= {symbol: whole[name]["coefficient"] for name, symbol in SYMBOLS.items() if name in whole}
     estimates = {symbol: Estimate.from_dict(estimate) for symbol, estimate in coefficients.items() if estimate}
-    return Sample(stored["packing_fraction"], stored["number"], _over_theory(estimates))
+    return Sample(found["packing_fraction"], found["number"], _over_theory(estimates))
 
 
 def _sample_of(result: Transport) -> Sample:

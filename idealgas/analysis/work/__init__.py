@@ -130,15 +130,15 @@ class WorkAnalysis(Analysis):
         return Work(temperature, number, processes, crossings(processes, temperature), caveats=caveats)
 
     @staticmethod
-    def restore(stored: dict[str, Any], label: str) -> Work:
+    def restore(found: dict[str, Any], label: str) -> Work:
         """Return the result of one point of a sweep."""
         processes = []
-        for strokes in stored["processes"]:
+        for strokes in found["processes"]:
             theory = expectation_of(Estimate.from_dict(strokes["free_energy"]))
             ends, protocol = tuple(strokes["ends"]), tuple(map(tuple, strokes["protocol"]))
             series = np.array(strokes["work"]), np.array(strokes["start_energy"])
-            processes.append(process(ends, protocol, *series, stored["temperature"], stored["number"], theory))
-        temperature, number = stored["temperature"], stored["number"]
+            processes.append(process(ends, protocol, *series, found["temperature"], found["number"], theory))
+        temperature, number = found["temperature"], found["number"]
         return Work(temperature, number, tuple(processes), crossings(processes, temperature))
 
     @staticmethod

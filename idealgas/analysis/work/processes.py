@@ -71,9 +71,9 @@ class Crossing:
     back: Annotated[np.ndarray, OMITTED]
 
 
-def expectation_of(estimate: Estimate) -> Theory | None:
+def expectation_of(found: Estimate) -> Theory | None:
     """Return the theory of an estimate; None without one."""
-    return None if estimate.theory is None else Theory(estimate.theory, estimate.theory_error, "")
+    return None if found.theory is None else Theory(found.theory, found.theory_error, "")
 
 
 def process(
@@ -108,12 +108,12 @@ def joined(same: Sequence[Process], temperature: float, number: int) -> Process:
     return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
-def poorly_sampled(strokes: Process, temperature: float) -> Iterator[str]:
+def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
     """Yield a caveat if few strokes dominate the mean of exp(-W/T)."""
-    weight = np.exp(-(strokes.work - strokes.work.min()) / temperature)
+    weight = np.exp(-(one.work - one.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ {strokes.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
+            f"⟨exp(−W/T)⟩ {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
             "error may be too small."
         )
 
