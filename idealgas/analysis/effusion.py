@@ -282,9 +282,9 @@ def _slit(log: Log) -> Slit:
     if why := _why_not(log, gate, in_line, across):
         raise UserError(f"{log.path}: no effusion: {why}")
     low, high = _reach(gate, across)
-    others = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
+    obstacles = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
     opens, closes = gate.absences[0]
-    return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, others)
+    return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, obstacles)
 
 
 def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:

@@ -101,8 +101,8 @@ class EscapeAnalysis(Analysis):
             theory = _theory(log)
             expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
-            what = "No theory" if theory is None else "No theory of the number left"
-            caveats = (f"{what}: {error}.",)
+            missing = "No theory" if theory is None else "No theory of the number left"
+            caveats = (f"{missing}: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
         per_path = None
@@ -132,9 +132,9 @@ class EscapeAnalysis(Analysis):
     def summary(result: Escape) -> str:
         """Return the number of discs that escaped, and whether their rate agrees with theory."""
         estimate = result.per_path or result.mean_time
-        what = "escapes per length of path" if result.per_path else "time per escape"
-        verdict = agreement([(what, estimate)])
-        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(estimate)} {what}; {verdict}."
+        quantity = "escapes per length of path" if result.per_path else "time per escape"
+        verdict = agreement([(quantity, estimate)])
+        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
 
     @staticmethod
     def figure(result: Escape) -> "Figure":

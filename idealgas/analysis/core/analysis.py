@@ -1,12 +1,11 @@
-"""Base of all analyses: a subclass has its options, measures a log, and shows its result.
+"""Base class of all analyses: a subclass declares its options, measures a log, and shows the result.
 
-A module or package of `idealgas.analysis` holds one analysis, a subclass of `Analysis`. The first line of its docstring
-is the help of the command `idealgas NAME`. The command with `--json` and `--csv`, the sections of the report, the key
-of a sweep and the function `idealgas.NAME` are made from the class.
+A module or package of `idealgas.analysis` contains one analysis, a subclass of `Analysis`. The first line of its
+docstring is the help of the command `idealgas NAME`. The command with `--json` and `--csv`, the sections of the report,
+the key of a sweep and the function `idealgas.NAME` are made from the class.
 
-Results are dataclasses that inherit `Result`; their fields are the plain values for JSON (`core/fields.py`). A
-condition that a number needs and that is not met is a sentence in `caveats` of the result, which tables, reports and
-JSON show.
+Results are dataclasses that inherit from `Result`; their fields are the plain values for JSON (`core/fields.py`). Each
+condition of a number that is not met is a sentence in `caveats` of the result, which tables, reports and JSON contain.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from idealgas.log import Log
 
 Progress = Callable[[int, int], None]
-"""Function progress(done, total) that an analysis calls while it reads a log: rows or frames read, and their number."""
+"""Function progress(done, total) that an analysis calls while it reads a log, with numbers of rows or frames."""
 
 FOUND: dict[str, type["Analysis"]] = {}
 """All analyses that have been imported, by name."""
@@ -40,9 +39,16 @@ FOUND: dict[str, type["Analysis"]] = {}
 class Option:
     """One option of an analysis: `--name` on the command line, a keyword argument in Python.
 
-    name: a Python identifier. kind: type of the value, str, int or float. help: text for the command line. default:
-    value if the option is not given. choices: texts that are allowed. least, most: smallest and largest number allowed.
-    positive: whether a number must be greater than 0. metavar: word that stands for the value in the help text.
+    Attributes:
+        name: a Python identifier.
+        kind: type of the value: str, int or float.
+        help: text for the command line.
+        default: value if the option is not given.
+        choices: allowed texts.
+        least: smallest allowed number.
+        most: largest allowed number.
+        positive: whether a number must be greater than 0.
+        metavar: word that stands for the value in the help text.
     """
 
     name: str
@@ -67,7 +73,7 @@ class Option:
         return " ".join([words, " and ".join(bounds)]).strip()
 
     def check(self, value: Any) -> None:
-        """Raise UserError if the value is not allowed; the default value is always allowed."""
+        """Raise UserError if the value is not allowed; None is allowed if it is the default."""
         if value is None and self.default is None:
             return
         kind = {int: Integral, float: Real, str: str}[self.kind]
@@ -83,8 +89,10 @@ class Option:
 class Section:
     """One section of the report that an analysis fills.
 
-    title: heading of the section. caption: text below the picture, also read aloud to blind readers. options: values of
-    the options of the analysis for this section.
+    Attributes:
+        title: heading of the section.
+        caption: text below the figure, which screen readers also read.
+        options: values of the options of the analysis for this section.
     """
 
     title: str
@@ -93,20 +101,20 @@ class Section:
 
 
 class Analysis:
-    """One analysis. Its class attributes and static methods are what the program makes of it.
+    """One analysis. The program uses its class attributes and static methods.
 
     Attributes:
         name: name of its module, a Python identifier.
         key: name of the command and key in the file of a sweep, with hyphens instead of underscores.
-        results: classes of its results; those of several logs follow that of one log.
+        results: classes of its results; the class for several logs follows that for one log.
         sections: sections of the report.
-        options: options besides the start and the end of the window, arguments of `measure`.
+        options: options besides the start and the end of the window; they are arguments of `measure`.
         averages: whether `combine` averages over logs, so that their runs must be independent.
         start: description of the default start of the window.
         end: description of the default end of the window.
         reads: what the progress bar counts, such as events or frames.
         position: position in the report; analyses without one follow in alphabetical order.
-        reported_from: packing fraction from which on a report has it.
+        reported_from: packing fraction from which on a report includes the analysis.
         headline: name of its main quantity, which the figure of a sweep shows by default; empty for none.
     """
 
@@ -124,16 +132,19 @@ class Analysis:
     headline: ClassVar[str] = ""
 
     measure: ClassVar[Callable[..., Any]]
-    """Function measure(log, start, end, progress, **options): result of one log."""
+    """Function measure(log, start, end, progress, **options) that returns the result of one log."""
 
     tables: ClassVar[Callable[..., list[Table]]]
-    """Function tables(result): tables for the terminal, CSV and the report."""
+    """Function tables(result) that returns the tables for the terminal, CSV and the report."""
 
     figure: ClassVar[Callable[..., "Figure"]]
-    """Function figure(result): picture of the result."""
+    """Function figure(result) that draws the result."""
 
     combine: ClassVar[Callable[..., Any] | None] = None
-    """Function combine(results): one result of several logs, for tables and figure; None for a single log only."""
+    """Function combine(results) that returns one result of several logs for tables and figure.
+
+    None if the analysis takes a single log only.
+    """
 
     takes_unlike_discs: ClassVar[bool] = True
     """Whether the analysis applies to species whose discs differ in radius or mass."""
@@ -145,7 +156,10 @@ class Analysis:
     """Whether the analysis applies to a gas that discs leave."""
 
     restore: ClassVar[Callable[..., Any] | None] = None
-    """Function restore(found, label): result from the plain values that a sweep stored; None if sweeps are not read."""
+    """Function restore(found, label) that returns a result from the plain values that a sweep has stored.
+
+    None if the analysis does not read sweeps.
+    """
 
     def __init_subclass__(cls) -> None:
         """Register the analysis under the name of its module."""
@@ -157,17 +171,17 @@ class Analysis:
 
     @staticmethod
     def summary(result: Any) -> str:
-        """Headline of a combined result, one or two sentences: what was found, and whether it agrees with theory."""
+        """Return the headline of a combined result: one or two sentences on the result and the theory."""
         return ""
 
     @staticmethod
     def text(result: Any) -> str:
-        """Picture in characters for the terminal; empty if there is none."""
+        """Return a figure in characters for the terminal; empty if there is none."""
         return ""
 
     @classmethod
     def is_checked(cls) -> bool:
-        """Whether its result has a method `check()` that compares measurement and theory."""
+        """Return whether the result has a method `check()` that compares measurement and theory."""
         return hasattr(cls.results[0], "check")
 
     @classmethod
@@ -179,10 +193,11 @@ class Analysis:
         progress: Progress | None = None,
         **options: Any,
     ) -> Any:
-        """Analyse one log, or that at a path, between the times `start` and `end` and return the result, a `Result`.
+        """Analyse a log, or the log at a path, between the times `start` and `end`, and return the `Result`.
 
         Raises:
-            UserError: if an option is unknown or its value not allowed, or if the analysis does not apply to the log.
+            UserError: if an option is unknown or its value is not allowed, or if the analysis does not apply to the
+                log.
         """
         known = {option.name: option for option in cls.options}
         for name, value in options.items():
@@ -204,16 +219,18 @@ class Analysis:
         if log.escapes and not cls.takes_escapes:
             raise NotApplicableError(f"{log.path}: not applicable to a gas that discs leave")
         with _arithmetic(f"{log.path}: {cls.key}"):
-            found = cls.measure(log, start=start, end=end, progress=progress, **values)
+            result = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow: tuple[str, ...] = ()
-        if hasattr(found, "window"):
-            slow = *caveats.of_paths(log, found.window), *caveats.of_window(found.window)
+        if hasattr(result, "window"):
+            slow = *caveats.of_paths(log, result.window), *caveats.of_window(result.window)
         origin = caveats.origin_of(log.scene, str(log.path))
-        return replace(found, caveats=(*caveats.of_log(log), *slow, *found.caveats), origin=origin, title=origin.title)
+        return replace(
+            result, caveats=(*caveats.of_log(log), *slow, *result.caveats), origin=origin, title=origin.title
+        )
 
     @classmethod
     def function(cls) -> Callable[..., Any]:
-        """`analyse` as a function with the arguments and the docstring of `measure`."""
+        """Return `analyse` as a function with the arguments and the docstring of `measure`."""
         arguments = signature(cls.measure)
 
         @wraps(cls.measure)
@@ -226,7 +243,7 @@ class Analysis:
 
     @classmethod
     def _docstring(cls) -> str:
-        """Docstring of `measure` with the arguments that all analyses take, and its own options."""
+        """Return the docstring of `measure` with the arguments that all analyses take, and its own options."""
         text, *errors = (getdoc(cls.measure) or "").partition("\n\nRaises:")
         arguments = {
             "log": "log to analyse, or its path.",
@@ -239,7 +256,7 @@ class Analysis:
 
     @classmethod
     def combined(cls, results: Sequence[Any]) -> Any:
-        """Combine the results of one or several logs into the one that tables and figure show.
+        """Combine the results of one or several logs into the result that tables and figure show.
 
         Raises:
             UserError: if the analysis averages and a run is given twice, or if the gases cannot be combined.
@@ -256,7 +273,7 @@ class Analysis:
 
     @classmethod
     def restored(cls, found: dict[str, Any], label: str, origin: Origin | None = None) -> Any:
-        """Make a result again from the plain values that a sweep stored.
+        """Restore a result from the plain values that a sweep has stored.
 
         Args:
             found: plain values of the result.
@@ -264,7 +281,7 @@ class Analysis:
             origin: run of the point.
 
         Raises:
-            UserError: if they are not those of a result.
+            UserError: if the values are not those of a result.
         """
         assert cls.restore is not None
         title = origin.title if origin else label
@@ -278,38 +295,38 @@ class Analysis:
 
     @classmethod
     def shown_tables(cls, combined: Any) -> list[Table]:
-        """Tables of a combined result; the first one has a note for each caveat."""
-        first, *others = cls.tables(combined)
+        """Return the tables of a combined result; the first table has a note for each caveat."""
+        first, *remaining = cls.tables(combined)
         notes = (*(f"caveat: {sentence}" for sentence in combined.caveats), *first.notes)
-        return [replace(first, notes=notes), *others]
+        return [replace(first, notes=notes), *remaining]
 
     @classmethod
     def titled_figure(cls, combined: Any) -> "Figure":
-        """Picture of a combined result, with the names of the run and the analysis above it."""
+        """Return the figure of a combined result with the names of the run and the analysis above it."""
         from idealgas.analysis.core.style import add_title
 
         return add_title(cls.figure(combined), f"{combined.title}: {cls.key}")
 
     @classmethod
     def error_figure(cls, combined: Any) -> "Figure":
-        """Picture of the error of each estimate of a combined result against the length of blocks (`block_figure`)."""
+        """Draw the error of each estimate of a combined result against the length of blocks (`block_figure`)."""
         from idealgas.analysis.core.style import add_title, block_figure
 
-        found: dict[tuple[tuple[float, float], ...], str] = {}
+        names: dict[tuple[tuple[float, float], ...], str] = {}
         for table in cls.shown_tables(combined):
-            for row, one in zip(table.rows, table.found, strict=False):
-                found.setdefault(one.blocks, str(row[0]))
-        found.pop((), None)
-        if not found:
+            for row, estimate in zip(table.rows, table.found, strict=False):
+                names.setdefault(estimate.blocks, str(row[0]))
+        names.pop((), None)
+        if not names:
             raise UserError(f"{cls.key}: no error here is from blocks of time")
         window = getattr(combined, "window", None)
-        figure = block_figure(found, *((window.duration, "time") if window else (1.0, "share of the window")))
+        figure = block_figure(names, *((window.duration, "time") if window else (1.0, "share of the window")))
         return add_title(figure, f"{combined.title}: {cls.key}")
 
 
 @contextmanager
 def _arithmetic(what: str) -> Iterator[None]:
-    """Raise UserError where arithmetic fails: a log may have numbers that no run produces."""
+    """Raise UserError if arithmetic fails, as a log may contain numbers that no run produces."""
     import numpy as np
 
     from idealgas.jit import INTERPRETED

@@ -1,15 +1,15 @@
-"""Error of the mean and statistical inefficiency of a correlated series, from autoregressive models of it.
+"""Error of the mean and statistical inefficiency of a correlated series, from autoregressive models.
 
 A model of order p predicts a sample from the p samples before it, x_t = Σ a_k x_{t-k} + noise of variance s. Its
-spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a sum of
-autocorrelations that is cut off, or batches of a fixed length, it does justice to correlation and anticorrelation of
-any length that the series can show.
+spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a truncated sum
+of autocorrelations, or batches of a fixed length, it accounts for positive and negative correlations of any length that
+the series can resolve.
 
-Coefficients: Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for Physical
-Applications, 1993, chapter 9). Several series of one process share their coefficients: all sums run over all of them
-(de Waele & Broersen, The Burg algorithm for segments, IEEE Trans. Signal Process. 48, 2876 (2000)). Orders are not
-chosen but averaged with the weights of Akaike's corrected criterion (Burnham & Anderson, Model Selection and Multimodel
-Inference, 2002), so that the error contains how uncertain the order of a short series is.
+The coefficients are from Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for
+Physical Applications, 1993, chapter 9). Several series of one process share their coefficients: all sums run over all
+of them (de Waele & Broersen, The Burg algorithm for segments, IEEE Trans. Signal Process. 48, 2876 (2000)). Orders are
+not chosen but averaged with the weights of Akaike's corrected criterion (Burnham & Anderson, Model Selection and
+Multimodel Inference, 2002), so that the error includes the uncertainty of the order of a short series.
 """
 
 import math
@@ -23,31 +23,34 @@ import numpy as np
 from idealgas.jit import njit
 
 LEAST_WEIGHT = 1e-3
-"""Orders of a smaller weight, relative to the largest one, are left out."""
+"""Weight, relative to the largest one, below which orders are left out."""
 
 BLOCKS = 256
-"""Number of blocks that a long series is divided into, or up to twice as many."""
+"""Number of blocks into which a long series is divided; it may be up to twice as large."""
 
 FEWEST = 8
-"""Least number of blocks to which a known correlation time shortens a series; it is then known to 27 %."""
+"""Smallest number of blocks to which a known correlation time shortens a series; an error is then known to 27 %."""
 
 NOISE = 1e-12
-"""Share of the variance below which what a model leaves unexplained is rounding."""
+"""Fraction of the variance below which the residual of a model is attributed to rounding."""
 
 LEAST = 1e-150
 """Change of a series, in its own unit, whose square may be rounded to 0."""
 
 
 FEW = 2**14
-"""Number of samples whose models NumPy finds in much less time than loading numba takes."""
+"""Number of samples up to which NumPy fits the models in much less time than numba takes to load."""
 
 
 class Model(NamedTuple):
     """Autoregressive model of order p of a series of n samples.
 
-    coefficients: (p,), the a_k. noise: mean square of the noise that the model leaves of the series. covariance:
-    (p + 1,), autocovariances of the process at lags 0 to p, with the variance of the noise by n - p degrees of freedom.
-    variance_of_log: variance of the estimate of the logarithm of the spectrum at frequency 0.
+    Attributes:
+        coefficients: (p,), the a_k.
+        noise: mean square residual of the model.
+        covariance: (p + 1,), autocovariances of the process at lags 0 to p, with n - p degrees of freedom for the
+            variance of the noise.
+        variance_of_log: variance of the estimate of the logarithm of the spectrum at frequency 0.
     """
 
     coefficients: np.ndarray
@@ -57,7 +60,7 @@ class Model(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """Standard error of the mean of a series, and number of independent samples that would give it as precisely."""
+    """Standard error of the mean of a series, and the number of independent samples with an equally precise error."""
 
     error: float
     samples: float
@@ -72,13 +75,13 @@ class Process:
     length: int
 
     def covariances(self, length: int) -> np.ndarray:
-        """Autocovariances (length,) from lag 0 on, averaged over the models."""
+        """Return autocovariances (length,) from lag 0 on, averaged over the models."""
         return np.asarray(
             sum(w * each for w, each in zip(self.weights, self.covariances_of_models(length), strict=True))
         )
 
     def covariances_of_models(self, length: int) -> np.ndarray:
-        """Autocovariances (models, length) from lag 0 on by each model."""
+        """Return autocovariances (models, length) from lag 0 on by each model."""
         covariances = np.zeros((len(self.models), length))
         for model, row in zip(self.models, covariances, strict=True):
             known = model.covariance[:length]
@@ -91,10 +94,10 @@ class Process:
         return covariances
 
     def spread(self, number: int | None = None) -> Spread:
-        """Standard error of the mean of so many successive samples, by default of all of the series.
+        """Return the standard error of the mean of `number` successive samples, by default of the whole series.
 
-        If the spectrum at frequency 0 is known as well as from ν independent samples, the mean, which was subtracted,
-        has taken one of them: Bessel's correction has ν in place of n.
+        If the spectrum at frequency 0 is known as precisely as from ν independent samples, subtracting the mean has
+        used up one of them: Bessel's correction contains ν in place of n.
         """
         logs = np.log(variance_of_mean(self.covariances_of_models(number or self.length))[:, -1])
         middle = float(self.weights @ logs)
@@ -104,22 +107,25 @@ class Process:
 
 
 def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
-    """Variance (…, n) of the mean of 1 to n successive samples from autocovariances (…, n) at lags 0 to n - 1."""
+    """Return variances (…, n) of means of 1 to n successive samples from autocovariances (…, n) at lags 0 to n - 1."""
     n = np.arange(1, covariance.shape[-1] + 1)
     return np.asarray((2 * np.cumsum(np.cumsum(covariance, axis=-1), axis=-1) - n * covariance[..., :1]) / n**2)
 
 
 def error_of_mean(series: np.ndarray, number: int | None = None, memory: float = 0.0) -> Spread:
-    """Standard error of the mean of a stationary series (n,).
+    """Return the standard error of the mean of a stationary series (n,).
 
-    Not a number for fewer than two samples, or where the series is not constant but its squares are 0.
+    The result is nan for fewer than two samples, or if the series changes but the squares of the changes are 0.
 
-    number: of successive samples, if not all are averaged; their fluctuations are those of the whole series.
-    memory: number of samples per independent one by the slowest fluctuations, if it is known, else 0.
+    A long series is first averaged in blocks, as slow fluctuations determine the error and may be too small to be
+    visible beside the fast ones. If the slowest fluctuations are known, the blocks are a quarter of `memory`, about
+    their correlation time, provided that FEWEST blocks remain. The error then has no more degrees of freedom than slow
+    fluctuations allow.
 
-    A long series is averaged in blocks first: what matters are the slow fluctuations, which may be too small to be seen
-    beside the fast ones. Where the slowest ones are known, blocks are a quarter of `memory`, about their correlation
-    time, if FEWEST of them remain: the error has then no more degrees of freedom than slow fluctuations allow.
+    Args:
+        series: (n,), values.
+        number: number of successive samples that are averaged, if not all; their fluctuations are those of the series.
+        memory: number of samples per independent sample by the slowest fluctuations, if it is known, else 0.
     """
     n = len(series)
     if n < 2:
@@ -128,19 +134,19 @@ def error_of_mean(series: np.ndarray, number: int | None = None, memory: float =
         return Spread(math.nan if changes(series) else 0.0, float(n))
     block, unit = max(n // BLOCKS, min(int(memory / 4), n // FEWEST), 1), unit_of(series)
     coarse = (series[n % block :] / unit).reshape(-1, block).mean(axis=1)
-    if is_constant(coarse):  # all that changes is in the samples that fill no block
+    if is_constant(coarse):  # all changes are in the samples that do not fill a block
         block, coarse = 1, series / unit
-    found = process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
-    return Spread(found.error * unit, found.samples)
+    spread = process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
+    return Spread(spread.error * unit, spread.samples)
 
 
 def inefficiency(series: np.ndarray) -> float:
-    """Statistical inefficiency g ≥ 1 of a stationary process: number of successive samples per independent one.
+    """Return the statistical inefficiency g ≥ 1 of a stationary process: successive samples per independent one.
 
-    g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first one at which the models' autocorrelation ρ is not
-    positive (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007), who estimate ρ without a model). Later, negative
-    values are not subtracted: samples that are g apart are decorrelated even if the series oscillates. The error of
-    a mean, which does profit from anticorrelation, comes from `error_of_mean`.
+    g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first one at which the autocorrelation ρ of the models is not
+    positive (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007), who estimate ρ without a model). Later negative
+    values are not subtracted: samples that are g apart are decorrelated even if the series oscillates. The error of a
+    mean, which does decrease by anticorrelation, comes from `error_of_mean`.
 
     Args:
         series: (n,), one series, or (n, M), series of M members with a common mean, such as the discs of a species.
@@ -161,22 +167,25 @@ def inefficiency(series: np.ndarray) -> float:
 
 
 def unit_of(series: np.ndarray) -> float:
-    """Power of two of the size of a series: in this unit squares of large numbers are finite, and digits the same."""
+    """Return the power of two of the magnitude of a series.
+
+    In this unit the squares of large numbers are finite, and the digits are unchanged.
+    """
     return float(np.ldexp(1.0, np.frexp(np.abs(series).max())[1] - 1))
 
 
 def is_constant(series: np.ndarray) -> bool:
-    """Whether a series changes by rounding only, or so little that squares of the changes are 0."""
+    """Return whether a series changes by rounding only, or so little that squares of the changes are 0."""
     return not (changes(series) and np.ptp(series) > LEAST)
 
 
 def changes(series: np.ndarray) -> bool:
-    """Whether a series changes by more than rounding."""
+    """Return whether a series changes by more than rounding."""
     return bool(np.ptp(series) > NOISE * np.abs(series).max())
 
 
 def process_of(series: np.ndarray) -> Process:
-    """Process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2.
+    """Return the process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2.
 
     The models have orders from 0 to n/8 or, if the series are long, 20 log₁₀ n.
     """
@@ -204,16 +213,16 @@ _fitted = 0
 
 
 def _is_worth_loading() -> bool:
-    """Whether compiled functions are used, whose numbers are the same bit for bit."""
+    """Return whether compiled functions are used, whose results are bit-identical."""
     return _fitted > FEW or "numba" in sys.modules
 
 
 @njit
 def _fit(forward, backward, coefficients, noise, covariance, doubt):
-    """Fill arrays by order from M series given twice, (n, M), which are lost: numbers of orders that have a model.
+    """Fit models to M series, given twice as (n, M) and overwritten; return the number of orders that have a model.
 
-    coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of
-    Σ a_k in units of (1 - Σ a_k)²/(n M).
+    The arrays are filled by order. coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt:
+    (P + 1,), mean square error of Σ a_k in units of (1 - Σ a_k)²/(n M).
     """
     n, members = forward.shape
     left = 0.0
@@ -273,7 +282,7 @@ def _fit_in_numpy(
     covariance: np.ndarray,
     doubt: np.ndarray,
 ) -> int:
-    """Do what `_fit` does; sums are those of `cumsum`, which adds one number after the other."""
+    """Do the same as `_fit`; `cumsum` adds the numbers in the same order."""
     left = (forward * forward / forward.size).cumsum()[-1]
     least, rest, certainty = NOISE * left, np.float64(1.0), 0.0
     covariance[0] = left
@@ -299,8 +308,8 @@ def _fit_in_numpy(
 
 
 def _go_on_together(coefficients: Sequence[np.ndarray], covariance: np.ndarray) -> None:
-    """Do what `_go_on` does, for several models with their autocovariances (models, n)."""
-    orders = np.array([*map(len, coefficients), 0])  # sums over rows of two columns or more are in their order
+    """Do the same as `_go_on` for several models with their autocovariances (models, n)."""
+    orders = np.array([*map(len, coefficients), 0])  # NumPy adds rows of two columns or more in their order
     most, n = int(orders.max()), covariance.shape[1]
     weights = np.zeros((most, len(orders)))
     padded = np.zeros((most + n, len(orders)))  # with zeros before lag 0

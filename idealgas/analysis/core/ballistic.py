@@ -1,7 +1,7 @@
-"""Velocity quantities along a fall at constant acceleration: values, times at which they are met, and integrals.
+"""Velocity quantities during a fall at constant acceleration: values, times at which they are reached, and integrals.
 
 A fall starts at velocity (vx, vy), length/time, under the acceleration `gravity`, length/time². Quantities are numbered
-as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All but `gravity` may be arrays (n,).
+as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All arguments but `gravity` may be arrays (n,).
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ Gravity = tuple[float, float]
 
 
 def velocity_quantity(quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> np.ndarray:
-    """Value of a quantity at a velocity."""
+    """Return the value of a quantity at a velocity."""
     if quantity == SPEED:
         return np.sqrt(vx * vx + vy * vy)
     if quantity == ALONG_X:
@@ -27,19 +27,19 @@ def velocity_quantity(quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.nd
 def value_during_flight(
     quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
 ) -> np.ndarray:
-    """Value of a quantity at a time after the start of a fall."""
+    """Return the value of a quantity at a time after the start of a fall."""
     return velocity_quantity(quantity, mass, velocity_after(vx, gravity[0], time), velocity_after(vy, gravity[1], time))
 
 
 def changes_during_flight(quantity: int, gravity: Gravity) -> bool:
-    """Whether a quantity changes in a fall: a component of the velocity does not across the acceleration."""
+    """Return whether a quantity changes during a fall; a velocity component across the acceleration does not."""
     if quantity in (ALONG_X, ALONG_Y):
         return gravity[quantity - ALONG_X] != 0.0
     return any(gravity)
 
 
 def turning_time(quantity: int, vx: np.ndarray, vy: np.ndarray, gravity: Gravity) -> np.ndarray:
-    """Time at which a quantity is least in a fall, maybe before its start; infinite if it is monotonic."""
+    """Return the time at which a quantity is smallest, possibly before the start of the fall; infinite if monotonic."""
     if quantity in (ALONG_X, ALONG_Y):
         return np.full_like(vx, np.inf)
     return -(vx * gravity[0] + vy * gravity[1]) / (gravity[0] ** 2 + gravity[1] ** 2)
@@ -54,14 +54,16 @@ def time_at_value(
     vy: np.ndarray,
     gravity: Gravity,
 ) -> np.ndarray:
-    """Time in a fall at which a quantity has a value, after its least value where it `rises`, else before it."""
+    """Return the time at which a quantity has a value, after its minimum if it `rises`, else before it."""
     if quantity == ALONG_X:
         return (value - vx) / gravity[0]
     if quantity == ALONG_Y:
         return (value - vy) / gravity[1]
     square = value * value if quantity == SPEED else 2.0 * value / mass
     a = gravity[0] ** 2 + gravity[1] ** 2
-    across = vx * gravity[1] - vy * gravity[0]  # of the velocity, times √a: unchanged by the fall
+    across = (
+        vx * gravity[1] - vy * gravity[0]
+    )  # velocity across the acceleration, times √a, which the fall does not change
     apart = np.sqrt(np.maximum(square - across * across / a, 0.0) / a)
     return turning_time(quantity, vx, vy, gravity) + np.where(rises, apart, -apart)
 
@@ -69,7 +71,7 @@ def time_at_value(
 def integral_over_fall(
     quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
 ) -> np.ndarray:
-    """Integral of a quantity over a fall of a duration."""
+    """Return the integral of a quantity over a fall of a duration."""
     if quantity == SPEED:
         return path_length(vx, vy, gravity, time)
     if quantity == ALONG_X:

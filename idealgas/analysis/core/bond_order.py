@@ -1,8 +1,8 @@
-"""Bond-orientational order of discs: how well the neighbours of a disc stand at the corners of a regular hexagon.
+"""Bond-orientational order of discs: how well the neighbours of a disc form a regular hexagon.
 
-Neighbours are those of the Voronoi diagram of the centres, and each counts by the length of the edge that the two cells
-share: ψ₆ is then a continuous function of the positions (Mickel, Kapfer, Schröder-Turk & Mecke, J. Chem. Phys. 138,
-044501 (2013)).
+Neighbours are those of the Voronoi diagram of the centres, and each is weighted with the length of the edge that the
+two cells share. ψ₆ is then a continuous function of the positions (Mickel, Kapfer, Schröder-Turk & Mecke, J. Chem.
+Phys. 138, 044501 (2013)).
 """
 
 import math
@@ -17,27 +17,31 @@ FOLD = 6
 """Number of neighbours of a disc in a triangular lattice."""
 
 DENSE = 0.5
-"""Packing fraction from which on a report looks at the order of a gas."""
+"""Packing fraction from which on a report includes the order of a gas."""
 
 MARGIN = 4.0
-"""Width of the border of images that is tried first, in mean distances 1/√n between discs."""
+"""Initial width of the border of images, in mean distances 1/√n between discs."""
 
 SHORTEST = 1e-6
-"""Shortest shared edge of two neighbours that are counted, in mean distances: shorter ones come from rounding, where
-four discs or more stand on a circle."""
+"""Shortest shared edge of two neighbours that counts, in mean distances.
+
+Shorter edges come from rounding if four or more discs lie on a circle.
+"""
 
 SAME = "neighbours cannot be found: two discs have the same position"
 
 ROUNDING = 1e-9
-"""How far outside the box a position may be, in box lengths."""
+"""Largest distance of a position from the box, in box lengths, that is attributed to rounding."""
 
 
 class BondOrder(NamedTuple):
     """Order around each of N discs.
 
-    value: (N,), local ψ₆ = Σ l exp(6iθ)/Σ l over the neighbours, with the length l of the shared edge and the angle θ
-    of the line to the neighbour; complex, 1 in size in a triangular lattice, 0 for a disc without neighbours.
-    neighbours: (N,), number of neighbours.
+    Attributes:
+        value: (N,), local ψ₆ = Σ l exp(6iθ)/Σ l over the neighbours, with the length l of the shared edge and the angle
+            θ of the line to the neighbour; complex. Its modulus is 1 in a triangular lattice and 0 for a disc without
+            neighbours.
+        neighbours: (N,), number of neighbours.
     """
 
     value: np.ndarray
@@ -45,14 +49,14 @@ class BondOrder(NamedTuple):
 
 
 def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]) -> BondOrder:
-    """Local order of the discs at positions (N, 2) in a box.
+    """Return the local order of the discs at positions (N, 2) in a box.
 
-    Along a periodic axis the cells go on in the images of the discs. A side that reflects cuts cells off: it is no
+    Along a periodic axis the cells continue in the images of the discs. A reflecting side cuts cells off: it is not a
     neighbour, and its edges do not count.
 
     Raises:
-        UserError: if the positions have no Voronoi diagram, as those of several discs are the same, or if a disc is not
-            in the box.
+        UserError: if the positions have no Voronoi diagram because several discs have the same position, or if a disc
+            is not in the box.
     """
     if (np.abs(position / box - 0.5) > 0.5 + ROUNDING).any():
         raise UserError("neighbours cannot be found: a disc is outside the box")
@@ -66,7 +70,7 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
         ends, inside = _clipped(ends, low, high)
         pairs = pairs[inside]
         radius = np.hypot(*np.moveaxis(ends - points[pairs[:, :1]], 2, 0))[..., None]
-        known = (ends - radius >= -margin) & (ends + radius <= np.array(box) + margin)  # circles that hide no image
+        known = (ends - radius >= -margin) & (ends + radius <= np.array(box) + margin)  # circles that contain no image
         if known[..., open_sides].all():
             break
         margin *= 2
@@ -76,18 +80,18 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
     bond = points[pairs[:, 1]] - points[pairs[:, 0]]
     turns = edges * np.exp(1j * FOLD * np.arctan2(bond[:, 1], bond[:, 0]))
     total, count, length = np.zeros(number, complex), np.zeros(number, np.int64), np.zeros(number)
-    for side in pairs.T:  # the line has the same 6θ seen from either end
-        own = side < number
-        np.add.at(total, side[own], turns[own])
-        np.add.at(length, side[own], edges[own])
-        np.add.at(count, side[own], 1)
+    for side in pairs.T:  # 6θ of the line is the same from either end
+        of_discs = side < number
+        np.add.at(total, side[of_discs], turns[of_discs])
+        np.add.at(length, side[of_discs], edges[of_discs])
+        np.add.at(count, side[of_discs], 1)
     return BondOrder(np.divide(total, length, out=np.zeros_like(total), where=length > 0), count)
 
 
 def _with_images(
     position: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool], margin: float
 ) -> np.ndarray:
-    """Positions (M, 2) of the discs, then of their images up to `margin` (length) beyond periodic sides."""
+    """Return positions (M, 2) of the discs, then of their images up to `margin` (length) beyond periodic sides."""
     points = position
     for axis, (size, wrapped) in enumerate(zip(box, periodic, strict=True)):
         if wrapped:
@@ -100,9 +104,10 @@ def _with_images(
 
 
 def _edges(points: np.ndarray, number: int, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (E, 2) of points that share an edge, one of them among the first `number`, and the edges' ends (E, 2, 2).
+    """Return pairs (E, 2) of points that share an edge and the ends of the edges (E, 2, 2).
 
-    Four more points, further `away` (2,) from the first one than any place in the box is from a disc, close all cells.
+    One point of each pair is among the first `number`. Four more points close all cells; each is further `away` (2,)
+    from the first point than any position in the box is from a disc.
     """
     frame = points[0] + away * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
     try:
@@ -112,12 +117,15 @@ def _edges(points: np.ndarray, number: int, away: np.ndarray) -> tuple[np.ndarra
     pairs = diagram.ridge_points
     if len(np.unique(pairs)) < len(points) + len(frame):  # a point without a cell
         raise UserError(SAME)
-    own = (pairs < number).any(axis=1) & (pairs < len(points)).all(axis=1)
-    return pairs[own], diagram.vertices[np.array(diagram.ridge_vertices)[own]]
+    of_discs = (pairs < number).any(axis=1) & (pairs < len(points)).all(axis=1)
+    return pairs[of_discs], diagram.vertices[np.array(diagram.ridge_vertices)[of_discs]]
 
 
 def _clipped(ends: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Ends (K, 2, 2) of the parts of edges between coordinates `low` and `high` (2,), and which edges have one (E,)."""
+    """Return the ends (K, 2, 2) of the parts of edges between coordinates `low` and `high` (2,).
+
+    The second result is whether each edge has such a part, (E,).
+    """
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         at = np.stack(((low - start) / along, (high - start) / along))

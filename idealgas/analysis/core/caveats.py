@@ -1,7 +1,7 @@
-"""Caveats of results: conditions for a number to mean what its name says that are not met.
+"""Caveats of results: conditions of a number that are not met.
 
-An analysis tests its own conditions and puts one sentence per unmet condition into its result (`Result`). Those
-that all analyses share, and those of several logs together, are here.
+An analysis tests its own conditions and puts one sentence per unmet condition into its result (`Result`). This module
+contains the caveats that all analyses share, and those of several logs together.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,22 +21,22 @@ from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest,
 Sample = TypeVar("Sample", bound=Any)
 
 MOST = 6
-"""Largest number of caveats of single logs that are kept where many logs are combined."""
+"""Largest number of caveats of single logs that are kept if many logs are combined."""
 
 NAMED = 3
-"""Largest number of logs that one sentence names."""
+"""Largest number of logs that one sentence lists."""
 
 WIDE, WIDE_PERIODIC = 20.0, 5.0
-"""Diameters of the discs by which a box is wide between walls, which take a twentieth of it, and if it is periodic."""
+"""Width of a wide box between walls, which occupy a twentieth of it, and of a wide periodic box, in diameters."""
 
 
 def of_log(log: Log) -> tuple[str, ...]:
-    """Caveats of every average over time of a log: those of its gas and of its method of simulation."""
+    """Return the caveats of every time average of a log: those of its gas and of its simulation method."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
 
 
 def of_paths(log: Log, window: Window) -> tuple[str, ...]:
-    """Caveat of a window in which discs hardly collide with each other, so that nothing but walls mixes their paths."""
+    """Return a caveat if discs hardly collide with each other, so that only walls mix their paths."""
     times, collisions = log.observables["disc_collisions"]
     among = np.diff(np.interp((window.start, window.end), times, collisions))
     if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
@@ -48,7 +48,7 @@ def of_paths(log: Log, window: Window) -> tuple[str, ...]:
 
 
 def of_window(window: Window) -> tuple[str, ...]:
-    """Caveat of a window that is too short for the slowest exchange in its gas."""
+    """Return a caveat if the window is too short for the slowest exchange in its gas."""
     time, process = window.slowest
     if window.duration >= INDEPENDENT * time:
         return ()
@@ -59,7 +59,7 @@ def of_window(window: Window) -> tuple[str, ...]:
 
 
 def origin_of(scene: Scene, path: str) -> Origin:
-    """Run of a scene; path: of its log, or another name for it."""
+    """Return the origin of a run of a scene; path: path of its log, or another name for it."""
     seed = scene.scene.seed if draws_random_numbers(scene) else None
     return Origin(
         path,
@@ -74,7 +74,7 @@ def origin_of(scene: Scene, path: str) -> Origin:
 
 
 def title_of(results: Sequence[Result]) -> str:
-    """Title of the picture of the results of one or several runs: their titles, or how many they are."""
+    """Return the title of the figure of one or several runs: their titles, or their number."""
     titles = list(dict.fromkeys(r.title for r in results))
     if len(titles) > NAMED:
         return f"{len(results)} runs"
@@ -97,7 +97,7 @@ def of_several(results: Sequence[Result]) -> tuple[str, ...]:
 
 
 def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
-    """Caveats on the independence of runs that are averaged.
+    """Return caveats on the independence of runs that are averaged.
 
     Raises:
         UserError: if a run is given twice: the same log, a copy of it, or another log of the same scene and seed.
@@ -120,27 +120,27 @@ def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
 
 
 def must_be_one_gas(results: Sequence[Result], message: str = "different gases") -> None:
-    """Raise UserError if results are of different gases, with the beginning of its message."""
+    """Raise UserError, with a message that starts with `message`, if results are of different gases."""
     if len(gases := {r.origin.gas: r.origin.words for r in results if r.origin is not None}) > 1:
         raise UserError(f"{message} ({'; '.join(gases.values())}): analyse them separately")
 
 
 def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
-    """Kind of gas in words, empty if unknown, and runs of each state, in order of the packing fraction."""
+    """Return the kind of gas in words (empty if unknown) and the runs of each state, in order of φ."""
     states: dict[tuple[float, int, str], list[Sample]] = {}
-    for one in samples:
-        kind = one.origin.kind if one.origin else ""
-        states.setdefault((round(one.packing_fraction, 9), one.number, kind), []).append(one)
+    for sample in samples:
+        kind = sample.origin.kind if sample.origin else ""
+        states.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
     return [(kind, runs) for (_, _, kind), runs in sorted(states.items())]
 
 
 def seeds_of(runs: Iterable[Result]) -> tuple[int, ...]:
-    """Seeds of runs in increasing order, each once; none for those that draw no random numbers."""
+    """Return the seeds of runs in increasing order, each once; runs that draw no random numbers have none."""
     return tuple(sorted({run.origin.seed for run in runs if run.origin and run.origin.seed is not None}))
 
 
 def name_of_state(packing_fraction: float, number: int, kind: str, seeds: Sequence[int]) -> str:
-    """Name of a state of a gas: φ, N, the seeds of its runs and the kind of gas."""
+    """Return the name of a state of a gas: φ, N, the seeds of its runs and the kind of gas."""
     last = f" to {seeds[-1]}" if len(seeds) > NAMED else ""
     listed = f"{seeds[0]}{last}" if last else ", ".join(map(str, seeds))
     of_seeds = [f"seed{'s' * (len(seeds) > 1)} {listed}"] if seeds else []
@@ -148,13 +148,13 @@ def name_of_state(packing_fraction: float, number: int, kind: str, seeds: Sequen
 
 
 def named(paths: Sequence[str]) -> str:
-    """Paths in one line; of many the first few and the number of the others."""
+    """Return paths on one line; long lists are cut: 'a, b, c and 5 more'."""
     rest = len(paths) - NAMED
     return ", ".join(paths[:NAMED]) + (f" and {rest} more" if rest > 0 else "")
 
 
 def narrow(log: Log) -> tuple[str, ...]:
-    """Sentence on a box that is too narrow for theory of a wide one; none for discs without positions."""
+    """Return a caveat if the box is too narrow for theory of a wide one; none for discs without positions."""
     if not log.has_positions:
         return ()
     diameter = 2 * float(log.discs.radius.max())

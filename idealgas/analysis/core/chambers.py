@@ -1,4 +1,4 @@
-"""Chambers into which walls from side to side divide a box, and those of them that hold discs."""
+"""Chambers into which walls from side to side divide a box, and which of them contain discs."""
 
 from collections import defaultdict
 from itertools import pairwise
@@ -12,14 +12,15 @@ from idealgas.scene.walls import walls_inside
 
 
 class Chambers:
-    """Chambers of the box while all of its dividing walls are there, from the start of a log to some time.
+    """Chambers of the box while all of its dividing walls are present, from the start of a log to a given time.
 
-    A row of walls from side to side along x or y that no disc passes, with no gap, divides the box, unless the gas gets
-    past it through a periodic boundary or it may be reached by a piston. Chambers that are empty at the start stay
+    A row of walls from side to side along x or y divides the box if it has no gap and no disc passes it, unless the gas
+    gets past it through a periodic boundary or a piston may reach it. Chambers that are empty at the start remain
     empty.
 
-    cuts: places (K + 1,) of the dividing walls and of the sides along x and y. occupied: (Kx, Ky), whether discs are in
-    the chambers.
+    Attributes:
+        cuts: positions (K + 1,) of the dividing walls and of the sides along x and y.
+        occupied: (Kx, Ky), whether the chambers contain discs.
     """
 
     def __init__(self, log: Log, until: float) -> None:
@@ -31,40 +32,40 @@ class Chambers:
 
     @property
     def area(self) -> float:
-        """Area of the chambers with discs, length²; without solids if discs are in all of them."""
+        """Area of the chambers with discs, length²; without solids if all chambers contain discs."""
         x, y = map(np.diff, self.cuts)
         return float(x @ self.occupied @ y) - self._solid_area * bool(self.occupied.all())
 
     def along(self, side: int) -> np.ndarray:
-        """Whether discs are in each of the chambers along a side of the box."""
+        """Return whether each of the chambers along a side of the box contains discs."""
         return self.occupied.take(-(side % 2), axis=axis_of(side))
 
     def length(self, side: int) -> float:
-        """Length of a side of the box beside chambers with discs; its whole length if there are none."""
+        """Return the length of a side of the box beside chambers with discs; its whole length if there are none."""
         lengths, there = np.diff(self.cuts[1 - axis_of(side)]), self.along(side)
         return float(lengths[there].sum() if there.any() else lengths.sum())
 
     def divided_gas(self, side: int, place: float) -> bool:
-        """Whether discs are at a side on both sides of a wall that meets it at a place, or may be."""
+        """Return whether discs are, or may be, on both sides of a wall that meets a side of the box at a position."""
         cuts, there = self.cuts[1 - axis_of(side)], self.along(side)
         k = int(cuts.searchsorted(place))
         return not (0 < k < len(there) and cuts[k] == place) or bool(there[k - 1] and there[k])
 
 
 def outward(log: Log, piston: PistonTable) -> float:
-    """Direction from the gas to a piston along its axis, +1 or -1; 0 with gas on both its sides."""
+    """Return the direction from the gas to a piston along its axis, +1 or -1; 0 with gas on both sides."""
     directions = set(piston.outward_from(log.discs.position, log.box).tolist())
     return directions.pop() if len(directions) == 1 else 0.0
 
 
 def piston_names(scene: Scene) -> list[str]:
-    """Names of the pistons in tables and pictures, unique: "piston" for a single one, else with side or own name."""
+    """Return unique names of the pistons in tables and figures: "piston" for a single one, else with side or name."""
     walls = [piston.wall for piston in scene.piston]
     return ["piston"] if len(walls) == 1 else [wall if wall == "piston" else f"{wall} piston" for wall in walls]
 
 
 def beside_pistons(log: Log) -> dict[str, np.ndarray]:
-    """Masks (N,) of the discs of each gas beside inner pistons, by the name of the side of the box or the pistons."""
+    """Return masks (N,) of the discs of each gas beside inner pistons, by the name of the side or of the pistons."""
     inner = [
         (piston, name) for piston, name in zip(log.scene.piston, piston_names(log.scene), strict=True) if piston.inner
     ]
@@ -79,7 +80,7 @@ def beside_pistons(log: Log) -> dict[str, np.ndarray]:
 
 
 def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
-    """Places along an axis of the sides of the box and of the walls that divide it, length."""
+    """Return the positions along an axis of the sides of the box and of the walls that divide it, length."""
     if log.scene.piston or log.periodic[axis]:
         return np.array([0.0, log.box[axis]])
     rows: dict[float, list[tuple[float, float]]] = defaultdict(list)
@@ -88,11 +89,11 @@ def _cuts(log: Log, axis: int, until: float) -> np.ndarray:
         if divides and all(opens >= until for opens, _ in wall.absences):
             low, high = sorted((wall.start[1 - axis], wall.end[1 - axis]))
             rows[wall.start[axis]].append((low, high))
-    found = {0.0, log.box[axis]}
+    cuts = {0.0, log.box[axis]}
     for place, parts in rows.items():
         reached = 0.0
         for low, high in sorted(parts):
             reached = max(reached, high) if low <= reached else reached
         if reached >= log.box[1 - axis]:
-            found.add(place)
-    return np.array(sorted(found))
+            cuts.add(place)
+    return np.array(sorted(cuts))

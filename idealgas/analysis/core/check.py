@@ -1,7 +1,7 @@
-"""Whether measurement and theory agree: one rule for headlines, checks, JSON and report pages.
+"""Agreement of measurement and theory: one rule for headlines, checks, JSON and report pages.
 
-Measurement and theory differ if a difference is larger than Student's t allows, with the number of rows taken into
-account. They agree if none is, provided that the samples could have shown otherwise; else the samples are too few.
+Measurement and theory differ if a difference is larger than Student's t allows, given the number of rows. They agree if
+no row differs, provided that the samples could have revealed a difference; otherwise there are too few samples.
 """
 
 import math
@@ -14,22 +14,22 @@ from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Cell, Number, Table
 
 FALSE_ALARM = 1e-3
-"""Chance that a correct gas differs from theory in any row of a comparison, whatever the number of its rows."""
+"""Probability that a correct gas differs from theory in any row of a comparison, whatever the number of rows."""
 
 POWER = 0.95
-"""Chance that a comparison finds the smallest error that it reports as detectable."""
+"""Probability that a comparison finds the smallest error that it reports as detectable."""
 
 FEWEST = 5.0
-"""Least number of independent samples of an estimate that can agree with theory."""
+"""Smallest number of independent samples of an estimate that can agree with theory."""
 
 FEWEST_OF_LAW = 30.0
-"""Least number of independent samples that can agree with a law; the distance that one in twenty exceeds is 0.24."""
+"""Smallest number of independent samples that can agree with a law; one in twenty then has a distance above 0.24."""
 
 ROUGH = 20.0
-"""Number of samples below which a deviation in standard errors is shown with it, as Student's t is wider then."""
+"""Number of samples below which it is printed with a deviation, as Student's t then differs from a normal law."""
 
 NAMED = 3
-"""Largest number of rows with too few samples that a sentence names."""
+"""Largest number of rows with too few samples that a sentence lists."""
 
 VERDICTS = {True: "agrees", False: "differs", None: "too few samples"}
 
@@ -41,7 +41,7 @@ class PValue(NamedTuple):
     samples: float
 
     def agrees(self, rows: int) -> bool | None:
-        """Whether the samples agree with the law, in a comparison of so many rows; None if they are too few to tell."""
+        """Return whether the samples agree with the law, in a comparison of `rows` rows; None if they are too few."""
         if self.value < FALSE_ALARM / rows:
             return False
         return True if self.samples >= FEWEST_OF_LAW else None
@@ -51,8 +51,11 @@ class PValue(NamedTuple):
 class Comparison:
     """One row of a comparison: a measured quantity with its theory, all in the unit of the quantity.
 
-    name: of the quantity. source: which theory. estimate: measurement and theory. rows: number of rows that are
-    compared together.
+    Attributes:
+        name: name of the quantity.
+        source: name of the theory.
+        estimate: measurement and theory.
+        rows: number of rows that are compared together.
     """
 
     name: str
@@ -63,17 +66,17 @@ class Comparison:
     @property
     @reported
     def difference(self) -> float:
-        """Measurement less theory."""
+        """Measurement minus theory."""
         assert self.estimate.theory is not None
         return self.estimate.value - self.estimate.theory
 
     @property
     @reported
     def allowed(self) -> float:
-        """Largest difference without an alarm, which a correct gas exceeds with a probability of FALSE_ALARM / rows.
+        """Largest difference without an alarm; a correct gas exceeds it with a probability of FALSE_ALARM / rows.
 
-        The root of the sum of two squares, by Student's t for the standard error and normal for the error of theory:
-        exact for either alone, and exceeded less often in between.
+        It is the root of the sum of two squares: by Student's t for the standard error, and by the normal distribution
+        for the error of theory. It is exact for either error alone, and exceeded less often for both.
         """
         from scipy import special
 
@@ -82,19 +85,19 @@ class Comparison:
     @property
     @reported
     def detectable(self) -> float:
-        """Smallest error of the measurement that the comparison finds, with a probability of POWER.
+        """Smallest error of the measurement that the comparison finds with a probability of POWER.
 
-        By the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
+        It is from the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
         """
         return self.allowed + self._margin(self.estimate.theory_error)
 
     @property
     @reported
     def agrees(self) -> bool | None:
-        """Whether measurement and theory agree; None if the samples are too few to tell.
+        """Whether measurement and theory agree; None if there are too few samples for a verdict.
 
-        They are if there is no error bar or fewer than FEWEST of them, or if they would not show an error as large as
-        the theory's value, if that is not 0.
+        There are too few if there is no error bar, if there are fewer than FEWEST samples, or if they would not reveal
+        an error as large as a nonzero value of the theory.
         """
         deviation, theory = self.estimate.deviation, self.estimate.theory
         if deviation is None or not math.isfinite(deviation):
@@ -119,7 +122,7 @@ class Comparison:
         return float(special.stdtrit(self._freedom, 1 - self._false_alarm / 2)) * self.estimate.standard_error
 
     def _margin(self, theory_error: float) -> float:
-        """Part of a difference beyond the allowed one that chance takes away with a probability of 1 - POWER."""
+        """Return the part of a difference beyond the allowed one that chance hides with a probability of 1 - POWER."""
         from scipy import special
 
         of_allowed = self._by_student / math.sqrt(2 * self._freedom)
@@ -130,7 +133,9 @@ class Comparison:
 class CheckResult:
     """Result of a check of measurement against theory.
 
-    compared: what was compared with what. why_not: why theory has no value, as part of a sentence.
+    Attributes:
+        compared: compared rows.
+        why_not: why theory has no value, as part of a sentence; None if it has one.
     """
 
     compared: tuple[Comparison, ...] = ()
@@ -144,11 +149,11 @@ class CheckResult:
         return False if False in verdicts else True if True in verdicts else None
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
+        """Return plain values by name, ready for JSON."""
         return as_dict(self)
 
     def tables(self) -> list[Table]:
-        """Table of what was compared with what; none without a theory."""
+        """Return the table of the comparisons; none without theory."""
         heads = ("", "compared with", "difference", "allowed ±", "detectable", "verdict")
         rows: list[Sequence[Cell]] = []
         for row in self.compared:
@@ -158,7 +163,7 @@ class CheckResult:
         return [Table("Check: difference between measurement and theory", heads, rows)] if rows else []
 
     def __str__(self) -> str:
-        """Sentences for people."""
+        """Return the result in sentences."""
         if not self.compared:
             return f"No theory here: {self.why_not}."
         failed = [row.name for row in self.compared if row.agrees is False]
@@ -176,28 +181,28 @@ def check_theory(found: Iterable[tuple[str, str | None, Estimate]], why_not: str
     """Check that every estimate with a theory agrees with it.
 
     Args:
-        found: estimates, each with its name and that of its theory.
-        why_not: why theory has no value, for the case that no estimate has one.
+        found: name, name of the theory, and value of each estimate.
+        why_not: why theory has no value, for the case that no estimate has a theory.
     """
-    known = [(name, source or "theory", one) for name, source, one in found if one.theory is not None]
-    compared = tuple(Comparison(name, source, one, len(known)) for name, source, one in known)
+    known = [(name, source or "theory", value) for name, source, value in found if value.theory is not None]
+    compared = tuple(Comparison(name, source, value, len(known)) for name, source, value in known)
     return CheckResult(compared, None if compared else why_not)
 
 
 def agreement(
     found: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", why_not: str | None = None
 ) -> str:
-    """Whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
+    """Return whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
 
     Args:
-        found: estimates, or tests of laws, by name; of several the one that deviates most is named.
+        found: estimates, or tests of laws, by name; if there are several, the one that deviates most is named.
         theory: name of the theory.
         why_not: why theory has no value, as part of a sentence.
     """
-    known = [(name, one) for name, one in found if isinstance(one, PValue) or one.theory is not None]
+    known = [(name, item) for name, item in found if isinstance(item, PValue) or item.theory is not None]
     if not known:
         return f"no theory here: {why_not}" if why_not else "no theory here"
-    rows = [_row(name, theory, one, len(known)) for name, one in known]
+    rows = [_row(name, theory, item, len(known)) for name, item in known]
     rows = [row for row in rows if row.shown] or rows
     differing, agreeing, few = ([row for row in rows if row.agrees is verdict] for verdict in (False, True, None))
     if len(rows) == 1:
@@ -218,13 +223,17 @@ def agreement(
         )
     if not few:
         return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"
-    others = ", ".join(row.name for row in few) if len(few) <= NAMED else f"{len(few)} of them"
+    undecided = ", ".join(row.name for row in few) if len(few) <= NAMED else f"{len(few)} of them"
     number = f"{len(agreeing)} of {len(rows)} {'agrees' if len(agreeing) == 1 else 'agree'}"
-    return f"{number} with {theory} ({most}), too few samples to tell for {others}"
+    return f"{number} with {theory} ({most}), too few samples to tell for {undecided}"
 
 
 class _Row(NamedTuple):
-    """Verdict on a row: its name, whether it agrees, its deviation as a number and in words, and theory's value."""
+    """Verdict on a row.
+
+    name: name of the row. agrees: whether it agrees. size: its deviation. shown: the deviation in words. value: value
+    of theory.
+    """
 
     name: str
     agrees: bool | None
@@ -233,14 +242,14 @@ class _Row(NamedTuple):
     value: str
 
 
-def _row(name: str, theory: str, found: Estimate | PValue, rows: int) -> _Row:
+def _row(name: str, theory: str, result: Estimate | PValue, rows: int) -> _Row:
     from scipy import special
 
-    if isinstance(found, PValue):
-        size = -float(special.ndtri(found.value / 2))
-        return _Row(name, found.agrees(rows), size, f"p = {found.value:.2g}", "")
-    agrees, deviation = Comparison(name, theory, found, rows).agrees, found.deviation
-    value, samples = f"{found.theory:.5g}", found.independent_samples
+    if isinstance(result, PValue):
+        size = -float(special.ndtri(result.value / 2))
+        return _Row(name, result.agrees(rows), size, f"p = {result.value:.2g}", "")
+    agrees, deviation = Comparison(name, theory, result, rows).agrees, result.deviation
+    value, samples = f"{result.theory:.5g}", result.independent_samples
     if deviation is None:
         return _Row(name, agrees, 0.0, "", value)
     few = f" of {samples:.0f} samples" if samples < ROUGH else ""

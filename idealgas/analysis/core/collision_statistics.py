@@ -1,4 +1,4 @@
-"""Impact parameters of collisions of discs, and numbers of collisions of a disc in a time."""
+"""Impact parameters of collisions of discs, and numbers of collisions of a disc in a given time."""
 
 import numpy as np
 
@@ -10,11 +10,11 @@ from idealgas.log import Flights
 from idealgas.state import Gas
 
 POWERS = 4
-"""Number of power sums, from the number of discs on."""
+"""Number of power sums; the first one is the number of discs."""
 
 
 class ImpactParameters(Intervals):
-    """Impact parameters |b| over the sum of the radii: how far centres pass each other along the relative velocity."""
+    """Impact parameters |b| over the sum of the radii, where b is the offset of the centres across the velocity."""
 
     columns = ("disc", "block", "kind", "partner", "end_velocity", "end_position")
 
@@ -37,19 +37,25 @@ class ImpactParameters(Intervals):
 
 
 class CollisionCounts:
-    """Numbers of collisions of each disc with discs in successive times t, by species, and a sample of them.
+    """Numbers of collisions of each disc with discs in successive intervals of time t, by species, with a sample.
 
-    The times are put together in G groups of the same number of successive ones, at most MOST_BLOCKS. begins: (G,),
-    starts of the groups. counts: (G, S, bins + 2), numbers of discs with 0 to bins - 1 collisions, after a column of
-    zeros, and with more. sums: (G, S, POWERS), Σ n^p over discs, for powers p from 0. sample, sample_index,
-    sample_species: (n,), numbers of collisions, and index and species of their group and disc.
+    The intervals are merged into G groups of the same number of successive intervals, at most MOST_BLOCKS groups.
+
+    Attributes:
+        begins: (G,), starts of the groups.
+        counts: (G, S, bins + 2), numbers of discs with 0 to bins - 1 collisions, after a column of zeros, and with
+            more.
+        sums: (G, S, POWERS), Σ n^p over discs, for powers p from 0.
+        sample: (n,), sampled numbers of collisions.
+        sample_index: (n,), index of their group.
+        sample_species: (n,), species of their disc.
     """
 
     columns = ("disc", "end", "kind")
     cut = False
 
     def __init__(self, time: float, bins: int, stride: int) -> None:
-        """Take the time t, the number of bins, and the number of discs of which one is sampled in turn."""
+        """Take the interval t, the number of bins, and the stride with which discs are sampled in turn."""
         self.time, self.bins, self.stride = time, bins, stride
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
@@ -66,8 +72,8 @@ class CollisionCounts:
 
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
-        some = flights.kind == Kind.DISC
-        disc, index = flights.disc[some], ((flights.end[some] - self._start) / self.time).astype(np.intp)
+        collisions = flights.kind == Kind.DISC
+        disc, index = flights.disc[collisions], ((flights.end[collisions] - self._start) / self.time).astype(np.intp)
         ends = np.append(np.flatnonzero(np.diff(index)) + 1, len(index))
         first = 0
         for end in ends.tolist() if len(index) else ():
@@ -77,14 +83,14 @@ class CollisionCounts:
             first = end
 
     def finish(self) -> None:
-        """Close the last times, and make the sample known."""
+        """Close the last intervals, and set the sample."""
         while self._index < self._times:
             self._close()
         columns = np.concatenate(self._samples, axis=1) if self._samples else np.empty((3, 0))
         self.sample, self.sample_index, self.sample_species = columns[0], columns[1].astype(int), columns[2].astype(int)
 
     def _close(self) -> None:
-        """Count the discs by their numbers of collisions since the time began."""
+        """Count the discs by their numbers of collisions since the interval began."""
         now, v = self._now, self._index
         if v < self._times:
             group = v // self._together
@@ -93,7 +99,7 @@ class CollisionCounts:
             self.counts[group] += np.bincount(place, minlength=species * bins).reshape(species, bins)
             for power in range(POWERS):
                 self.sums[group, :, power] += np.bincount(self._species, now**power, species)
-            some = slice(v % self.stride, None, self.stride)
-            if len(sampled := now[some]):
-                self._samples.append(np.array([sampled, np.full(len(sampled), group), self._species[some]]))
+            chosen = slice(v % self.stride, None, self.stride)
+            if len(sampled := now[chosen]):
+                self._samples.append(np.array([sampled, np.full(len(sampled), group), self._species[chosen]]))
         self._now, self._index = np.zeros_like(now), v + 1

@@ -18,7 +18,7 @@ from idealgas.log import Log
 
 @dataclass(frozen=True)
 class CollisionRate:
-    """Collision rate of one disc of `species` with all discs of the group `other`, see `Gas.partners`, in 1/time."""
+    """Collision rate of one disc of `species` with all discs of the group `other` (see `Gas.partners`), 1/time."""
 
     species: str
     other: str
@@ -29,8 +29,11 @@ class CollisionRate:
 class FreePath:
     """Mean free path, mean free time and mean speed of the discs of one species.
 
-    path: mean length of path between successive collisions of a disc with other discs, length. time: mean time between
-    them, time. speed: mean speed of a disc, length/time.
+    Attributes:
+        species: name of the species.
+        path: mean path between successive collisions of a disc with other discs, length.
+        time: mean time between them, time.
+        speed: mean speed of a disc, length/time.
     """
 
     species: str
@@ -42,8 +45,11 @@ class FreePath:
 class ExpectedRates(NamedTuple):
     """Collision rates Γ_ij of one disc of species i with the discs of group j by theory, with their errors.
 
-    rate: (S, G), 1/time; nan if theory has no value. relative_error: (S, G), relative standard deviation of its error.
-    discs: kinds of discs, see `classes`. of_kinds: the same rates and errors (2, K, K) between kinds.
+    Attributes:
+        rate: (S, G), 1/time; nan if theory has no value.
+        relative_error: (S, G), relative standard deviation of its error.
+        discs: kinds of discs, see `classes`.
+        of_kinds: the same rates and errors (2, K, K) between kinds.
     """
 
     rate: np.ndarray
@@ -52,11 +58,11 @@ class ExpectedRates(NamedTuple):
     of_kinds: np.ndarray
 
     def between(self, i: int, j: int) -> Theory | None:
-        """Rate Γ_ij in 1/time; None if theory has no value."""
+        """Return the rate Γ_ij, 1/time; None if theory has no value."""
         return self._theory(self.rate[i, j], self.relative_error[i, j] * self.rate[i, j])
 
     def of(self, i: int) -> Theory | None:
-        """Rate of the collisions of one disc of species i with all other discs, in 1/time; None without a value."""
+        """Return the rate of collisions of one disc of species i with all other discs, 1/time; None without a value."""
         return self._theory(self.rate[i].sum(), (self.relative_error[i] * self.rate[i]).sum())
 
     @staticmethod
@@ -65,7 +71,7 @@ class ExpectedRates(NamedTuple):
 
 
 def theory_of(log: Log) -> BoxTheory:
-    """Theory of the pressure of a uniform gas, the one of a log, and of the contacts of its kinds of discs."""
+    """Return the theory of the pressure and of the contacts of the kinds of discs of a log, for a uniform gas."""
     discs = classes(log.discs)
     return box_theory(
         discs.radius, discs.number, log.box, log.periodic, ergodic=conserved.is_ergodic(log.scene, log.discs)
@@ -73,14 +79,14 @@ def theory_of(log: Log) -> BoxTheory:
 
 
 def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None) -> ExpectedRates:
-    """Collision rates Γ_ij of one disc of species i with the discs of group j by theory, in 1/time.
+    """Return the collision rates Γ_ij of one disc of species i with the discs of group j by theory, 1/time.
 
-    The product of the contacts per relative speed, from which the pressure follows as well, and of the mean relative
-    speed, which is a little larger at fixed total energy than by Maxwell-Boltzmann's law.
+    A rate is the number of contacts per relative speed, from which the pressure follows as well, times the mean
+    relative speed. The latter is slightly larger at fixed total energy than in the Maxwell-Boltzmann distribution.
 
     Args:
         box: width and height of the box, length.
-        equilibrium: the ensemble that the gas belongs to.
+        equilibrium: ensemble of the gas.
         theory: contacts of the gas from `theory_of`; None for a method whose discs have no positions.
     """
     discs = equilibrium.discs
@@ -98,20 +104,26 @@ def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxT
 def collision_rates(
     discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts | SampledImpacts
 ) -> tuple[CollisionRate, ...]:
-    """Measured collision rates of each species with each group of discs, in 1/time; empty without their numbers.
+    """Return the measured collision rates of each species with each group of discs, 1/time; empty if they are unknown.
 
-    expected: rates by theory, from `expected_rates`. n collisions count as n samples at most.
+    n collisions count as at most n samples.
+
+    Args:
+        discs: species of the gas.
+        expected: rates by theory, from `expected_rates`.
+        window: window of time.
+        impacts: numbers of collisions.
     """
-    counts, others = window.of(impacts.collisions), discs.partners
+    counts, partners = window.of(impacts.collisions), discs.partners
 
     def rate(i: int, j: int) -> Estimate:
         rate = mean(counts[:, i, j] / discs.number[i], theory=expected.between(i, j))
-        of_pairs = 2 if others[j] == discs.name[i] else 1  # a collision of two like discs counts for both
+        of_pairs = 2 if partners[j] == discs.name[i] else 1  # a collision of two like discs counts for both
         number = float(counts[:, i, j].sum()) * window.width / of_pairs
         return replace(rate, independent_samples=min(rate.independent_samples, number))
 
-    species, groups = range(counts.shape[1]), range(len(others))
-    return tuple(CollisionRate(discs.name[i], others[j], rate(i, j)) for i in species for j in groups)
+    species, groups = range(counts.shape[1]), range(len(partners))
+    return tuple(CollisionRate(discs.name[i], partners[j], rate(i, j)) for i in species for j in groups)
 
 
 def free_paths(
@@ -122,25 +134,25 @@ def free_paths(
     moments: Moments,
     impacts: Impacts,
 ) -> tuple[FreePath, ...]:
-    """Mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
+    """Return the mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
 
     expected: collision rates by theory, from `expected_rates`.
     """
     counts, flights, mean_speeds = window.of(impacts.collisions), window.of(moments.flights), equilibrium.mean_speed
     paths = []
     for i, (name, number) in enumerate(zip(discs.name, discs.number, strict=True)):
-        own = counts[:, i].sum(axis=1) / number
+        rates = counts[:, i].sum(axis=1) / number
         speeds = flights[:, i, 0] / number
-        speed, collided = float(mean_speeds[i]), float(own.sum()) * window.width * number
+        speed, collided = float(mean_speeds[i]), float(rates.sum()) * window.width * number
         rate = expected.of(i)
         free_time = rate.inverse() if rate and rate.value else None
         paths.append(
             FreePath(
                 name,
                 path=of_events(
-                    ratio(speeds, own, theory=free_time.times(speed) if free_time and speed else None), collided
+                    ratio(speeds, rates, theory=free_time.times(speed) if free_time and speed else None), collided
                 ),
-                time=of_events(estimate(lambda rate: 1 / rate, own, theory=free_time), collided),
+                time=of_events(estimate(lambda rate: 1 / rate, rates, theory=free_time), collided),
                 speed=mean(speeds, theory=speed or None),
             )
         )
@@ -148,7 +160,10 @@ def free_paths(
 
 
 def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """Mean number (K,) of collisions of a disc from time[0] up to each time; a collision counts for both discs."""
+    """Return the mean number of collisions of a disc from time[0] up to each time, (K,).
+
+    A collision counts for both discs.
+    """
     counts = np.zeros(len(time))
     for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):
         counts += rows.time[rows.partner >= 0].searchsorted(time, "right")

@@ -1,9 +1,9 @@
 """Currents of momentum, energy and species in the whole gas, integrated over blocks of time, from the events of a log.
 
 Between two events a current is constant: Σ m v_a v_b for momentum, Σ (m v²/2) v_a for energy, and for two species the
-mean velocity of the discs of one less that of the other. In a collision of two
-discs, momentum Δp and energy ΔE jump from the centre of one to that of the other: their integrals over time grow by
-Δp_a r_b and ΔE r_a. These sums are the Helfand moments: Helfand, Phys. Rev. 119, 1 (1960).
+difference of their mean velocities. In a collision of two discs, momentum Δp and energy ΔE jump from the centre of one
+disc to that of the other, and their time integrals grow by Δp_a r_b and ΔE r_a. These sums are the Helfand moments:
+Helfand, Phys. Rev. 119, 1 (1960).
 """
 
 import numpy as np
@@ -21,14 +21,15 @@ XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
 """Components of the current: of momentum, of energy, and of one species relative to the other."""
 
 CARRIED, PASSED_ON = range(2)
-"""Part of a current that discs carry as they fly, and part that they pass on in collisions."""
+"""Part of a current that discs carry in flight, and part that collisions transfer."""
 
 
 class Currents:
-    """Time integrals of the currents in each of B blocks; what walls and a heat bath give is not included.
+    """Time integrals of the currents in each of B blocks; contributions of walls and of a heat bath are not included.
 
     flow: (B, 2, 7), parts CARRIED and PASSED_ON of the components XX, XY, YY (energy·time), HEAT_X, HEAT_Y
-    (energy·length), APART_X and APART_Y (length), which are carried only, and 0 unless there are two species.
+    (energy·length), APART_X and APART_Y (length). The last two are only carried, and are 0 unless there are two
+    species.
     """
 
     columns = ("disc", "block", "end", "kind", "partner", "velocity", "new_velocity", "end_position")
@@ -39,7 +40,7 @@ class Currents:
         self._periodic = periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self.edges = edges
         self._flow = np.zeros((2, 7, len(edges) - 1))
         self._box, self._mass, self._share = gas.box, gas.mass, shares(gas)
@@ -67,7 +68,7 @@ class Currents:
         self.flow = np.ascontiguousarray(np.moveaxis(self._flow, 2, 0))
 
     def _flow_until(self, times: np.ndarray, current: np.ndarray) -> None:
-        """Add currents (n, 7) up to times (n,) in order, each from the time before."""
+        """Add currents (n, 7) up to times (n,) in order, each from the previous time."""
         inner = self.edges[(self.edges > self._reached) & (self.edges < times[-1])]
         at = times.searchsorted(inner)
         ends = np.insert(times, at, inner)
@@ -79,7 +80,7 @@ class Currents:
 
 
 def shares(gas: Gas) -> np.ndarray:
-    """Weights (N,) of the discs' velocities in the mean velocity of the first of two species less the other's."""
+    """Return weights (N,) of the velocities of the discs in the difference of the mean velocities of two species."""
     number = np.bincount(gas.species, minlength=len(gas.species_names))
     if len(number) != 2:
         return np.zeros(len(gas))
@@ -87,7 +88,7 @@ def shares(gas: Gas) -> np.ndarray:
 
 
 def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """What each disc carries of the currents, (n, 7)."""
+    """Return the contribution of each disc to the currents, (n, 7)."""
     vx, vy = velocity.T
     px, py = mass * vx, mass * vy
     energy = 0.5 * mass * (vx * vx + vy * vy)
@@ -95,23 +96,23 @@ def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.nda
 
 
 def pressure_tensor(log: Log, equilibrium: Ensemble, theory: BoxTheory, current: np.ndarray) -> dict[str, Estimate]:
-    """Components xx, yy and xy of the pressure tensor of a uniform gas, energy/length², from currents of momentum.
+    """Return components xx, yy and xy of the pressure tensor of a uniform gas, energy/length², from momentum currents.
 
-    By equipartition discs carry NT of xx and of yy, which fluctuates far more than what collisions pass on.
+    By equipartition discs carry NT of xx and of yy; the measured value fluctuates far more than the collisional part.
 
     Args:
         log: log of the gas.
-        equilibrium: ensemble that it belongs to.
-        theory: of the gas in its box.
+        equilibrium: ensemble of the gas.
+        theory: theory of the gas in its box.
         current: currents (B, 2, 3 or more) in blocks of time, energy.
     """
     gas, ideal = log.discs, len(log.discs) * equilibrium.temperature
     along = theory.along_axes(gas.radius, log.box, log.periodic)
-    found = {
+    components = {
         name: mean(1 + current[:, PASSED_ON, k] / ideal, z).times(ideal / gas.area)
         for name, k, z in zip(("xx", "yy"), (XX, YY), along, strict=True)
     }
     shear = current[:, :, XY].sum(axis=1) / gas.area
-    if conserved_momentum(log).sum() == 1:  # momentum along the walls does not flow into them: Σ m y vx is bounded
-        return found | {"xy": mean_of_flux(shear, np.zeros(len(shear)), 0.0)}
-    return found | {"xy": mean(shear, 0.0)}
+    if conserved_momentum(log).sum() == 1:  # walls take no momentum along themselves: Σ m y vx is bounded
+        return components | {"xy": mean_of_flux(shear, np.zeros(len(shear)), 0.0)}
+    return components | {"xy": mean(shear, 0.0)}

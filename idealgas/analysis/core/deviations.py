@@ -22,7 +22,7 @@ class Deviations:
 
     Attributes:
         values: (N, 4, K), deviations δx, δy (length), δvx, δvy (length/time) of each disc, each at the time of its last
-            event; `now` brings all to one time.
+            event; `now` brings all of them to one time.
     """
 
     def __init__(self, log: Log, start: float, values: np.ndarray) -> None:
@@ -40,7 +40,7 @@ class Deviations:
             while first < len(flights.disc):
                 first, pairs, now = _advance(self.values, self._since, columns, first, every, *fixed)
                 waiting += pairs
-                if now >= 0:  # otherwise the batch ended before
+                if now >= 0:  # a negative time means that the batch has ended
                     yield now, waiting
                     waiting = 0
             rows += len(flights.disc)
@@ -48,7 +48,7 @@ class Deviations:
                 progress(rows, max(rows, len(log)))
 
     def now(self, time: float) -> np.ndarray:
-        """Deviations (N, 4, K) at a time after the last event."""
+        """Return the deviations (N, 4, K) at a time after the last event."""
         _synchronise(self.values, self._since, time)
         return self.values
 
@@ -56,15 +56,15 @@ class Deviations:
 def sensitivity(
     log: Log, start: float | None = None, end: float | None = None, discs: list[int] | None = None
 ) -> np.ndarray:
-    """Derivatives of the state of all discs at one time with respect to the state of some at an earlier time.
+    """Return the derivatives of the state of all discs at one time by the state of some discs at an earlier time.
 
-    Exact for the recorded motion; after some collisions per disc they are large, as the motion is chaotic.
+    They are exact for the recorded motion. As the motion is chaotic, they are large after some collisions per disc.
 
     Args:
         log: log with events, as for the analysis `lyapunov`.
         start: the earlier time; by default the start of the log.
         end: the later time; by default the end of the log.
-        discs: ids of the discs whose state at the start is varied; all by default.
+        discs: ids of the discs whose initial state is varied; by default all.
 
     Returns:
         (N, 4, D, 4): component (x, y, vx, vy) of each disc by component of each of the D varied discs.
@@ -75,7 +75,7 @@ def sensitivity(
     must_have_tangent_map(log)
     number = len(log.discs)
     varied = list(range(number)) if discs is None else list(discs)
-    if unknown := [one for one in varied if not 0 <= one < number]:
+    if unknown := [disc for disc in varied if not 0 <= disc < number]:
         raise UserError(f"discs: no disc {unknown[0]} (allowed 0 to {number - 1})")
     if 16 * number * len(varied) > MOST_NUMBERS:
         raise UserError(f"discs: too many (got {len(varied)}; allowed <= {MOST_NUMBERS // (16 * number)})")
@@ -99,9 +99,9 @@ def must_have_tangent_map(log: Log) -> None:
 
 @njit
 def _advance(deviations, since, columns, first, most, masses, box, periodic, gravity):
-    """Take deviations through events from row `first` on, until there were `most` in this call or the rows end.
+    """Propagate deviations through events from row `first` on, up to `most` event rows or the end of the rows.
 
-    Returns the next row, the number of collisions of two discs, and the time of the last event; -1 if the rows ended.
+    Return the next row, the number of collisions of two discs, and the time of the last event, or -1 if the rows ended.
     """
     disc, end, kind, partner, velocity, position = columns
     row, pairs = first, 0
@@ -111,9 +111,9 @@ def _advance(deviations, since, columns, first, most, masses, box, periodic, gra
         i = disc[row]
         if kind[row] == Kind.DISC:
             j = disc[row + 1]
-            for one in (i, j):
-                fly(deviations, one, end[row] - since[one])
-                since[one] = end[row]
+            for k in (i, j):
+                fly(deviations, k, end[row] - since[k])
+                since[k] = end[row]
             x, y = position[row, 0] - position[row + 1, 0], position[row, 1] - position[row + 1, 1]
             if periodic[0]:
                 x -= box[0] * np.rint(x / box[0])
@@ -135,7 +135,7 @@ def _advance(deviations, since, columns, first, most, masses, box, periodic, gra
 
 @njit
 def _synchronise(deviations, since, now):
-    """Move the deviations of all discs to one time."""
+    """Propagate the deviations of all discs to one time."""
     for i in range(len(since)):
         fly(deviations, i, now - since[i])
         since[i] = now

@@ -1,4 +1,4 @@
-"""Conserved quantities of a gas, and its equilibrium: whether it comes to one, and how discs share the energy there."""
+"""Conserved quantities of a gas, and its equilibrium: whether the gas has one, and how discs share the energy in it."""
 
 import math
 from collections.abc import Sequence
@@ -19,71 +19,71 @@ UNLIKELY = 1e-5
 FAR = 0.0455
 """Probability that any temperature of a gas in equilibrium is, at one instant, above the upper bound on its mean.
 
-To lie below the lower bound is as probable. Beyond them, energy is exchanged more slowly than the log is long, and
-error bars from the log are too small. Of the two temperatures of one species of many discs these are 2 standard
-deviations at an instant.
+The probability for the lower bound is the same. Beyond the bounds, energy is exchanged more slowly than the log is
+long, and error bars from the log are too small. For the two temperatures of one species of many discs, the bounds are
+two standard deviations at an instant.
 """
 
 ON_A_LINE = 8
-"""Number of discs of a species from which on a temperature may be too low; fewer may move along a line all the time."""
+"""Smallest number of discs of a species whose temperature may be too low; fewer may always move along a line."""
 
 ROUNDING = 1e-9
 """Relative change below which a quantity is constant."""
 
 
 def conserved_momentum(log: Log) -> np.ndarray:
-    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool; see `conserved`."""
+    """Return whether the total momentum of the discs is conserved along x and y, (2,) bool; see `conserved`."""
     return conserved.conserved_momentum(log.scene)
 
 
 def centre_of_mass_velocity(log: Log) -> np.ndarray:
-    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved."""
+    """Return the velocity of the centre of mass, (2,), length/time; 0 along axes where momentum is not conserved."""
     return conserved.centre_of_mass_velocity(log.scene, log.discs)
 
 
 def centre_of_mass_energy(log: Log) -> float:
-    """Kinetic energy of the motion of the whole gas that is conserved, energy."""
+    """Return the kinetic energy of the conserved motion of the whole gas, energy."""
     return conserved.centre_of_mass_energy(log.scene, log.discs)
 
 
 def degrees_of_freedom(log: Log) -> int:
-    """Number D of directions of motion of all discs, without those of a momentum that is conserved."""
+    """Return the number D of directions of motion of all discs, minus those whose momentum is conserved."""
     return conserved.degrees_of_freedom(log.scene, log.discs)
 
 
 def ensemble(log: Log) -> Ensemble:
-    """Ensemble of the gas of a log.
+    """Return the ensemble of the gas of a log.
 
     Raises:
         UserError: if the effects of the scene leave the temperature in equilibrium unknown.
     """
-    found = known_ensemble(log)
-    if found is None:
+    known = known_ensemble(log)
+    if known is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
         alone = "for a single disc, which shares it with no other"
         changing = "where values change in time" if log.scene.properties.varies else ""
         given = f"under {', '.join(causes)}" if causes else changing or alone
         raise NotApplicableError(f"{log.path}: no temperature is known beforehand {given}")
-    return found
+    return known
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """Ensemble of the gas of a log; None if its scene leaves it unknown (`theory.ensemble.equilibrium`)."""
+    """Return the ensemble of the gas of a log; None if its scene leaves it unknown (`theory.ensemble.equilibrium`)."""
     return ensembles.equilibrium(log.scene, log.discs, _spin_energy(log))
 
 
 def column_temperature(log: Log, axis: int) -> float | None:
-    """Temperature of the gas of a log under gravity along `axis`; None if unknown (`theory.ensemble`)."""
+    """Return the temperature of the gas of a log under gravity along `axis`; None if unknown (`theory.ensemble`)."""
     return ensembles.column_temperature(log.scene, log.discs, _spin_energy(log), axis)
 
 
 def column_profiles(log: Log, axis: int) -> list[ColumnProfile]:
-    """Density and temperature by height of an isolated gas under gravity along `axis` (`theory.ensemble`)."""
+    """Return density and temperature by height of an isolated gas under gravity along `axis` (`theory.ensemble`)."""
     return ensembles.column_profiles(log.scene, log.discs, _spin_energy(log), axis)
 
 
 def tends_to_equilibrium(log: Log) -> bool:
-    """Whether discs exchange energy, so that their speeds tend to the Maxwell-Boltzmann distribution."""
+    """Return whether discs exchange energy, so that their speeds approach the Maxwell-Boltzmann distribution."""
     if not log.scene.properties.isolated:
         return True
     _, collisions = log.observables["disc_collisions"]
@@ -91,21 +91,21 @@ def tends_to_equilibrium(log: Log) -> bool:
 
 
 def _spin_energy(log: Log) -> float:
-    """Energy of the spins of all discs at the start, energy."""
+    """Return the initial energy of the spins of all discs, energy."""
     if log.inertia is None or (spin := log.state_at(log.start_time).angular_velocity) is None:
         return 0.0
     return float(log.inertia @ spin**2) / 2
 
 
 def nonstationary_reason(log: Log) -> str:
-    """Why a gas never comes to a stationary state, as part of a sentence; empty if nothing is known to prevent it.
+    """Return why a gas never becomes stationary, as part of a sentence; empty if nothing is known to prevent it.
 
     Such a gas is driven by a moving wall, or loses or gains energy without a balance.
     """
     scene, properties = log.scene, log.scene.properties
     keeps_energy = properties.collisions_conserve_energy and properties.isolated
     if properties.shear and not keeps_energy:
-        return ""  # heat bath or collisions take out what shear brings
+        return ""  # a heat bath or collisions remove the heat of the shear
     if properties.driven:
         return f"the gas is driven ({', '.join(scene.lacking('fixed_walls'))})"
     if any(properties.free_fall_axes) and (properties.frictionless or keeps_energy):
@@ -121,7 +121,7 @@ def nonstationary_reason(log: Log) -> str:
 
 
 def nonequilibrium_reason(log: Log) -> str:
-    """Why a gas never comes to equilibrium, as part of a sentence; empty if nothing is known to prevent it."""
+    """Return why a gas never comes to equilibrium, as part of a sentence; empty if nothing is known to prevent it."""
     if why := nonstationary_reason(log):
         return why
     scene, properties = log.scene, log.scene.properties
@@ -146,17 +146,17 @@ def nonequilibrium_reason(log: Log) -> str:
 
 
 def equipartition_violation(log: Log, energies: np.ndarray) -> str:
-    """Why the energy of a gas is not shared as in equilibrium, as part of a sentence; empty if it may be.
+    """Return why the energy of a gas is not shared as in equilibrium, as part of a sentence; empty if it may be.
 
-    energies: (B, S, 2), sums of m vx² and of m vy² over the discs of each species in blocks of time, energy; or
-    (B, 1, 2), over all discs. Velocities are relative to the gas as a whole where nothing stops that.
+    energies: (B, S, 2), sums of m vx² and of m vy² over the discs of each species in blocks of time, energy; or (B, 1,
+    2), over all discs. Velocities are relative to the gas as a whole along axes where its momentum is conserved.
     """
     ensemble, gas = known_ensemble(log), composition(log.discs)
     from scipy import special
 
     if ensemble is None or not conserved.is_ergodic(log.scene, log.discs):
         return ""
-    if len(log.discs) == 1 and ensemble.dof < math.inf:  # it has no other to share with
+    if len(log.discs) == 1 and ensemble.dof < math.inf:  # no other disc to share its energy with
         return ""
     number = gas.number[:, None]
     expected, names = number * ensemble.of_axes, [f" of {name}" for name in gas.name]
@@ -169,7 +169,7 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
     for s, name in enumerate(names):
         for axis, letter in enumerate("xy"):
             theory = float(expected[s, axis] / number[s, 0])
-            if theory == 0:  # of fixed discs
+            if theory == 0:  # fixed discs
                 continue
             warmth = mean(energies[:, s, axis] / number[s], theory)
             dof, deviation = max(warmth.independent_samples - 1, 1.0), abs(warmth.deviation or 0.0)
@@ -181,18 +181,18 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
 
 
 def becomes_uniform(log: Log, start: float | None) -> bool:
-    """Whether the gas in equilibrium is the same everywhere from time `start` on; None for the time of equilibrium.
+    """Return whether the gas in equilibrium is uniform from time `start` on; None for the time of equilibrium.
 
-    Walls inside the box do not count once they all are gone for good.
+    Walls inside the box do not count once all of them are gone for good.
     """
     gone = log.scene.properties.last_wall_removed_at
     walls_are_gone = 0 < gone < log.end_time and (start is None or start >= gone)
     uneven = [effect.properties for effect in log.scene.active_effects if not effect.properties.uniform]
-    return all(walls_are_gone and not one.empty for one in uneven)
+    return all(walls_are_gone and not effect.empty for effect in uneven)
 
 
 def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
-    """Refuse a log whose scene lacks a needed property, or, without a given start, whose gas never becomes stationary.
+    """Refuse a log whose scene lacks a needed property or, without a given start, whose gas never becomes stationary.
 
     Raises:
         NotApplicableError: in both cases.
@@ -213,12 +213,12 @@ def must_be_shared(log: Log, energies: np.ndarray) -> None:
 
 
 def kind_of_state(log: Log) -> str:
-    """State that a gas reaches: "equilibrium", or "steady state" if energy flows through it."""
+    """Return the state that a gas reaches: "equilibrium", or "steady state" if energy flows through it."""
     return "steady state" if nonequilibrium_reason(log) else "equilibrium"
 
 
 def not_steady(log: Log, why: str) -> NotApplicableError:
-    """Error for a gas that does not reach its state, with the commands that apply; why: part of a sentence."""
+    """Return the error for a gas that does not reach its state, with commands that apply; why: part of a sentence."""
     state = "equilibrium" if nonstationary_reason(log) else kind_of_state(log)
     return NotApplicableError(
         f"{log.path}: no {state}, as {why}: `idealgas evolution` follows it in time; --from T sets a start by hand"

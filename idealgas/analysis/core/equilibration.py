@@ -1,11 +1,11 @@
-"""Window of time that an analysis uses: given by the user, or from the time on at which equilibrium is detected.
+"""Window of time that an analysis uses: given by the user, or starting at the detected equilibrium.
 
 The start of a run is tested against the rest, as by Heidelberger & Welch (Oper. Res. 31, 1109 (1983)), with errors from
-autoregressive models of the last blocks or, if smaller, the fluctuations of the known ensemble. A transient can be as
-short as a few collisions per disc: means of stretches of 1, 2, 4, … blocks are compared, for each of the observables.
+autoregressive models of the last blocks or, if smaller, the fluctuations of the known ensemble. As a transient can be
+as short as a few collisions per disc, means of stretches of 1, 2, 4, … blocks are compared for each of the observables.
 
-The start with the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)) leaves out
-these transients too, but more than a tenth of every fourth short run of a steady gas.
+The start with the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)) also discards
+these transients, but discards more than a tenth of every fourth short run of a steady gas.
 """
 
 import math
@@ -32,36 +32,40 @@ from idealgas.analysis.core.stream import Tally, block_edges, stream
 from idealgas.log import Log
 
 LEAST_TESTED = 16
-"""Least number of blocks in which a transient is looked for."""
+"""Smallest number of blocks in which a transient is looked for."""
 
 LEVEL = 0.1
 """Largest probability that a steady gas loses a part of its start; that of losing ℓ blocks is proportional to 1/ℓ."""
 
 REFERENCE = 64
-"""Number of last blocks from which fluctuations are known; the last quarter if it has more, at most the last half."""
+"""Number of last blocks that determine the fluctuations; if larger, the last quarter, but at most the last half."""
 
 STARTS = 33
 """Number of starts that are tried in the first half, evenly spaced in the logarithm of time."""
 
 MARGIN = 2
-"""Ratio of the start to the time at which a transient disappears in the fluctuations, below which it continues."""
+"""Ratio of the start to the time at which a transient vanishes in the fluctuations, below which it continues."""
 
 MEMORIES = 10.0
-"""Correlation times after which a gas has forgotten its initial positions, where its equilibrium is not known."""
+"""Number of correlation times after which a gas has lost its initial positions, if its equilibrium is not known."""
 
 FEWEST_SAMPLES = 4.0
-"""Least number of independent samples with which a series counts as longer than its fluctuations."""
+"""Smallest number of independent samples of a series that is longer than its fluctuations."""
 
 _KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float, float, bool], tuple[int, Exchange]]] = WeakKeyDictionary()
-"""First block of the steady gas of a log and its slowest exchange, by the number of event rows and what was asked."""
+"""First block of the steady gas of a log and its slowest exchange, by the number of event rows and the request."""
 
 
 @dataclass(frozen=True)
 class Window:
     """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
-    edges: (B + 1,), times between the blocks. first: index of the first block used. detected: whether it was detected.
-    state: what was detected, "equilibrium" or "steady state"; see `kind_of_state`. slowest: see `slowest_exchange`.
+    Attributes:
+        edges: (B + 1,), times between the blocks.
+        first: index of the first block used.
+        detected: whether the start was detected.
+        state: the detected state, "equilibrium" or "steady state"; see `kind_of_state`.
+        slowest: slowest exchange in the gas; see `slowest_exchange`.
     """
 
     edges: Annotated[np.ndarray, OMITTED]
@@ -94,15 +98,15 @@ class Window:
 
     @property
     def memory(self) -> float:
-        """Number of blocks per independent one by the slowest exchange."""
+        """Number of blocks per independent block by the slowest exchange."""
         return self.slowest.time / self.width
 
     def of(self, sums: np.ndarray) -> np.ndarray:
-        """Sums (B, …) of a tally for the blocks of the window, divided by the width of a block: rates per time."""
+        """Return the sums (B, …) of a tally in the blocks of the window over the width of a block: rates per time."""
         return sums[self.first :] / self.width
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
+        """Return plain values by name, ready for JSON."""
         return as_dict(self)
 
 
@@ -116,7 +120,7 @@ def measure(
 ) -> Window:
     """Read the events of a log between two times into tallies, and return the window of time to use.
 
-    Without `start` the window begins where equilibrium is detected, at one time for all analyses of a log.
+    Without `start` the window begins at the detected equilibrium, at the same time for all analyses of a log.
 
     Args:
         log: the log to read.
@@ -127,7 +131,8 @@ def measure(
         needs: properties of a scene (`idealgas.effects.properties`) that the analysis relies on.
 
     Raises:
-        UserError: if the log has no events in the window, the gas lacks a needed property, or does not become steady.
+        UserError: if the log has no events in the window, or if the gas lacks a needed property or does not become
+            steady.
     """
     must_apply(log, start, needs)
     edges, detected = block_edges(log, start, end), start is None
@@ -150,13 +155,13 @@ def measure(
 
 
 class _Series(NamedTuple):
-    """Series of n blocks and its fluctuations, which are known from a reference, its last r blocks.
+    """Series of n blocks and its fluctuations, which are determined from a reference, its last r blocks.
 
     Attributes:
         sums: (n + 1,), running sums of the deviations from the mean of the reference.
         variance: (r,), variances of means of 1 to r blocks.
         dof: degrees of freedom of the variance of long means.
-        memory: number of blocks per independent one.
+        memory: number of blocks per independent block.
         most: largest variance of a mean.
     """
 
@@ -167,7 +172,7 @@ class _Series(NamedTuple):
     most: float
 
     def agrees(self, start: int, level: float, floor: float = 0.0) -> bool:
-        """Whether the means of all stretches that begin at `start` agree with the mean of the later half of the rest.
+        """Return whether the means of all stretches from `start` on agree with the mean of the later half of the rest.
 
         The variance of a mean of few blocks has more degrees of freedom than that of many: one for each such stretch. A
         steady series disagrees with the probability `level`: half of it in one block, a quarter in two, and so on. The
@@ -182,53 +187,53 @@ class _Series(NamedTuple):
         difference = (self.sums[start + lengths] - self.sums[start]) / lengths - rest
         single, later = self.variance[np.minimum(lengths, known) - 1], self.variance[min(n - middle, known) - 1]
         dof = np.maximum(self.dof, known / np.maximum(lengths, self.memory) - 1)
-        chance = level / lengths / 4  # half of the level, and of that on either side
+        chance = level / lengths / 4  # half of the level, and a half of that on either side
         by_series = special.stdtrit(dof, chance) ** 2 * np.maximum(single + later, floor)
         by_theory = special.ndtri(chance) ** 2 * (self.most + min(later, self.most))
         return bool((difference**2 <= np.minimum(by_series, by_theory)).all())
 
 
 def detect_equilibration(series: Iterable[Observable]) -> int | None:
-    """Index from which on all series are steady; None if they are not from any start in their first half on."""
-    varied = [one for one in series if np.ptp(one.values) > ROUNDING * np.abs(one.values).max()]
+    """Return the index from which on all series are steady; None if there is no such index in their first half."""
+    varied = [item for item in series if np.ptp(item.values) > ROUNDING * np.abs(item.values).max()]
     if not varied or (n := len(varied[0].values)) < LEAST_TESTED:
         return 0
     level, half = LEVEL / len(varied), n // 2
-    tested = [(_tested(one, max(n // 4, min(half, REFERENCE))), one.least) for one in varied]
-    informative = [one for one, least in tested if not least or not one.agrees(0, level, least)]
+    tested = [(_tested(item, max(n // 4, min(half, REFERENCE))), item.least) for item in varied]
+    informative = [item for item, least in tested if not least or not item.agrees(0, level, least)]
     starts = np.unique(np.append(0, np.geomspace(1, half, STARTS).astype(int)))
     for start in starts.tolist():
-        if all(one.agrees(start, level) for one in informative):
+        if all(item.agrees(start, level) for item in informative):
             return min(MARGIN * start, half)
     return None
 
 
-def _tested(found: Observable, reference: int) -> _Series:
-    """Series to test, with the fluctuations of its last `reference` blocks about a linear trend."""
-    values = found.values
+def _tested(observable: Observable, reference: int) -> _Series:
+    """Return the series to test, with the fluctuations of its last `reference` blocks about a linear trend."""
+    values = observable.values
     last = values[len(values) - reference :]
     sums = np.append(0.0, np.cumsum(values - last.mean()))
     time = np.arange(reference) - (reference - 1) / 2
     residual = last - last.mean() - time * float(time @ last) / float(time @ time)
     rounding = (ROUNDING * float(np.abs(values).max())) ** 2
     if is_constant(residual):
-        return _Series(sums, np.full(reference, rounding), math.inf, 1.0, found.most)
+        return _Series(sums, np.full(reference, rounding), math.inf, 1.0, observable.most)
     process = process_of(residual)
     samples = process.spread().samples
     dof = max(samples - 2, 1.0)
     covariance = process.covariances(reference) * samples / dof  # mean and trend take two degrees of freedom
     variance = np.maximum(variance_of_mean(covariance), rounding)
-    return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0), found.most)
+    return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0), observable.most)
 
 
 def memory_time(series: Iterable[np.ndarray]) -> float:
-    """Longest correlation time of series (n,), number of samples."""
+    """Return the longest correlation time of series (n,), number of samples."""
     varied = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
-    return max((error_of_mean(one).error ** 2 * len(one) / (2 * one.var()) for one in varied), default=0.0)
+    return max((error_of_mean(x).error ** 2 * len(x) / (2 * x.var()) for x in varied), default=0.0)
 
 
 def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
-    """Sentence on a series (n,) at times (n,) whose mean is taken though more than its first tenth is not steady."""
+    """Return a caveat on a series (n,) at times (n,) that is averaged, if it is not steady after its first tenth."""
     first, samples = detect_equilibration([Observable(series)]), error_of_mean(series).samples
     if first is not None and first > len(series) // 10:
         return (
@@ -243,32 +248,40 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
     return ()
 
 
-# ── what a log allows ──
+# ── steady part of a log ──
 
 
 def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable]) -> int:
-    """Index of the first block from which on all series of B blocks of a log are steady, after its last change.
+    """Return the index of the first block after the last change of the scene from which on all series are steady.
 
-    Where its equilibrium is not known, the gas is given MEMORIES correlation times to forget its initial positions.
-    edges: (B + 1,), times between the blocks, or times of B samples. Raises NotApplicableError if they are not steady.
+    If its equilibrium is not known, the gas is given MEMORIES correlation times to lose its initial positions.
+
+    Args:
+        log: log of the gas.
+        edges: (B + 1,), times between the blocks, or times of B samples.
+        series: observables in the B blocks.
+
+    Raises:
+        NotApplicableError: if the series do not become steady.
     """
     begin = after_changes(log, edges)
-    rest = [one._replace(values=one.values[begin:]) for one in series]
+    rest = [item._replace(values=item.values[begin:]) for item in series]
     first = detect_equilibration(rest)
     if first is None:
         raise not_steady(log, "it still changes in the second half of the log")
     if known_ensemble(log) is None:
-        memory = math.ceil(MEMORIES * memory_time(one.values[first:] for one in rest if not one.least))
+        memory = math.ceil(MEMORIES * memory_time(item.values[first:] for item in rest if not item.least))
         first = max(first, min(memory, len(rest[0].values) // 2))
     return begin + first
 
 
 def after_changes(log: Log, edges: np.ndarray) -> int:
-    """Index of the first block after the last change in time of the scene; 0 without any.
+    """Return the index of the first block after the last change in time of the scene; 0 without changes.
 
     edges: (B + 1,), times between the blocks.
 
-    Raises NotApplicableError if so few blocks are left that nothing can be said of them.
+    Raises:
+        NotApplicableError: if too few blocks follow the last change.
     """
     changes = [time for time in log.scene.properties.changes if edges[0] < time < edges[-1]]
     if not changes:

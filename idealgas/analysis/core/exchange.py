@@ -1,7 +1,7 @@
 """Times in which heat, discs and energy are exchanged across a gas or through its inner pistons, by kinetic theory.
 
-What differs from place to place decays in its slowest wave, and the states of a gas are independent only when it has.
-A log that contains few such times does not show how far a profile or a temperature fluctuates.
+Differences between parts of a gas decay in its slowest wave, and its states are independent only after this decay. A
+log that contains few such times does not show how far a profile or a temperature fluctuates.
 """
 
 import math
@@ -18,14 +18,15 @@ from idealgas.analysis.theory.ensemble import classes
 from idealgas.log import Log
 
 INDEPENDENT = 42.0
-"""Times of the slowest exchange that a window must contain for errors to be right (to 10 %)."""
+"""Number of times of the slowest exchange that a window must contain for errors to be right (to 10 %)."""
 
 
 class Exchange(NamedTuple):
     """An exchange within a gas.
 
-    time: after which states are independent, at least twice the correlation time; 0 if nothing is exchanged. process:
-    what happens in it, in words.
+    Attributes:
+        time: time after which states are independent, at least twice the correlation time; 0 without an exchange.
+        process: description of the process in words.
     """
 
     time: float
@@ -33,17 +34,18 @@ class Exchange(NamedTuple):
 
 
 NOTHING = Exchange(0.0, "")
-"""No exchange that is slow."""
+"""No slow exchange."""
 
 
 def across(log: Log, axis: int) -> Exchange:
     """Return the slowest exchange of heat or, in a mixture, of discs across the box along an axis.
 
-    In the time L²/2D diffusion spreads by the length L (rms), with the thermal diffusivity or the diffusion coefficient
-    D by Enskog's theory: L is that between walls, half of the longest wave, and half of the length if it is periodic.
-    That wave has a correlation time L²/π²D, and densities and temperatures of strips contain all of it, most of all
-    beside walls, where its amplitude is largest: errors there have the fewest degrees of freedom. A mixture conducts
-    heat like equal discs of its packing fraction and mean mass, and its slowest discs diffuse.
+    In the time L²/2D diffusion spreads by the length L (rms), where D is the thermal diffusivity or the diffusion
+    coefficient by Enskog's theory. L is the distance between walls, which is half of the longest wave, or half of the
+    length of a periodic box. The longest wave has a correlation time L²/π²D. Densities and temperatures of strips
+    contain all of it, most of all beside walls, where its amplitude is largest: errors there have the fewest degrees of
+    freedom. A mixture conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs
+    diffuse.
     """
     gas, temperature = log.discs, _temperature(log)
     moving = ~are_fixed(gas.mass)
@@ -65,7 +67,7 @@ def across(log: Log, axis: int) -> Exchange:
 
 
 def through_pistons(log: Log) -> Exchange:
-    """Slowest exchange of energy between gases through inner pistons that have a mass."""
+    """Return the slowest exchange of energy between gases through inner pistons that have a mass."""
     if (gases := _gases_in_a_row(log)) is None:
         return NOTHING
     rate = adiabatic_piston.slowest_rate(gases.conductance, gases.capacity)
@@ -73,17 +75,17 @@ def through_pistons(log: Log) -> Exchange:
 
 
 def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: float) -> Estimate:
-    """Return the mean temperature of a part of a gas with an error that contains the exchange through pistons.
+    """Return the mean temperature of a part of a gas with an error that includes the exchange through pistons.
 
-    In a window of less than INDEPENDENT times the exchange its error is at least that by theory. Gases with one
-    pressure and one energy have temperatures of variances T² (1/C - 1/ΣC), with their heat capacities C at constant
-    pressure, which are correlated over the time of the exchange.
+    If the window is shorter than INDEPENDENT times the exchange, the error is at least that by theory. Gases of equal
+    pressure with a fixed total energy have temperatures with variances T² (1/C - 1/ΣC), where C are their heat
+    capacities at constant pressure; the temperatures are correlated over the time of the exchange.
 
     Args:
         estimate: mean over a window, with its error by the fluctuations in the window, energy.
         log: log of the gas.
         discs: (N,), whether a disc belongs to the part.
-        duration: of the window, time.
+        duration: duration of the window, time.
     """
     time, gases = through_pistons(log).time, _gases_in_a_row(log)
     if gases is None or not log.scene.properties.isolated or duration >= INDEPENDENT * time:
@@ -101,8 +103,11 @@ def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: floa
 class _Gases(NamedTuple):
     """Gases in a row with pistons between them.
 
-    chamber: (N,), number of the gas of each disc. conductance: (K,), of the pistons, 1/time. capacity: (K + 1,), heat
-    capacities of the gases at constant pressure. temperature: mean over all discs, energy.
+    Attributes:
+        chamber: (N,), number of the gas of each disc.
+        conductance: (K,), conductance of each piston, 1/time.
+        capacity: (K + 1,), heat capacities of the gases at constant pressure.
+        temperature: mean temperature of all discs, energy.
     """
 
     chamber: np.ndarray
@@ -112,7 +117,7 @@ class _Gases(NamedTuple):
 
 
 def _gases_in_a_row(log: Log) -> _Gases | None:
-    """Gases beside the inner pistons that have a mass; None without such pistons, and for discs at rest."""
+    """Return the gases beside the inner pistons that have a mass; None without such pistons, and for discs at rest."""
     pistons, temperature = log.scene.piston, _temperature(log)
     inner = [k for k, piston in enumerate(pistons) if piston.inner and piston.mass]
     if not inner or not temperature > 0:
@@ -128,7 +133,7 @@ def _gases_in_a_row(log: Log) -> _Gases | None:
     number, solid = (np.bincount(chamber, weight, len(cuts) - 1) for weight in (None, math.pi * gas.radius**2))
     fraction = np.clip(solid / (np.diff(cuts) * log.box[1 - axis]), 0.0, hard_discs.HIGHEST)
     z = hard_discs.compressibility_factor(fraction)
-    force = (z * temperature / np.diff(cuts))[chamber]  # of each disc
+    force = (z * temperature / np.diff(cuts))[chamber]  # for each disc
     conductance = np.zeros(len(inner))
     for k, piston in enumerate(inner):
         each = adiabatic_piston.conductance(temperature, temperature, force, gas.mass, pistons[piston].mass or 0.0)
@@ -138,7 +143,7 @@ def _gases_in_a_row(log: Log) -> _Gases | None:
 
 
 def _temperature(log: Log) -> float:
-    """Mean kinetic energy of a moving disc over the whole log, energy."""
+    """Return the mean kinetic energy of a moving disc over the whole log, energy."""
     moving = int((~are_fixed(log.discs.mass)).sum())
     energies = log.observables["kinetic_energy"][1]
     return float(energies.mean() - centre_of_mass_energy(log)) / moving if len(energies) else 0.0

@@ -1,7 +1,7 @@
 """Plain values of dataclasses, ready for JSON, made from their fields.
 
-A field is named as in its dataclass, unless its type says otherwise: `Annotated[float, Key("other_name")]`, or with a
-`Mark` instead of a key. Properties marked by `reported` are plain values too.
+A field is named as in its dataclass, unless its type contains another name, `Annotated[float, Key("other_name")]`, or a
+`Mark` instead of a name. Properties marked with `reported` are plain values too.
 """
 
 import math
@@ -40,23 +40,23 @@ def reported(function: Function) -> Function:
 
 
 def as_dict(found: Any) -> dict[str, Any]:
-    """Fields and reported properties of a dataclass by name, as plain values."""
+    """Return the fields and reported properties of a dataclass by name, as plain values."""
     values: dict[str, Any] = {}
-    for one in fields(found):
-        values |= _of_field(one, getattr(found, one.name))
+    for field in fields(found):
+        values |= _of_field(field, getattr(found, field.name))
     return values | {name: plain_value(getattr(found, name)) for name in reported_properties(type(found))}
 
 
-def _of_field(one: "Field[Any]", value: Any) -> dict[str, Any]:
-    marks = getattr(one.type, "__metadata__", ())
+def _of_field(field: "Field[Any]", value: Any) -> dict[str, Any]:
+    marks = getattr(field.type, "__metadata__", ())
     if OMITTED in marks or (value is None and (OPTIONAL in marks or INLINE in marks)):
         return {}
     plain = plain_value(value)
-    return plain if INLINE in marks else {next((m.name for m in marks if isinstance(m, Key)), one.name): plain}
+    return plain if INLINE in marks else {next((m.name for m in marks if isinstance(m, Key)), field.name): plain}
 
 
 def reported_properties(kind: type) -> Iterator[str]:
-    """Names of the properties of a class that are plain values."""
+    """Yield the names of the properties of a class that are plain values."""
     for part in reversed(kind.__mro__):
         for name, member in vars(part).items():
             if isinstance(member, property) and getattr(member.fget, "reported", False):
@@ -64,7 +64,7 @@ def reported_properties(kind: type) -> Iterator[str]:
 
 
 def plain_value(value: Any) -> Any:
-    """A value in terms of dict, list, str, int, float, bool and None; None for numbers that are not finite."""
+    """Return a value in terms of dict, list, str, int, float, bool and None; None for numbers that are not finite."""
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
@@ -72,9 +72,9 @@ def plain_value(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return plain_value(value.tolist())
     if isinstance(value, Mapping):
-        return {name: plain_value(one) for name, one in value.items()}
+        return {name: plain_value(item) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain_value(one) for one in value]
+        return [plain_value(item) for item in value]
     if hasattr(value, "as_dict"):
         return value.as_dict()
     if is_dataclass(value):

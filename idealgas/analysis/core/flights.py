@@ -22,7 +22,7 @@ from idealgas.state import Gas
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 
 AT_ONCE = 2**13
-"""Number of falls whose ways through the bins of a histogram are in memory together."""
+"""Number of falls whose paths through the bins of a histogram are in memory at the same time."""
 
 _COLLISION, _WALL_HIT, _OTHER = range(3)
 _SORT = np.full(NO_EVENT + 1, _OTHER)  # of an event, by its kind
@@ -33,8 +33,9 @@ _SORT[list(WALL_HITS)] = _WALL_HIT
 class Moments:
     """Time integrals of velocity moments, summed over the discs of each species, and event counts in each block.
 
-    flights: (B, S, 3), integrals of |v|, m vx² and m vy² over time for B blocks and S species.
-    events: (B, 2), numbers of pair collisions and of wall hits.
+    Attributes:
+        flights: (B, S, 3), integrals of |v|, m vx² and m vy² over time for B blocks and S species.
+        events: (B, 2), numbers of pair collisions and of wall hits.
     """
 
     columns = ("disc", "block", "start", "end", "kind", "velocity")
@@ -66,7 +67,7 @@ class Moments:
             add_to(sums, index, values)
 
     def finish(self) -> None:
-        """Make the sums known."""
+        """Set the attributes from the sums."""
         self.flights = np.moveaxis(self._sums, 0, 2)
         self.events = self._counts[:, [_COLLISION, _WALL_HIT]] // [2, 1]  # a collision ends two flights
 
@@ -74,7 +75,7 @@ class Moments:
 def _moments_of_fall(
     mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: tuple[float, float], t: np.ndarray
 ) -> tuple[np.ndarray, ...]:
-    """Integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
+    """Return integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
     gx, gy = gravity
     return (
         path_length(vx, vy, gravity, t),
@@ -84,10 +85,12 @@ def _moments_of_fall(
 
 
 class VelocityHistogram:
-    """Histogram of one velocity quantity, weighted with time, and its values for some discs at the inner block edges.
+    """Time-weighted histogram of one velocity quantity, and its values for sampled discs at the inner block edges.
 
-    counts: (B, S, bins + 2), time that discs spent below, in and above the bins. sums: (B, S), integral of the quantity
-    over time. snapshots: (B - 1, M), values of the M `sampled` discs at the edges between blocks.
+    Attributes:
+        counts: (B, S, bins + 2), time that discs spent below, in and above the bins.
+        sums: (B, S), integral of the quantity over time.
+        snapshots: (B - 1, M), values of the M `sampled` discs at the edges between blocks.
     """
 
     columns = ("disc", "block", "start", "end", "velocity")
@@ -130,8 +133,8 @@ class VelocityHistogram:
         if changes_during_flight(self.quantity, self.gravity):
             add_to(self.sums, place, integral_over_fall(self.quantity, mass, vx, vy, self.gravity, time))
             for first in range(0, len(time), AT_ONCE):
-                some = slice(first, first + AT_ONCE)
-                self._spread(place[some], species[some], mass[some], vx[some], vy[some], time[some])
+                chunk = slice(first, first + AT_ONCE)
+                self._spread(place[chunk], species[chunk], mass[chunk], vx[chunk], vy[chunk], time[chunk])
         else:
             add_to(self.sums, place, value * time)
             add_to(self.counts, place * (self.bins + 2) + self._bin_of(value, species), time)
@@ -154,7 +157,7 @@ class VelocityHistogram:
         vy: np.ndarray,
         duration: np.ndarray,
     ) -> None:
-        """Add the times that a quantity spends in each bin during falls (n,), before its least value and after it."""
+        """Add the times that a quantity spends in each bin during falls (n,), before its minimum and after it."""
         turn = np.clip(turning_time(self.quantity, vx, vy, self.gravity), 0.0, duration)
         for rises, start, end in ((False, np.zeros_like(turn), turn), (True, turn, duration)):
             first, last = (
@@ -162,7 +165,7 @@ class VelocityHistogram:
                 for time in (start, end)
             )
             steps = np.abs(last - first)
-            k = np.repeat(np.arange(len(steps)), steps + 1)  # the fall of each stay in a bin
+            k = np.repeat(np.arange(len(steps)), steps + 1)  # index of the fall of each stay in a bin
             number = np.arange(len(k)) - (np.cumsum(steps + 1) - steps - 1)[k]
             up = last[k] > first[k]
             b = first[k] + np.where(up, number, -number)
@@ -174,7 +177,7 @@ class VelocityHistogram:
 
 
 def bin_of(value: np.ndarray, low: np.ndarray | float, per_unit: np.ndarray | float, bins: int) -> np.ndarray:
-    """Index of the bin of each value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
+    """Return the index of the bin of each value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
     place = (value - low) * per_unit
     return np.where(place < 0, 0, np.clip(place, 0, bins).astype(np.intp) + 1)
 
@@ -200,7 +203,7 @@ class DensityBins:
         self._species = gas.species.astype(np.intp)
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights: each disc begins one at the end of each block but the last, where one is open."""
+        """Add the next flights; at the end of each block except the last a flight of each disc begins."""
         for chosen, block, position in self._at_edges(flights):
             place = np.clip(position * self._per_length, 0, self.bins - 1).astype(np.intp)
             first = (block * self.discs.shape[1] + self._species[flights.disc[chosen]]) * 2
@@ -211,7 +214,7 @@ class DensityBins:
         """Do nothing: the sums are complete."""
 
     def _at_edges(self, flights: Flights) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Flights of discs at ends of blocks, these blocks, and positions then."""
+        """Yield flights of discs at ends of blocks, these blocks, and the positions at that time."""
         assert flights.position is not None
         assert flights.end_position is not None
         later = np.flatnonzero((flights.block > 0) & (flights.start == self.edges.take(flights.block)))

@@ -1,6 +1,7 @@
 """Sums over collisions and wall hits: virials, momentum given to walls and their faces, and numbers of events.
 
-What an event gives is the change of a disc's momentum there; what gravity gave it during the flight is left out.
+An event contributes the change of the momentum of a disc in it; what gravity contributes during the flight is not
+included.
 """
 
 import numpy as np
@@ -14,21 +15,24 @@ from idealgas.state import Gas
 class Impacts:
     """Sums over collisions and wall hits in each of B blocks of time, for S species and W walls.
 
-    pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions with the minimum image of r_ij, energy·time.
-    wall_virial: (B,), -Σ r·Δp over wall hits with r from the centre of the box along axes that are not periodic,
-    energy·time. inner_virial: (B,), Σ r·Δp over all other events along the same axes, energy·time.
-    passed_on: (B, 4), momentum that all events but its own hits pass on towards each side of the box, see `add`,
-    mass·length/time.
-    collisions: (B, S, G), numbers of collisions that discs of a species have with those of a group, `Gas.partners`: a
-    pair collision counts for both of its discs.
-    impulse: (B, W, 2), momentum given to each wall, mass·length/time. hits: (B, W), numbers of hits of each wall.
+    Attributes:
+        pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions with the minimum image of r_ij, energy·time.
+        wall_virial: (B,), -Σ r·Δp over wall hits with r from the centre of the box along axes that are not periodic,
+            energy·time.
+        inner_virial: (B,), Σ r·Δp over all other events along the same axes, energy·time.
+        passed_on: (B, 4), momentum that all events except the hits of a side transfer towards this side, see `add`,
+            mass·length/time.
+        collisions: (B, S, G), numbers of collisions of the discs of a species with those of a group (`Gas.partners`); a
+            pair collision counts for both of its discs.
+        impulse: (B, W, 2), momentum given to each wall, mass·length/time.
+        hits: (B, W), numbers of hits of each wall.
     """
 
     columns = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity", "end_position")
     cut = False
 
     def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, ...] = (False, False)) -> None:
-        """Take the number of walls, in which the sides of the box come first, and whether x and y are periodic."""
+        """Take the number of walls, of which the sides of the box come first, and whether x and y are periodic."""
         self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
@@ -47,8 +51,9 @@ class Impacts:
     def add(self, flights: Flights) -> None:
         """Add the events at the ends of the next flights.
 
-        Momentum counts for a side of the box in proportion to how near the disc is to it: by 0 at the opposite side, by
-        1 at the side itself. An event that moves momentum from one disc to another passes some of it on towards a side.
+        Momentum counts for a side of the box in proportion to the position of the disc: 0 at the opposite side, 1 at
+        the side itself. An event that transfers momentum from one disc to another therefore moves some of it towards a
+        side.
         """
         assert flights.end_position is not None
         block, partner, place = flights.block, flights.partner, flights.end_position
@@ -66,18 +71,18 @@ class Impacts:
         add_to(self.inner_virial, block, np.where(hit, 0.0, virial))
         add_to(self.wall_virial, block, np.where(hit, -virial, 0.0))
         self._add_pairs(flights, given)
-        some = np.flatnonzero(hit)
-        walls = block[some] * self.walls + (-1 - partner[some])
+        wall_hits = np.flatnonzero(hit)
+        walls = block[wall_hits] * self.walls + (-1 - partner[wall_hits])
         add_to(self.hits, walls)
         for axis in range(2):
-            add_to(self._impulse[axis], walls, -given[axis][some])
+            add_to(self._impulse[axis], walls, -given[axis][wall_hits])
 
     def finish(self) -> None:
-        """Make the sums known."""
+        """Set the attributes from the sums."""
         self.passed_on, self.impulse = self._passed_on.T, np.moveaxis(self._impulse, 0, 2)
 
     def _add_pairs(self, flights: Flights, given: tuple[np.ndarray, np.ndarray]) -> None:
-        """Add collisions of two discs. given: x and y, (n,), of the momentum that each event gives to its disc."""
+        """Add collisions of two discs; given: x and y components, (n,), of the momentum given to each disc."""
         second, apart = contacts(flights, self._box, self.periodic)
         block = flights.block[second]
         add_to(self.pair_virial, block, apart[:, 0] * given[0][second] + apart[:, 1] * given[1][second])
@@ -91,17 +96,17 @@ class Impacts:
 def contacts(
     flights: Flights, box: tuple[float, float], periodic: tuple[bool, ...], shear: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of whole flights that end collisions as the second of two, and their discs' places relative to the others.
+    """Return the rows of flights that end in collisions, once per collision, and the relative positions.
 
     Args:
-        flights: flights, with the times of their ends where the sides are sheared.
+        flights: whole flights, with the times of their ends if the sides are sheared.
         box: width and height, length.
         periodic: whether x and y are periodic.
-        shear: shear rate, 1/time; the image above is then that times the height and the time ahead.
+        shear: shear rate, 1/time; the image above is ahead by the rate times the height and the time.
 
     Returns:
-        The rows (c,), and the positions (c, 2), length, of the discs of these relative to the nearest images of their
-        partners.
+        The rows (c,) of the second of the two discs, and the positions (c, 2), length, of these discs relative to the
+            nearest images of their partners.
     """
     assert flights.end_position is not None
     second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))
@@ -116,5 +121,5 @@ def contacts(
 
 
 def is_wall_hit(kind: np.ndarray) -> np.ndarray:
-    """Whether events of these kinds are hits of walls, fixed discs or the piston."""
+    """Return whether events of these kinds are hits of walls, fixed discs or the piston."""
     return np.isin(kind, WALL_HITS)

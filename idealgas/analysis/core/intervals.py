@@ -12,8 +12,12 @@ from idealgas.state import Gas
 class Intervals:
     """Histogram of intervals by the block and the species in which they start, and a sample of every `stride`-th one.
 
-    counts: (B, S, bins + 2), numbers of intervals below, in and above the bins. sums: (B, S), sum of the intervals, in
-    lengths or times. sample, sample_block, sample_species: sampled intervals, and the block and species of their start.
+    Attributes:
+        counts: (B, S, bins + 2), numbers of intervals below, in and above the bins.
+        sums: (B, S), sum of the intervals, in lengths or times.
+        sample: (n,), sampled intervals.
+        sample_block: (n,), block in which they start.
+        sample_species: (n,), species of their disc.
     """
 
     cut = False
@@ -31,9 +35,9 @@ class Intervals:
         self.sums = np.zeros(shape)
 
     def finish(self) -> None:
-        """Make the sample known; intervals that have not ended by the end of the window are left out."""
-        found = zip(*self._samples, strict=True) if self._samples else np.empty((3, 1, 0))
-        sample, block, species = (np.concatenate(list(values)) for values in found)
+        """Set the sample; intervals that have not ended by the end of the window are left out."""
+        columns = zip(*self._samples, strict=True) if self._samples else np.empty((3, 1, 0))
+        sample, block, species = (np.concatenate(list(values)) for values in columns)
         self.sample, self.sample_block, self.sample_species = sample, block.astype(int), species.astype(int)
 
     def _put(self, values: np.ndarray, block: np.ndarray, species: np.ndarray) -> None:
@@ -51,7 +55,7 @@ class FreeFlights(Intervals):
     """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
     def __init__(self, path: bool, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
-        """Take whether paths are measured or times."""
+        """Take whether paths or times are measured."""
         super().__init__(high, bins, stride, most_samples)
         self.path = path
         self.columns = ("disc", "block", "start", "end", "ends_in_collision", *(("path",) if path else ()))
@@ -69,9 +73,9 @@ class FreeFlights(Intervals):
         _total_since_collision(
             flights.disc.astype(np.intp), flights.end.copy(), ends, length, start, self._total, self._since
         )
-        some = np.flatnonzero(ends & (start >= self.edges[0]))
-        species = self._species.take(flights.disc[some])
-        self._put(length[some], began_in(self.edges, start[some], flights.block[some]), species)
+        ended = np.flatnonzero(ends & (start >= self.edges[0]))
+        species = self._species.take(flights.disc[ended])
+        self._put(length[ended], began_in(self.edges, start[ended], flights.block[ended]), species)
 
 
 @njit
@@ -84,10 +88,10 @@ def _total_since_collision(
     total: np.ndarray,
     since: np.ndarray,
 ) -> None:
-    """Turn the lengths of flights into those since the last collision of each disc, which start then.
+    """Replace the lengths of flights by the lengths since the last collision of each disc.
 
-    Compiled, as a free path may have any number of flights between walls: NumPy would sort them by disc, or take the
-    difference of two sums from the start of the log, which loses digits.
+    This is compiled, as a free path may consist of any number of flights between walls. NumPy would have to sort them
+    by disc, or subtract two sums from the start of the log, which loses digits.
 
     Args:
         disc: (n,), disc of each flight.
@@ -95,8 +99,8 @@ def _total_since_collision(
         collides: (n,), whether it ends in a collision with a disc.
         length: (n,), its length; replaced.
         start: (n,), filled with the time of the last collision before it.
-        total: (N,), length since the last collision of each disc; carried on.
-        since: (N,), time of that collision; carried on.
+        total: (N,), length since the last collision of each disc; updated.
+        since: (N,), time of that collision; updated.
     """
     for k in range(disc.shape[0]):
         i = disc[k]
@@ -107,7 +111,7 @@ def _total_since_collision(
 
 
 class WaitingTimes(Intervals):
-    """Time between successive events of the gas, a pair collision being one event."""
+    """Time between successive events of the gas, where a pair collision is one event."""
 
     columns = ("disc", "block", "end", "partner")
 
@@ -118,8 +122,8 @@ class WaitingTimes(Intervals):
 
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
-        some = np.flatnonzero((flights.partner < 0) | (flights.disc < flights.partner))
-        times = np.append(self._last, flights.end[some])
-        block = flights.block[some][len(some) + 1 - len(times) :]
+        ended = np.flatnonzero((flights.partner < 0) | (flights.disc < flights.partner))
+        times = np.append(self._last, flights.end[ended])
+        block = flights.block[ended][len(ended) + 1 - len(times) :]
         self._put(np.diff(times), began_in(self.edges, times[:-1], block), np.zeros(len(block), np.intp))
         self._last = times[-1:]

@@ -20,19 +20,19 @@ BINS = 4
 """Number of bins along each axis in which discs are counted for the centre of a species."""
 
 MIXING = 0.15
-"""Packing fraction from which on collision rates depend on where the species are (measured: not at 0.06, at 0.2)."""
+"""Packing fraction from which on collision rates depend on the positions of the species: at 0.2, but not at 0.06."""
 
 DENSE, FREE_TIMES = 0.5, 50.0
 """Packing fraction from which on the structure of any gas relaxes slowly, and the mean free times that this takes.
 
-Measured at 0.6: errors are 1.2 to 1.3 times too small in 300 mean free times, and right in 2000.
+At φ = 0.6, errors are 1.2 to 1.3 times too small in windows of 300 mean free times, and right in 2000.
 """
 
 HEAT = 6.0
 """Time that heat takes across a gas, in inefficiencies of its kinetic energy, which mostly changes faster.
 
-Measured with 40 discs between thermal walls and under gravity: errors are 1.14 to 1.21 times too small in windows of 30
-to 45 inefficiencies, 1.09 to 1.17 in 85, and right in 140.
+With 40 discs between thermal walls and under gravity, errors are 1.14 to 1.21 times too small in windows of 30 to 45
+inefficiencies, 1.09 to 1.17 times in 85, and right in 140.
 """
 
 
@@ -41,9 +41,9 @@ class Observable(NamedTuple):
 
     Attributes:
         values: (n,), means.
-        least: variance of fluctuations that may be slower than the series is long. Unless its start differs from the
-            rest by more than these explain, the series is ignored.
-        most: variance at an instant, which that of no mean exceeds.
+        least: variance of fluctuations that may be slower than the series is long. The series is ignored unless its
+            start differs from the rest by more than these fluctuations explain.
+        most: variance at an instant, which no variance of a mean exceeds.
     """
 
     values: np.ndarray
@@ -75,13 +75,13 @@ class TimeSeries:
 
     @property
     def rates(self) -> np.ndarray:
-        """Sums (B, S, 3) of |v|, m vx² and m vy² over the discs of each species."""
+        """Sums of |v|, m vx² and m vy² over the discs of each species, (B, S, 3)."""
         return self.moments.flights / self.width
 
     def observables(self) -> Iterator[Observable]:
-        """Speed and energy of each species, energy along x less along y, numbers of events, virial.
+        """Yield speed and energy of each species, energy along x minus energy along y, numbers of events, and virial.
 
-        At a fixed energy, equal speeds are 0.84 √N standard deviations of the speed, 0.50 √N of v⁴ from equilibrium.
+        At fixed energy, equal speeds are 0.84 √N standard deviations of the speed, or 0.50 √N of v⁴, from equilibrium.
         """
         speeds, energies = self.rates[:, :, 0], self.rates[:, :, 1:]
         moments = np.array([speeds.T, energies.sum(axis=2).T])
@@ -92,14 +92,16 @@ class TimeSeries:
         )
         mobile = ~are_fixed(self.discs.mass)
         for values, most in zip(moments[:, mobile], known[:, mobile], strict=True):
-            yield from map(Observable, values, np.zeros(len(most)), most)  # those of fixed discs rise without end
+            yield from map(
+                Observable, values, np.zeros(len(most)), most
+            )  # the integrals of fixed discs would grow forever
         yield Observable(energies.sum(axis=1) @ (1.0, -1.0))
         yield from (Observable(numbers.astype(float)) for numbers in self.moments.events.T)
         if self.impacts is not None:
             yield Observable(self.impacts.pair_virial)
 
     def centres(self) -> Iterator[Observable]:
-        """Sums of the positions of each species along x and y, in bins, with their variance for independent discs.
+        """Yield sums of the positions of each species along x and y, in bins, with the variance of independent discs.
 
         In a dense gas and in a sound wave they fluctuate more slowly than a short log can show.
         """
@@ -109,12 +111,13 @@ class TimeSeries:
                 yield Observable(discs @ place, least=float(discs[0].sum() * (place**2).mean()))
 
     def slowest_exchange(self, first: int) -> Exchange:
-        """Slowest fluctuations that the log shows from a block on; their time is 0 where nothing is known to be slow.
+        """Return the slowest fluctuations that the log shows from a block on.
 
-        In a mixture it is twice the longest time for which a species stays where it is, relative to all discs;
-        collision rates follow that with so small an amplitude that their own series do not show it. In a dense gas it
-        is at least FREE_TIMES mean free times; where heat crosses the gas, at least HEAT times the inefficiency of the
-        kinetic energy. Spins and a thermostat exchange energy everywhere.
+        Their time is 0 if nothing is known to be slow. In a mixture it is twice the longest time for which a species
+        stays where it is, relative to all discs. The collision rates follow this motion with so small an amplitude that
+        their own series do not show it. In a dense gas the time is at least FREE_TIMES mean free times. If heat crosses
+        the gas, it is at least HEAT times the inefficiency of the kinetic energy. Spins and a thermostat exchange
+        energy everywhere.
         """
         kinetic, slow, free_time = self.rates[first:, :, 1:].sum(axis=(1, 2)), [], 0.0
         exchange = inefficiency(kinetic) if self.conducts and np.ptp(kinetic) > ROUNDING * kinetic.max() else 0.0
@@ -124,7 +127,7 @@ class TimeSeries:
             slow = [*apart.reshape(len(centre), -1).T] if len(number) > 1 else []
             if self.fraction >= DENSE and (collisions := self.moments.events[first:, 0].sum()):
                 free_time = number.sum() * len(centre) / (2 * collisions)
-        mixing = (inefficiency(one) for one in slow if np.ptp(one) > ROUNDING)
+        mixing = (inefficiency(centres) for centres in slow if np.ptp(centres) > ROUNDING)
         times = (
             (HEAT * exchange, "heat crosses the gas"),
             (FREE_TIMES * free_time, "the discs of a dense gas change places"),

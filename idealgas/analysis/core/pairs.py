@@ -1,4 +1,4 @@
-"""Distances of pairs of discs: their bins, and positions as a tree takes them."""
+"""Distances of pairs of discs: their bins, and positions for trees."""
 
 import numpy as np
 
@@ -10,6 +10,6 @@ REACH = 5.0
 
 
 def inside(log: Log, position: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length, none of them on the far one of two periodic sides, as a `cKDTree` demands."""
+    """Return positions (N, 2), length, none of them on the upper one of two periodic sides, as `cKDTree` requires."""
     below = np.nextafter(log.box, 0.0)
     return np.where(log.periodic, np.clip(position, 0.0, below), position)

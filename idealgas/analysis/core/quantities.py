@@ -15,14 +15,17 @@ ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_
 """Numbers of an estimate; other quantities have only a value."""
 
 ANY = "*"
-"""Stands for the name of a group, such as a species, a wall or a route, in the name of a quantity."""
+"""Placeholder for the name of a group, such as a species, a wall or a route, in the name of a quantity."""
 
 
 class Row(NamedTuple):
     """A number of a result.
 
-    quantity: its name. group: what it belongs to, in words; empty if the result has only one. entry: number in a
-    series; None for a single number. values: by the names in ESTIMATE.
+    Attributes:
+        quantity: name of the quantity.
+        group: group to which it belongs, in words; empty if the result has only one.
+        entry: index in a series; None for a single number.
+        values: values by the names in ESTIMATE.
     """
 
     quantity: str
@@ -32,19 +35,19 @@ class Row(NamedTuple):
 
 
 def rows(found: Any, name: str) -> Iterator[Row]:
-    """Numbers in the plain values of a result. name: of the analysis."""
+    """Yield the numbers in the plain values of a result; name: name of the analysis."""
     return _rows(found, (name,), (), None)
 
 
-def _rows(found: Any, path: tuple[str, ...], group: tuple[str, ...], index: int | None) -> Iterator[Row]:
-    if isinstance(found, dict) and set(ESTIMATE) <= found.keys():
-        yield Row(".".join(path), ", ".join(group), index, {name: found[name] for name in ESTIMATE})
-    elif isinstance(found, dict):
-        for name, value in found.items():
+def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int | None) -> Iterator[Row]:
+    if isinstance(part, dict) and set(ESTIMATE) <= part.keys():
+        yield Row(".".join(path), ", ".join(group), index, {name: part[name] for name in ESTIMATE})
+    elif isinstance(part, dict):
+        for name, value in part.items():
             word = identifier(name)
             yield from _rows(value, (*path, word), group if word == name else (*group, name), index)
-    elif isinstance(found, list):
-        for k, entry in enumerate(found):
+    elif isinstance(part, list):
+        for k, entry in enumerate(part):
             if isinstance(entry, dict):
                 words = [entry["name"]] if "name" in entry else entry.values()
                 label = ", ".join(value for value in words if isinstance(value, str)) or str(k)
@@ -53,17 +56,20 @@ def _rows(found: Any, path: tuple[str, ...], group: tuple[str, ...], index: int 
                 yield from _rows(entry, path, group, k)
             else:
                 yield from _rows(entry, (*path, str(k)), group, index)
-    elif isinstance(found, int | float):
-        yield Row(".".join(path), ", ".join(group), index, {"value": float(found)})
+    elif isinstance(part, int | float):
+        yield Row(".".join(path), ", ".join(group), index, {"value": float(part)})
 
 
 def identifier(text: str) -> str:
-    """A text as a part of the name of a quantity."""
+    """Return a text as a part of the name of a quantity."""
     return re.sub(r"\W+", "_", text).strip("_")
 
 
 def as_csv(found: Any, name: str) -> str:
-    """Numbers of a result, its plain values, as CSV text: a row for each, with all digits. name: of the analysis."""
+    """Return the numbers in the plain values of a result as CSV text, a row for each, with all digits.
+
+    name: name of the analysis.
+    """
     file = io.StringIO()
     writer = csv.DictWriter(file, ("quantity", "group", "index", *ESTIMATE), restval="", lineterminator="\n")
     writer.writeheader()
@@ -73,25 +79,25 @@ def as_csv(found: Any, name: str) -> str:
 
 
 def names(kind: Any, path: tuple[str, ...]) -> Iterator[str]:
-    """Names of the single numbers in results of a class; ANY stands for a group."""
+    """Yield the names of the single numbers in results of a class; ANY stands for a group."""
     origin, parameters = get_origin(kind), get_args(kind)
     if kind is Estimate or kind in (int, float, bool):
         yield ".".join(path)
     elif origin is Annotated:
         yield from names(parameters[0], path)
     elif origin in (Union, UnionType):
-        for one in parameters:
-            yield from names(one, path)
+        for parameter in parameters:
+            yield from names(parameter, path)
     elif origin is not None and issubclass(origin, Mapping):
         yield from names(parameters[1], (*path, ANY))
     elif origin is not None and issubclass(origin, Sequence) and is_dataclass(parameters[0]):
         yield from names(parameters[0], (*path, ANY))
     elif isinstance(kind, type) and is_dataclass(kind):
         hints = get_type_hints(kind, include_extras=True)
-        for one in fields(kind):
-            marks = getattr(hints[one.name], "__metadata__", ())
-            own = next((mark.name for mark in marks if isinstance(mark, Key)), one.name)
+        for field in fields(kind):
+            marks = getattr(hints[field.name], "__metadata__", ())
+            key = next((mark.name for mark in marks if isinstance(mark, Key)), field.name)
             if OMITTED not in marks:
-                yield from names(hints[one.name], path if INLINE in marks else (*path, own))
+                yield from names(hints[field.name], path if INLINE in marks else (*path, key))
         for name in reported_properties(kind):
             yield from names(get_type_hints(getattr(kind, name).fget)["return"], (*path, name))

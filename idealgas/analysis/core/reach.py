@@ -13,29 +13,32 @@ from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.scene.walls import NumberedWall, number_walls
 
 NEAR = 1e-9
-"""Distance from a wall, in units of the box, that distinguishes its sides."""
+"""Distance from a wall, in units of the box, by which its sides are distinguished."""
 
 FEWEST_PLACES, MOST_PLACES, ALL_PLACES = 8, 256, 2**14
-"""Least and largest number of places along a wall at which it is tested whether discs touch it, and of all walls."""
+"""Smallest and largest number of positions along a wall at which contact is tested, and number for all walls."""
 
 NONE = np.empty(0)
 
 HALVINGS = 40
-"""Number of halvings of the distance between two such places, where discs touch a wall at one of them only."""
+"""Number of bisections between two such positions if discs touch the wall at only one of them."""
 
 
 Fit = Callable[[np.ndarray], np.ndarray]
 """Function of centres (M, 2) of discs: whether they overlap no wall there."""
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Function of shares (M,) of the length of a wall: places on it, and its normals there, which broadcast to (M, 2)."""
+"""Function of fractions (M,) of the length of a wall: positions on it and its normals there, broadcast to (M, 2)."""
 
 
 class Reach(NamedTuple):
     """What the centres of discs of one radius can reach.
 
-    area: of all their places, length². perimeter: of that area, where discs touch walls, length; a wall with gas on
-    both sides counts twice. holes: part of the perimeter along walls that absorb discs, length.
+    Attributes:
+        area: area of all their positions, length².
+        perimeter: perimeter of this area, along which discs touch walls, length; a wall with gas on both sides counts
+            twice.
+        holes: part of the perimeter along walls that absorb discs, length.
     """
 
     area: float
@@ -44,7 +47,10 @@ class Reach(NamedTuple):
 
 
 def reach_of(log: Log, radius: float) -> Reach:
-    """Return what the centres of discs of a radius can reach among the walls of a log, gates and pistons at rest."""
+    """Return what the centres of discs of a radius can reach among the walls of a log.
+
+    Gates and pistons are taken at rest.
+    """
     faces = list(_faces(log, radius))
     area = log.discs.area - radius * math.fsum(half for _, (_, half) in faces)
     holes = math.fsum(length for is_hole, (length, _) in faces if is_hole)
@@ -54,8 +60,8 @@ def reach_of(log: Log, radius: float) -> Reach:
 def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
     """Yield for each face and end of a wall whether it is a hole, and the lengths of the line of touching centres.
 
-    The lengths are those for discs of the radius and of half of it. As they change in proportion to the radius, the
-    second one is their mean over all smaller radii, which gives the area.
+    The lengths are those for discs of the radius and of half of it. As they are linear in the radius, the second one is
+    their mean over all smaller radii, which gives the area.
     """
     scene, size = log.scene, np.array(log.box)
     near = NEAR * float(size.max())
@@ -66,7 +72,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
     fits = [(r, _fitting(log, list(walls.values()), r, near)) for r in (radius, radius / 2)] if walls else []
 
     def lengths(along: Curve, whole: float, bend: float, extra: np.ndarray = NONE) -> list[float]:
-        """Return the lengths of the line of touching centres of both radii: whole + bend · r, if all is reached."""
+        """Return the lengths of the line of touching centres for both radii: whole + bend · r, if all is reached."""
         reached, places = [], np.unique(np.clip(np.concatenate((even, extra)), 0.0, 1.0))
         for r, fit in fits:
 
@@ -106,7 +112,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
 
 
 def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> np.ndarray:
-    """Shares of the length of a wall at which points (M, 2) within a distance of it are nearest to it."""
+    """Return the fractions of the length of a wall at which it is nearest to points (M, 2) within a distance of it."""
     nearest = nearest_points(points, wall.start, wall.end, wall.arc)
     from_start = nearest[np.hypot(*(points - nearest).T) <= distance] - wall.start
     if not wall.arc:
@@ -118,7 +124,7 @@ def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> n
 
 
 def _share(touches: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> float:
-    """Share of a line, along which shares run from 0 to 1, where a condition holds, from its values at some places."""
+    """Return the fraction of a line on which a condition holds, from its values at positions from 0 to 1."""
     holds = touches(places)
     last = np.flatnonzero(holds[1:] != holds[:-1])
     low, high = places[last], places[last + 1]
@@ -131,13 +137,16 @@ def _share(touches: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> f
 
 
 def _straight(start: np.ndarray, chord: np.ndarray, side: float) -> Curve:
-    """Places on one side of a straight wall, and its normal there."""
+    """Return the curve of one side of a straight wall, with its normal."""
     normal = side * np.array([-chord[1], chord[0]]) / np.hypot(*chord)
     return lambda share: (start + share[:, None] * chord, normal)
 
 
 def _arc(centre: np.ndarray, radius: float, begin: float, angle: float, side: float = 1.0) -> Curve:
-    """Places on an arc that begins at an angle and spans another, in radians; normals point outwards, or inwards."""
+    """Return the curve of an arc that begins at an angle and spans another, in radians.
+
+    The normals point outwards for side 1, and inwards for side -1.
+    """
 
     def along(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         outwards = np.column_stack((np.cos(begin + angle * share), np.sin(begin + angle * share)))
@@ -147,7 +156,7 @@ def _arc(centre: np.ndarray, radius: float, begin: float, angle: float, side: fl
 
 
 def _tangents(wall: NumberedWall) -> tuple[float, float]:
-    """Angles of the directions in which a wall leaves its start and its end, in radians."""
+    """Return the angles of the directions in which a wall leaves its start and its end, in radians."""
     (x, y), chord = np.subtract(wall.end, wall.start), 0.0
     if wall.arc:
         chord = wall.arc.turn * wall.arc.angle / 2
@@ -156,7 +165,10 @@ def _tangents(wall: NumberedWall) -> tuple[float, float]:
 
 
 def _free_angle(directions: list[float]) -> tuple[float, float]:
-    """Begin and size, in radians, of the angle in which discs touch an end, where walls leave in these directions."""
+    """Return the start and the size of the angle, in radians, in which discs touch an end.
+
+    directions: angles at which walls leave the end.
+    """
     sorted_directions = np.sort(np.mod(directions, 2 * math.pi))
     gaps = np.diff(sorted_directions, append=sorted_directions[0] + 2 * math.pi)
     widest = int(gaps.argmax())
@@ -164,19 +176,19 @@ def _free_angle(directions: list[float]) -> tuple[float, float]:
 
 
 def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) -> Fit:
-    """Function of centres (M, 2): whether discs of a radius are there without overlap of walls by more than `near`."""
+    """Return a function of centres (M, 2): whether discs of a radius there overlap no wall by more than `near`."""
     solid = [wall for wall in walls if not (wall.absences or wall.is_permeable)]
     low, high = (np.array(ends) for ends in zip(*(bounds(w.start, w.end, w.arc) for w in solid), strict=True))
     reach = radius + max(wall.radius for wall in solid)
     margin = np.where(log.periodic, -math.inf, radius - near)
 
     def fit(centres: np.ndarray) -> np.ndarray:
-        found = ((centres > margin) & (centres < log.box - margin)).all(axis=1)
+        fits = ((centres > margin) & (centres < log.box - margin)).all(axis=1)
         close = (low < centres.max(axis=0) + reach) & (high > centres.min(axis=0) - reach)
         for k in np.flatnonzero(close.all(axis=1)).tolist():
             wall = solid[k]
             away = centres - nearest_points(centres, wall.start, wall.end, wall.arc)
-            found &= np.hypot(*away.T) - wall.radius > radius - near
-        return np.asarray(found)
+            fits &= np.hypot(*away.T) - wall.radius > radius - near
+        return np.asarray(fits)
 
     return fit

@@ -1,4 +1,4 @@
-"""What the results of all analyses have in common: caveats, the run, tables and a picture."""
+"""What the results of all analyses have in common: caveats, the run, tables and a figure."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -15,10 +15,15 @@ if TYPE_CHECKING:
 class Origin:
     """Run that a result comes from.
 
-    path: of its log, or name of its point in a sweep. run: digest of all that determines the motion, the same for two
-    logs of one run. gas: digest of the discs, the box and the effects, the same at another temperature. words: the gas
-    in words. kind: kind of gas in words, whatever the number of discs and the size of the box. mixture: whether radii
-    differ. seed: of the random numbers of the run; None if it draws none. title: of its scene, or else its path.
+    Attributes:
+        path: path of its log, or name of its point in a sweep.
+        run: digest of all that determines the motion, the same for two logs of one run.
+        gas: digest of the discs, the box and the effects, the same at another temperature.
+        words: the gas in words.
+        kind: kind of gas in words, whatever the number of discs and the size of the box.
+        mixture: whether radii differ.
+        seed: seed of the random numbers of the run; None if it draws none.
+        title: title of its scene, or else its path.
     """
 
     path: str
@@ -35,9 +40,11 @@ class Origin:
 class Result:
     """Base of the results of all analyses.
 
-    caveats: one sentence per condition of the numbers that is not met, or is worth knowing; empty if none was found.
-    Tables, reports and JSON show them. origin: run that the result comes from; None if it comes from several runs, or
-    if the analysis was not called by `Analysis.analyse`. title: name of the run or runs in pictures.
+    Attributes:
+        caveats: one sentence for each condition of the numbers that is not met or is worth knowing. Tables, reports and
+            JSON contain them.
+        origin: run that the result comes from; None if it comes from several runs, or not from `Analysis.analyse`.
+        title: name of the run or runs in figures.
     """
 
     analysis: ClassVar[Any]
@@ -48,33 +55,33 @@ class Result:
     title: Annotated[str, OMITTED] = ""
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, ready for JSON."""
+        """Return plain values by name, ready for JSON."""
         return as_dict(self)
 
     def tables(self) -> "list[Table]":
-        """Tables of the result, those that the command of the analysis prints."""
+        """Return the tables that the command of the analysis prints."""
         return self.analysis.shown_tables(self._combined())
 
     def plot(self) -> "Figure":
-        """Picture of the result, that of `--plot`: a figure of matplotlib that notebooks show, and `savefig` writes."""
+        """Return the figure of `--plot`: a figure of matplotlib, which notebooks display and `savefig` writes."""
         return self.analysis.titled_figure(self._combined())
 
     def summary(self) -> str:
-        """Headline of the result: what was found, and whether it agrees with theory."""
+        """Return the headline: the result, and whether it agrees with theory."""
         return self.analysis.summary(self._combined())
 
     def __str__(self) -> str:
-        """Headline and tables of the result as text."""
+        """Return headline and tables as text."""
         from idealgas.analysis.core.tables import as_text
 
         return "\n".join(filter(None, (self.summary(), as_text(self.tables()))))
 
     def _repr_html_(self) -> str:
-        """Headline and tables of the result, as notebooks show what a cell ends with."""
+        """Return headline and tables as HTML, which notebooks display at the end of a cell."""
         from idealgas.analysis.core.tables import escape, html_tables
 
         return f"<p><b>{escape(self.summary())}</b></p>{html_tables(self.tables())}"
 
     def _combined(self) -> "Result":
-        """The result as tables and picture take it; a result without a single origin is combined already."""
+        """Return the result in the form for tables and figure; without a single origin it is combined already."""
         return self if self.origin is None else self.analysis.combined([self])

@@ -1,7 +1,7 @@
 """Estimates with error bars from correlated series.
 
-A series is an observable averaged over consecutive blocks of time. The error of its mean, and how far apart
-decorrelated samples are, come from autoregressive models (`autoregression`).
+A series is an observable averaged over consecutive blocks of time. The error of its mean, and the distance of
+decorrelated samples, come from autoregressive models (`autoregression`).
 """
 
 import math
@@ -17,34 +17,37 @@ from idealgas.analysis.core.rounding import with_last_digits
 from idealgas.analysis.theory.values import Theory
 
 ENOUGH_REPLICATES = 20
-"""Least number of runs whose spread gives the error of their mean; with fewer runs, their own errors do."""
+"""Smallest number of runs whose scatter gives the error of their mean; with fewer runs, their own errors do."""
 
 RESAMPLES = 2000
 """Number of samples of a bootstrap."""
 
 LEAST_DOUBT = 1e-4
-"""One over the degrees of freedom from which on an error is as good as known by a law."""
+"""One over the degrees of freedom above which an error counts as exactly known."""
 
 FEWEST_BLOCKS = 8
-"""Least number of blocks whose scatter gives an error; it is then known to 27 %."""
+"""Smallest number of blocks whose scatter gives an error, which is then known to 27 %."""
 
 FEWEST_EVENTS = 8
-"""Least number of events whose mean has an error; it is then known to 27 %."""
+"""Smallest number of events whose mean has an error, which is then known to 27 %."""
 
 FULL = 40.0
-"""Times in which the change of a store has grown to all that it can be, to the last bit."""
+"""Time, in relaxation times of a store, after which its change has reached its limit to the last bit."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A measured number with its error bar.
 
-    value: measured value, in the unit of the quantity. standard_error: its standard error in the same unit; nan if
-    there are too few samples. independent_samples: number of independent samples that would give the standard error as
-    precisely, one more than its degrees of freedom; inf if it is known by a law, or 0 as the quantity is known. theory:
-    value expected by theory, in the same unit; None where no theory applies. theory_error: standard deviation of the
-    error of that value, in the same unit. blocks: lengths of blocks as shares of the series, and the error by blocks
-    of this length over standard_error (`errors_by_blocks`); empty if it is not from a series.
+    Attributes:
+        value: measured value, in the unit of the quantity.
+        standard_error: its standard error in the same unit; nan if there are too few samples.
+        independent_samples: number of independent samples that would give the standard error as precisely, one more
+            than its degrees of freedom; inf if it is known by a law, or if it is 0 because the quantity is known.
+        theory: value expected by theory, in the same unit; None if no theory applies.
+        theory_error: standard deviation of the error of that value, in the same unit.
+        blocks: lengths of blocks as fractions of the series, and the error by blocks of this length over standard_error
+            (`errors_by_blocks`); empty if it is not from a series.
     """
 
     value: float
@@ -66,7 +69,7 @@ class Estimate:
         return (self.value - self.theory) / math.hypot(self.standard_error, self.theory_error)
 
     def times(self, factor: float) -> "Estimate":
-        """Estimate of the quantity multiplied by a factor."""
+        """Return the estimate of the quantity multiplied by a factor."""
         return replace(
             self,
             value=self.value * factor,
@@ -76,7 +79,10 @@ class Estimate:
         )
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval at a level (0 to 1), by Student's t with independent_samples - 1 degrees of freedom."""
+        """Return the confidence interval at a level (0 to 1), by Student's t.
+
+        It has independent_samples - 1 degrees of freedom.
+        """
         from scipy import special
 
         half = special.stdtrit(max(self.independent_samples - 1, 1), 0.5 + level / 2) * self.standard_error
@@ -84,7 +90,7 @@ class Estimate:
 
     @classmethod
     def from_dict(cls, found: Mapping[str, float | None]) -> "Estimate":
-        """Make an estimate again from the values of `as_dict`."""
+        """Restore an estimate from the values of `as_dict`."""
         value, error, samples = (found[name] for name in ("value", "standard_error", "independent_samples"))
         return cls(
             math.nan if value is None else value,
@@ -95,20 +101,20 @@ class Estimate:
         )
 
     def __str__(self) -> str:
-        """Value with its error, theory, and deviation: "1.1092(8), theory 1.10954, −0.4σ"."""
+        """Return the value with its error, theory, and deviation: "1.1092(8), theory 1.10954, −0.4σ"."""
         theory = "" if self.theory is None else f", theory {self.theory:.6g}"
         deviation = "" if self.deviation is None else f", {self.deviation:+.1f}σ".replace("-", "−")
         return f"{with_last_digits(self.value, self.standard_error)}{theory}{deviation}"
 
     def as_dict(self) -> dict[str, float | None]:
-        """Fields and deviation by name, ready for JSON; None for numbers that are not finite."""
+        """Return fields and deviation by name, ready for JSON; None for numbers that are not finite."""
         return as_dict(self)
 
 
 def estimate(
     function: Callable[..., Any], *series: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0
 ) -> Estimate:
-    """Estimate of function(means of the series), with its error by linear propagation of their joint fluctuations.
+    """Return the estimate of function(means of the series), with linear propagation of their joint fluctuations.
 
     The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
     `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`. memory: see `error_of_mean`.
@@ -116,9 +122,9 @@ def estimate(
     columns = np.array(series, float)
     means = columns.mean(axis=1)
     influence = np.zeros(columns.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives not a number
+    with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives nan
         for k, column in enumerate(columns):
-            step = 1e-3 * (column.std() or np.ptp(column))  # squares of tiny numbers are 0
+            step = 1e-3 * (column.std() or np.ptp(column))  # the standard deviation of tiny numbers may be 0
             if step > 0 and changes(column):
                 shift = np.zeros(len(means))
                 shift[k] = step
@@ -130,31 +136,31 @@ def estimate(
 
 
 def errors_by_blocks(series: np.ndarray, error: float) -> tuple[tuple[float, float], ...]:
-    """Lengths of blocks, as shares of a series (n,), and its error as if blocks were independent, over a given error.
+    """Return lengths of blocks, as fractions of a series (n,), and its error as if such blocks were independent.
 
-    It grows with the length of the blocks until they are longer than the slowest fluctuation: Flyvbjerg & Petersen,
-    J. Chem. Phys. 91, 461 (1989).
+    The errors are relative to a given error. They grow with the length of the blocks until this exceeds the slowest
+    fluctuation: Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
     """
-    n, length, found = len(series), 1, []
+    n, length, errors = len(series), 1, []
     while error > 0 and n // length >= FEWEST_BLOCKS:
         means = (series[n % length :] / error).reshape(-1, length).mean(axis=1)
-        found.append((length / n, float(means.std(ddof=1)) / math.sqrt(len(means))))
+        errors.append((length / n, float(means.std(ddof=1)) / math.sqrt(len(means))))
         length *= 2
-    return tuple(found)
+    return tuple(errors)
 
 
 def parts_of(theory: Theory | float | None) -> tuple[float | None, float]:
-    """Value and error of a theory; the error of a plain number is 0."""
+    """Return the value and the error of a theory; the error of a plain number is 0."""
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
 def mean(series: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0) -> Estimate:
-    """Estimate of the mean of one correlated series; memory: see `error_of_mean`."""
+    """Return the estimate of the mean of one correlated series; memory: see `error_of_mean`."""
     return estimate(lambda a: a, series, theory=theory, memory=memory)
 
 
 def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
-    """Estimate of the mean of a few successive samples of a series, with the fluctuations of the whole series.
+    """Return the estimate of the mean of a few successive samples, with the fluctuations of the whole series.
 
     series: (n,). part: (n,), whether a sample belongs to the part.
     """
@@ -165,14 +171,18 @@ def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
 def mean_of_flux(
     flux: np.ndarray, bulk: np.ndarray, theory: Theory | float | None = None, stored: float | None = None
 ) -> Estimate:
-    """Estimate of the mean of a flux through a boundary, such as the force on a wall.
+    """Return the estimate of the mean of a flux through a boundary, such as the force on a wall.
 
-    What flows through the boundary of a gas has come through its bulk, or its store has changed: the two series differ
-    by the rate at which a bounded quantity of the gas changes, such as its momentum. This rate fluctuates much, back
-    and forth with the sound in the box for as long as that lasts, and nearly cancels in the mean. So the error is that
-    of the bulk and that of the change of the store between two instants.
+    The flow through the boundary of a gas has come through its bulk, or the stored amount has changed. The two series
+    differ by the rate of change of a bounded quantity of the gas, such as its momentum. This rate fluctuates strongly,
+    back and forth with the sound in the box, and nearly cancels in the mean. The error is therefore that of the bulk
+    and that of the change of the store between two instants.
 
-    flux, bulk: (n,), both series. stored: variance of the store, in units of (flux x samples)², if a law gives it.
+    Args:
+        flux: (n,), flux through the boundary.
+        bulk: (n,), flux through the bulk.
+        theory: theory of the mean.
+        stored: variance of the store, in units of (flux x samples)², if a law gives it.
     """
     error, samples = error_of_mean(bulk)
     change, known = _change_of_store(flux - bulk, stored)
@@ -186,20 +196,20 @@ def mean_of_flux(
 
 
 def _samples_of(doubt: float) -> float:
-    """Number of independent samples for an error from several parts, by Welch and Satterthwaite.
+    """Return the number of independent samples for an error from several parts, by Welch and Satterthwaite.
 
-    doubt: sum of (share of the variance)²/(degrees of freedom) over the parts.
+    doubt: sum of (fraction of the variance)²/(degrees of freedom) over the parts.
     """
     return math.inf if doubt < LEAST_DOUBT else 1 + 1 / doubt
 
 
 def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, float]:
-    """Mean square change of a store, from its rates (n,), over all samples, and its degrees of freedom.
+    """Return the mean square change of a store over all samples, from its rates (n,), and its degrees of freedom.
 
-    It is twice the variance in the end. If a law gives the variance, the change grows towards that as in an
-    Ornstein-Uhlenbeck process, and at first as the sum of squares of the rates, which a few large ones may make up.
-    Else it is the mean square of the store against its start: the variance and the square of how far from the mean the
-    store was at the start, which need not be a state that chance would give.
+    In the limit it is twice the variance. If a law gives the variance, the change approaches this limit as in an
+    Ornstein-Uhlenbeck process, and initially grows as the sum of the squared rates, to which a few large ones may
+    contribute most. Otherwise it is the mean square of the store relative to its start: the variance plus the square of
+    the initial deviation from the mean, which need not be a typical fluctuation.
     """
     if stored is None:
         store = np.cumsum(rates)
@@ -208,7 +218,7 @@ def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, fl
     if not (total := float(squares.sum())) > 0:
         return 0.0, math.inf
     reached = min(total / (2 * stored), FULL)
-    share = reached / math.expm1(reached)  # by which the change depends on the rates
+    share = reached / math.expm1(reached)  # dependence of the change on the rates
     effective = total * (total / float((squares**2).sum()))
     return -2 * stored * math.expm1(-reached), 2 * effective / share**2
 
@@ -216,15 +226,15 @@ def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, fl
 def ratio(
     numerator: np.ndarray, denominator: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0
 ) -> Estimate:
-    """Estimate of the ratio of the means of two correlated series; memory: see `error_of_mean`."""
+    """Return the estimate of the ratio of the means of two correlated series; memory: see `error_of_mean`."""
     return estimate(lambda a, b: a / b, numerator, denominator, theory=theory, memory=memory)
 
 
 def of_events(estimate: Estimate, number: float) -> Estimate:
     """Return an estimate from blocks of time in which `number` events happened, with no more samples than events.
 
-    Blocks without an event do not make an error better known. With fewer than FEWEST_EVENTS there is no error: the
-    scatter of a few lengths or times of an unknown distribution decides nothing.
+    Blocks without an event do not improve the knowledge of an error. With fewer than FEWEST_EVENTS there is no error,
+    as the scatter of a few values of an unknown distribution is not conclusive.
     """
     if number < FEWEST_EVENTS:
         return replace(estimate, standard_error=math.nan, independent_samples=number, blocks=())
@@ -232,7 +242,7 @@ def of_events(estimate: Estimate, number: float) -> Estimate:
 
 
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Kolmogorov-Smirnov distance: largest difference between the distribution function of samples and that of a law.
+    """Return the Kolmogorov-Smirnov distance: the largest difference between the distribution functions.
 
     samples: (n,), values. cdf: distribution function of the law.
     """
@@ -241,10 +251,10 @@ def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) ->
 
 
 def ks_p_value(distance: float, samples: int) -> float:
-    """Probability of a Kolmogorov-Smirnov distance of at least this one for so many independent samples of the law.
+    """Return the probability of a Kolmogorov-Smirnov distance of at least this for independent samples of the law.
 
-    Vrbik's correction of the limit, Pioneer J. Theor. Appl. Stat. 15, 15 (2018): off by 0.0025 for 10 samples, 0.0003
-    for 50 and less for more. The exact one of SciPy takes half a second to load.
+    Vrbik's correction of the limit is used, Pioneer J. Theor. Appl. Stat. 15, 15 (2018). It is off by 0.0025 for 10
+    samples, by 0.0003 for 50, and by less for more. The exact function of SciPy takes half a second to load.
     """
     from scipy import special
 
@@ -254,7 +264,7 @@ def ks_p_value(distance: float, samples: int) -> float:
 
 
 def bootstrap(values: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Estimate of the mean of independent values (n,), with its error by bootstrap.
+    """Return the estimate of the mean of independent values (n,), with its error by bootstrap.
 
     The bootstrap variance is multiplied by n/(n - 1), as it underestimates the variance of n replicates by this factor:
     Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
@@ -266,7 +276,10 @@ def bootstrap(values: np.ndarray, theory: Theory | float | None = None) -> Estim
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
-    """Mean of one quantity over independent runs; error by bootstrap with enough runs, else from their own errors."""
+    """Return the mean of one quantity over independent runs.
+
+    The error is by bootstrap if there are enough runs, otherwise from the errors of the runs.
+    """
     values, expected = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
     shared = sum(r.theory_error for r in replicates) / len(replicates)  # the error of theory is common to all runs
     theory = None if expected is None else Theory(expected, shared, "mean of runs")
@@ -279,6 +292,6 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:
-    """Mean of the theoretical values of all runs; None if one run has no theoretical value."""
+    """Return the mean of the theoretical values of all runs; None if one run has no theoretical value."""
     known = [theory for theory in theories if theory is not None]
     return sum(known) / len(known) if len(known) == len(theories) else None

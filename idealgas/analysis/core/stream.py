@@ -1,7 +1,7 @@
 """One pass over the flights of a log in bounded memory, for any number of tallies.
 
-A tally adds up what flights and the events at their ends contribute to B blocks of time. Where flights are cut at the
-edges of the blocks, time averages are exact. Shape of the sums: (B, …).
+A tally adds up the contributions of flights and of the events at their ends to B blocks of time. If flights are cut at
+the edges of the blocks, time averages are exact. Shape of the sums: (B, …).
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -17,7 +17,7 @@ from idealgas.log.flights import NO_EVENT, FlightReader
 from idealgas.state import Gas
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
-PLACES_AT_ONCE = 2**18  # positions that are in memory together
+PLACES_AT_ONCE = 2**18  # number of positions that are in memory at the same time
 DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
 
 VELOCITIES = ("velocity", "end_velocity", "new_velocity")
@@ -34,11 +34,11 @@ class Tally(Protocol):
     def cut(self) -> bool:
         """Whether it takes all flights, cut at the edges of the blocks.
 
-        Otherwise it takes those that events end, each as a whole and in the block of its end.
+        Otherwise it takes the flights that events end, each as a whole and in the block of its end.
         """
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the state of the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
 
     def add(self, flights: Flights) -> None:
         """Add the next flights."""
@@ -64,9 +64,11 @@ def stream(
     def moving(flights: Flights) -> Flights:
         if not frame.any():
             return flights
-        found = {name: getattr(flights, name) for name in VELOCITIES}
-        relative = {id(values): _less(values, frame) for values in found.values() if values is not None}  # maybe shared
-        moved: dict[str, Any] = {name: relative.get(id(values)) for name, values in found.items()}
+        values_by_name = {name: getattr(flights, name) for name in VELOCITIES}
+        relative = {
+            id(values): _less(values, frame) for values in values_by_name.values() if values is not None
+        }  # arrays may be shared
+        moved: dict[str, Any] = {name: relative.get(id(values)) for name, values in values_by_name.items()}
         return flights._replace(**moved)
 
     for tally in tallies:
@@ -96,30 +98,30 @@ def stream(
 
 
 def _less(velocity: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Velocities (n, 2) relative to a velocity (2,), by component: NumPy takes long for many short rows."""
-    found = np.empty_like(velocity)
+    """Return velocities (n, 2) relative to a velocity (2,), by component, as NumPy is slow for many short rows."""
+    relative = np.empty_like(velocity)
     for axis in range(2):
-        np.subtract(velocity[:, axis], frame[axis], out=found[:, axis])
-    return found
+        np.subtract(velocity[:, axis], frame[axis], out=relative[:, axis])
+    return relative
 
 
 def add_to(sums: np.ndarray, index: np.ndarray, values: np.ndarray | None = None) -> None:
-    """Add values (n,), or 1 for each index, to the places `index` (n,) of sums, counted along all of their axes."""
+    """Add values (n,), or 1 for each index, to the elements `index` (n,) of the flattened sums."""
     if len(index):
         low = int(index.min())
-        found = np.bincount(index - low, values)
-        sums.reshape(-1)[low : low + len(found)] += found if values is not None else found.astype(sums.dtype)
+        added = np.bincount(index - low, values)
+        sums.reshape(-1)[low : low + len(added)] += added if values is not None else added.astype(sums.dtype)
 
 
 def began_in(edges: np.ndarray, start: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """Blocks in which intervals started that end in the given blocks."""
+    """Return the blocks in which intervals started that end in the given blocks."""
     return np.minimum(edges.searchsorted(start, "right") - 1, block)
 
 
 def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
-    """Times (B + 1,) between blocks of equal width between `start` and `end`.
+    """Return the times (B + 1,) between blocks of equal width between `start` and `end`.
 
-    A block is not shorter than the mean time between two events of a disc, unless there were too few blocks then.
+    A block is at least as long as the mean time between two events of a disc, unless this leaves too few blocks.
     """
     log.require_events()
     first, last = span(log, start, end)
@@ -132,7 +134,7 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
 
 
 def frames(log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None) -> Iterator[LogState]:
-    """States of a log at increasing times, each counted by `progress` once it is used."""
+    """Yield the states of a log at increasing times; `progress` counts each state once it has been used."""
     for k, state in enumerate(log.frames(times)):
         yield state
         if progress is not None:
@@ -140,7 +142,7 @@ def frames(log: Log, times: np.ndarray, progress: Callable[[int, int], None] | N
 
 
 def span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
-    """Start and end of a window in units of time, by default those of the log.
+    """Return the start and the end of a window, time, by default those of the log.
 
     Raises:
         UserError: if the log does not cover the window, or if the end is not after the start.
@@ -153,7 +155,7 @@ def span(log: Log, start: float | None, end: float | None) -> tuple[float, float
 
 
 def exact(number: float) -> str:
-    """A number with as many digits as distinguish it from any other."""
+    """Return a number with as many digits as distinguish it from any other."""
     return repr(float(number)).removesuffix(".0")
 
 
@@ -162,7 +164,7 @@ def _covered(log: Log) -> str:
 
 
 def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (length) and velocities (length/time) of M discs at G times in order, each (G, M, 2).
+    """Return positions (length) and velocities (length/time) of M discs at G times in order, each (G, M, 2).
 
     Positions are unwrapped along periodic axes.
     """
@@ -189,15 +191,15 @@ def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple
 def trajectories(
     log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None = None
 ) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
-    """Positions and velocities of all discs at times (G,) in order, relative to the centre of mass, in bounded memory.
+    """Yield positions and velocities of all discs at times (G,) in order, relative to the centre of mass.
 
-    Yields the next g of the times as a slice, and unwrapped positions (length) and velocities (length/time), each
-    (g, N, 2). progress(done, total) is called with numbers of times.
+    Memory is bounded. Each item has the next g of the times as a slice, and unwrapped positions (length) and velocities
+    (length/time), each (g, N, 2). progress(done, total) is called with numbers of times.
     """
     drift, discs = centre_of_mass_velocity(log), np.arange(len(log.discs))
-    some = max(PLACES_AT_ONCE // len(discs), 1)
-    for first in range(0, len(times), some):
-        now = times[first : first + some]
+    at_once = max(PLACES_AT_ONCE // len(discs), 1)
+    for first in range(0, len(times), at_once):
+        now = times[first : first + at_once]
         places, velocities = sample_trajectories(log, now, discs)
         yield slice(first, first + len(now)), places - drift * now[:, None, None], velocities - drift
         if progress is not None:

@@ -1,7 +1,7 @@
-"""Momentum that collisions pass on along the line of centres, a part of the pressure tensor, in strips of the box.
+"""Collisional part of the pressure tensor in strips of the box: momentum transferred along the line of centres.
 
-Irving & Kirkwood, J. Chem. Phys. 18, 817 (1950). A collision of hard discs passes its momentum on at once, so that a
-log has all of it: each strip takes the part of the line of centres that lies in it.
+Irving & Kirkwood, J. Chem. Phys. 18, 817 (1950). A collision of hard discs transfers its momentum instantaneously, so
+that a log contains all of it: each strip receives the part of the line of centres that lies in it.
 """
 
 from collections.abc import Iterator
@@ -15,10 +15,12 @@ from idealgas.state import Gas
 
 
 class PassedOn:
-    """Momentum that collisions pass on, in K strips along an axis.
+    """Momentum that collisions transfer, in K strips along an axis.
 
-    stress: (B, K, 3), Σ Δp_x x, Σ Δp_y y and Σ Δp_t n in B blocks, with n along the axis and t across it, energy·time.
-    collisions: (B,), their number.
+    Attributes:
+        stress: (B, K, 3), Σ Δp_x x, Σ Δp_y y and Σ Δp_t n in B blocks, with n along the axis and t across it,
+            energy·time.
+        collisions: (B,), number of collisions.
     """
 
     columns = ("disc", "block", "end", "kind", "partner", "end_velocity", "new_velocity", "end_position")
@@ -30,7 +32,7 @@ class PassedOn:
         self._periodic, self._shear = periodic, shear
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with a number of blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._mass, self._box = gas.mass, gas.box
         self._sums, self.collisions = np.zeros((3, len(edges) - 1, self._bins)), np.zeros(len(edges) - 1)
 
@@ -50,12 +52,15 @@ class PassedOn:
                 add_to(sums, row + strip, share * value)
 
     def finish(self) -> None:
-        """Make the sums known."""
+        """Set the attributes from the sums."""
         self.stress = np.moveaxis(self._sums, 0, 2)
 
-    def _shares(self, one: np.ndarray, other: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Strips and the parts in them of lines between two ends, in widths of a strip from the first edge on."""
-        low, high = np.minimum(one, other), np.maximum(one, other)
+    def _shares(self, start: np.ndarray, end: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield strips and the fractions in them of lines between two ends.
+
+        The ends are in widths of a strip from the first edge.
+        """
+        low, high = np.minimum(start, end), np.maximum(start, end)
         first, length = np.floor(low), high - low
         for k in range(int((high - first).max(initial=0.0)) + 1):
             inside = np.minimum(high, first + k + 1) - np.maximum(low, first + k)

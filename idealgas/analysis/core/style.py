@@ -1,4 +1,4 @@
-"""Common style of all pictures: colours that colour-blind readers can distinguish, and panels."""
+"""Common style of all figures: colours that colour-blind readers can distinguish, and panels."""
 
 import io
 import os
@@ -26,12 +26,12 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
 
 LINES, MARKERS = ("-", "--", "-.", ":"), ("o", "s", "^", "D")
-"""What curves of one colour differ in."""
+"""Line styles and markers that distinguish curves of one colour."""
 
 BLACK, GREY = "#000000", "#767676"
 GRID = "#dddddd"
 BAND = 0.2
-"""Opacity of the band of an error."""
+"""Opacity of an error band."""
 
 WIDTH, HEIGHT = 5.2, 3.2
 """Size of a panel, inches."""
@@ -40,30 +40,35 @@ BELOW = 30
 """Distance of a legend from the axis above it, points."""
 
 LONG_LABEL = 30
-"""Number of characters from which on labels of a legend stand in one column."""
+"""Number of characters above which the labels of a legend are in a single column."""
 
 LEGEND_ROWS = 8
-"""Most rows of a legend; with many more, nothing would be left for the panel above it."""
+"""Largest number of rows of a legend; many more would leave no room for the panel above it."""
 
 LABEL_CHARACTERS = 48
-"""Number of characters after which the text of a label goes on in the next line."""
+"""Number of characters after which a label is continued on the next line."""
 
 DPI = 200
 TITLE_CHARACTERS, TITLE_LINES = 10, 2
-"""Characters of a title on an inch, and largest number of its lines."""
+"""Number of characters of a title per inch, and largest number of its lines."""
 
 
 def curve_style(k: int) -> tuple[str, str, str]:
-    """Colour, line and marker of curve k of several: where a colour comes again, its line and marker are others."""
+    """Return colour, line style and marker of curve k; if a colour is used again, its line style and marker differ."""
     again, colour = divmod(k, len(COLOURS))
     return COLOURS[colour], LINES[again % len(LINES)], MARKERS[again % len(MARKERS)]
 
 
 @dataclass(frozen=True)
 class Strips:
-    """Strips that a panel shows the density of discs in: axis 0 for x or 1 for y; first and last edge (length), number.
+    """Strips of a panel that shows the density of discs.
 
-    area: of one strip, length².
+    Attributes:
+        axis: 0 for x or 1 for y.
+        first: first edge, length.
+        last: last edge, length.
+        number: number of strips.
+        area: area of one strip, length².
     """
 
     axis: int
@@ -74,25 +79,26 @@ class Strips:
 
 
 class Panel(Axes):
-    """One panel of a picture: what its vertical axis shows is written above it, and what its curves are, below it.
+    """One panel of a figure, with the label of its vertical axis above it and its legend below it.
 
-    in_time: whether its horizontal axis is the time of a run, so that a page can show an instant in it. strips: what a
-    page can show of an instant in a profile of the density; None for other panels.
+    Attributes:
+        in_time: whether its horizontal axis is the time of a run, so that a page can mark an instant in it.
+        strips: strips in which a page can show the density at an instant; None for other panels.
     """
 
     in_time = False
     strips: Strips | None = None
 
     def set_ylabel(self, ylabel: str, *args: Any, **options: Any) -> Text:  # type: ignore[override]
-        """Write above the panel what its vertical axis shows."""
+        """Write the label of the vertical axis above the panel."""
         return self.set_title(ylabel, loc="left", fontsize="medium")
 
     def get_ylabel(self) -> str:
-        """What the vertical axis shows, as `set_ylabel` took it."""
+        """Return the label of the vertical axis that `set_ylabel` has set."""
         return self.get_title(loc="left")
 
     def entries(self) -> tuple[dict[str, Any], int]:
-        """Return the entries of a legend, once for a label and of very many the first ones, and its number of columns.
+        """Return the entries of a legend, each label once, and its number of columns; a long legend is cut.
 
         An entry is what matplotlib shows of a curve, by its label.
         """
@@ -106,9 +112,9 @@ class Panel(Axes):
         return entries, columns
 
     def legend(self, *args: Any, **options: Any) -> Legend:
-        """Say below the panel what its curves are."""
+        """Draw the legend of the curves below the panel."""
         entries, columns = self.entries()
-        if not entries:  # matplotlib makes no legend of given lists without entries
+        if not entries:  # matplotlib draws no legend for empty lists
             return super().legend(handles=[])
         below = self.transAxes + ScaledTranslation(0, -BELOW / 72, self.figure.dpi_scale_trans)
         place = {"loc": "upper left", "bbox_to_anchor": (-0.02, 0), "bbox_transform": below, "ncols": columns}
@@ -122,9 +128,10 @@ class Panel(Axes):
         self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK,
         linestyle: str = "--", marker: str = "",
     ) -> None:  # fmt: skip
-        """Draw a theory at places, None for all, as a line in a band of its error (one standard deviation).
+        """Draw a theory as a line in a band of its error (one standard deviation).
 
-        marker: of the places, if the line between them is not the theory.
+        x: positions of the values, or None for a constant. marker: marker of the values, if the line between them is
+        not the theory.
         """
         if x is None:
             self.axhline(value, color=color, linestyle="--", linewidth=0.9, label=label, zorder=3)
@@ -136,7 +143,7 @@ class Panel(Axes):
             self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
 
     def theory_of_row(self, row: int, found: "Estimate", label: str | None = "theory") -> None:
-        """Draw the theory of an estimate in its row of a list, if it has one, in a band of its error."""
+        """Draw the theory of an estimate, if it has one, in its row of a list, in a band of its error."""
         if found.theory is None:
             return
         ends, error = [row - 0.35, row + 0.35], found.theory_error
@@ -150,10 +157,10 @@ class Panel(Axes):
 
 
 class Picture(Figure):
-    """A figure that notebooks show as it is, whether or not pyplot is in use."""
+    """A figure that notebooks display whether or not pyplot is in use."""
 
     def _repr_png_(self) -> bytes:
-        """The picture as PNG."""
+        """Return the figure as PNG."""
         disable_mathtext(self)
         file = io.BytesIO()
         self.savefig(file, format="png")
@@ -161,7 +168,7 @@ class Picture(Figure):
 
 
 def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> None:
-    """Write a picture in the format given by the ending of its path; an existing one is replaced only with `force`.
+    """Write a figure in the format given by the ending of its path; an existing file is replaced only with `force`.
 
     Raises:
         OutputError: if the file cannot be written.
@@ -169,18 +176,18 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
     kind = Path(path).suffix.lower()
     disable_mathtext(figure)
     with written(path, kind, force) as part:
-        file = io.BytesIO()  # not every format of matplotlib ends well on a disk that is full
+        file = io.BytesIO()  # not every format of matplotlib fails cleanly on a full disk
         figure.savefig(file, dpi=DPI, format=kind.removeprefix("."))
         part.write_bytes(file.getvalue())
 
 
 def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:
-    """Names at 0, 1, … of the vertical axis."""
+    """Write names at 0, 1, … of the vertical axis."""
     ax.set_yticks(range(len(names)), list(map(plain, names)), **options)
 
 
 def disable_mathtext(figure: Figure) -> None:
-    """Show every text of a figure as it is: `$` and control characters in names have no meaning."""
+    """Show every text of a figure literally: `$` and control characters in names have no meaning."""
     for text in figure.findobj(Text):
         text.set_text("\n".join(map(plain, text.get_text().split("\n"))))
         if "$" in text.get_text():
@@ -188,7 +195,7 @@ def disable_mathtext(figure: Figure) -> None:
 
 
 def add_title(figure: Figure, title: str) -> Figure:
-    """Write a title above a picture, in at most TITLE_LINES lines, and return the picture."""
+    """Write a title above a figure, in at most TITLE_LINES lines, and return the figure."""
     width = int(TITLE_CHARACTERS * figure.get_figwidth())
     text = fill(plain(title), width, max_lines=TITLE_LINES, placeholder=" …")
     figure.suptitle(text, x=0.02, ha="left", weight="bold", size="medium")
@@ -196,7 +203,7 @@ def add_title(figure: Figure, title: str) -> Figure:
 
 
 def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
-    """Make a figure with panels in rows and columns; the panels are listed row by row."""
+    """Return a figure with panels in rows and columns; the panels are listed row by row."""
     figure = Picture(figsize=(WIDTH * columns, 0.3 + HEIGHT * rows), layout="constrained")
     axes = [cast(Panel, figure.add_subplot(rows, columns, k + 1, axes_class=Panel)) for k in range(rows * columns)]
     for ax in axes:
@@ -204,15 +211,16 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.ticklabel_format(useOffset=False)
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
-        ax.spines[["bottom", "left"]].set_in_layout(False)  # numbers of the axes reach farther
-        ax.yaxis.set_label_coords(0, 0)  # of no label, whose place would be sought again and again
+        ax.spines[["bottom", "left"]].set_in_layout(False)  # tick labels extend beyond them
+        ax.yaxis.set_label_coords(0, 0)  # fixed, as the position of the absent label would be computed repeatedly
     return figure, axes
 
 
 def block_figure(found: Mapping[tuple[tuple[float, float], ...], str], length: float, unit: str) -> Figure:
-    """Picture of errors by blocks over the stated error; where they still rise, slower fluctuations are unseen.
+    """Draw errors by blocks over the stated error; where they still rise, slower fluctuations are not resolved.
 
-    found: names of estimates by their `Estimate.blocks`. length: of the series they are shares of, and its unit.
+    found: names of estimates by their `Estimate.blocks`. length: length of the series that the blocks are fractions of.
+    unit: unit of this length.
     """
     figure, axes = panels(-(-len(found) // 2), min(len(found), 2))
     for ax, (blocks, name) in zip(axes, found.items(), strict=False):

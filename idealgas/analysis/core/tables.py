@@ -20,8 +20,11 @@ if TYPE_CHECKING:
 class Number(NamedTuple):
     """A number in a table.
 
-    value: the number, None if there is none. digits: format of the number. absent: text that is shown if there is no
-    value. instead: text that is shown instead of the value.
+    Attributes:
+        value: the number; None if there is none.
+        digits: format of the number.
+        absent: text that is shown if there is no value.
+        instead: text that is shown instead of the value.
     """
 
     value: float | None
@@ -42,9 +45,13 @@ Cell = str | Number
 class Table:
     """A table of a result.
 
-    title: heading of the table. heads: headings of the columns; the first column names the rows. rows: cells, row by
-    row. notes: lines printed before the rows. most: largest number of rows that are shown, evenly chosen from all rows.
-    found: estimates of the rows, if rows are estimates.
+    Attributes:
+        title: heading of the table.
+        heads: headings of the columns; the first column names the rows.
+        rows: cells, row by row.
+        notes: lines that are printed before the rows.
+        most: largest number of rows that are shown, evenly chosen from all rows; None for all rows.
+        found: estimates of the rows, if the rows are estimates.
     """
 
     title: str
@@ -56,7 +63,7 @@ class Table:
 
     @property
     def shown(self) -> list[list[str]]:
-        """Cells of the rows that are shown on the terminal and in the report, as text."""
+        """Cells, as text, of the rows that are shown on the terminal and in the report."""
         rows, last = self.rows, len(self.rows) - 1
         if self.most is not None and last >= self.most:
             rows = [rows[round(last * k / (self.most - 1))] for k in range(self.most)]
@@ -72,13 +79,13 @@ SHOWN_ROWS = 9
 """Number of instants of a series that the terminal and the report show."""
 
 THEORY_ERROR = "± theory"
-"""Heading of the error of theory, a column of those tables in which a theory has one."""
+"""Heading of the error of theory, a column of the tables in which a theory has an error."""
 
 
 def digits(error: float, *shown: float | None) -> str:
-    """Format of numbers by which an error has two digits, and the numbers `shown` with it as many decimals.
+    """Return the format of numbers in which an error has two digits, and the numbers `shown` as many decimals.
 
-    With powers of ten where these decimals are too many, or beyond MOST_DIGITS; six digits without an error.
+    Powers of ten are used if there are too many decimals, or beyond MOST_DIGITS. Without an error there are six digits.
     """
     if not (math.isfinite(error) and error > 0):
         return ".6g"
@@ -90,33 +97,37 @@ def digits(error: float, *shown: float | None) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> tuple[Number, Number]:
-    """Cells of a number and of its error: two digits of the error, and the number to match."""
+    """Return the cells of a number and of its error: two digits of the error, and the number to match."""
     form = digits(math.nan if error is None else error, value)
     return Number(value, form), Number(error, form if "e" not in form else ".1e")
 
 
 def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequence[str] = ()) -> Table:
-    """Table of named estimates with value, standard error, independent samples, theory, its error and deviation."""
+    """Return a table of named estimates: value, standard error, samples, theory, its error and deviation."""
     rows = list(rows)
-    rough = any(found.theory_error > 0 for _, found in rows)
+    rough = any(estimate.theory_error > 0 for _, estimate in rows)
 
-    def cells(name: str, found: "Estimate") -> tuple[Cell, ...]:
-        by_law = math.isinf(found.independent_samples)
-        samples = Number(found.independent_samples, ".0f", instead="" if by_law else None)
-        said = "exact" if by_law and found.standard_error == 0 else "" if math.isnan(found.standard_error) else None
-        value, spread = with_error(found.value, found.standard_error)
-        known = (
-            with_error(found.theory, found.theory_error) if found.theory_error else (Number(found.theory), Number(0.0))
+    def cells(name: str, estimate: "Estimate") -> tuple[Cell, ...]:
+        by_law = math.isinf(estimate.independent_samples)
+        samples = Number(estimate.independent_samples, ".0f", instead="" if by_law else None)
+        instead = (
+            "exact" if by_law and estimate.standard_error == 0 else "" if math.isnan(estimate.standard_error) else None
         )
-        theory = (known if rough else known[:1]) if found.theory is not None else (Number(None),) * (1 + rough)
-        return name, value, spread._replace(instead=said), samples, *theory, Number(found.deviation, "+.2f")
+        value, spread = with_error(estimate.value, estimate.standard_error)
+        known = (
+            with_error(estimate.theory, estimate.theory_error)
+            if estimate.theory_error
+            else (Number(estimate.theory), Number(0.0))
+        )
+        theory = (known if rough else known[:1]) if estimate.theory is not None else (Number(None),) * (1 + rough)
+        return name, value, spread._replace(instead=instead), samples, *theory, Number(estimate.deviation, "+.2f")
 
     heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
-    return Table(title, heads, [cells(*row) for row in rows], notes, found=[found for _, found in rows])
+    return Table(title, heads, [cells(*row) for row in rows], notes, found=[estimate for _, estimate in rows])
 
 
 def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath]") -> list[Table]:
-    """Tables of collision rates (1/time), mean free paths (length) and mean free times (time) of each species."""
+    """Return tables of collision rates (1/time), mean free paths (length) and mean free times (time)."""
     between = [
         (f"{entry.species}: {name}", value)
         for entry in paths
@@ -129,14 +140,17 @@ def collision_tables(rates: "Iterable[CollisionRate]", paths: "Iterable[FreePath
 
 
 def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
-    """Table of the components of the pressure tensor, by their names."""
-    return estimates("Pressure tensor (energy/length²)", [(f"P {name}", one) for name, one in tensor.items()])
+    """Return the table of the components of the pressure tensor, by their names."""
+    return estimates(
+        "Pressure tensor (energy/length²)", [(f"P {name}", component) for name, component in tensor.items()]
+    )
 
 
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
-    """Table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS of the instants.
+    """Return a table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS instants.
 
-    What is not finite is an empty cell. A column whose name begins with ± has the errors of the column before it.
+    Values that are not finite give empty cells. A column whose name begins with ± contains the errors of the column
+    before it.
     """
     shown = {name: values.tolist() for name, values in columns.items() if values is not None}
     rows = [[Number(x if math.isfinite(x) else None) for x in row] for row in zip(*shown.values(), strict=True)]
@@ -147,13 +161,13 @@ def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: S
 
 
 def describe(window: "Window") -> str:
-    """One line that describes the window of time an analysis used."""
+    """Return a line that describes the window of time of an analysis."""
     how = f"from detected {window.state}" if window.detected else "as asked"
     return f"window: t = {window.start:.6g} to {window.end:.6g} ({how})"
 
 
 def as_text(tables: Iterable[Table]) -> str:
-    """Tables one below another as plain text, each after its notes: columns aligned, numbers to the right."""
+    """Return tables as plain text, each after its notes: columns aligned, numbers to the right."""
     lines: list[str] = []
     for table in tables:
         lines += table.notes
@@ -170,17 +184,17 @@ def as_text(tables: Iterable[Table]) -> str:
 
 
 def format_estimate(found: "Estimate") -> str:
-    """An estimate with its standard error in units of its last digit, see `with_last_digits`."""
+    """Return an estimate with its standard error in units of its last digit, see `with_last_digits`."""
     return with_last_digits(found.value, found.standard_error)
 
 
 def escape(text: str) -> str:
-    """A text as HTML that shows it as it is, in an element or in an attribute."""
+    """Return a text as HTML that shows it literally, in an element or in an attribute."""
     return html.escape(plain(text))
 
 
 def html_table(table: Table) -> str:
-    """The rows of a table that are shown, with its title as caption; its notes are not part of it."""
+    """Return the rows of a table that are shown, with its title as caption; its notes are not included."""
     heads = [escape(head) for head in table.heads]
     head = "".join(f"<th>{head}</th>" if head else "<td></td>" for head in heads)
     head = f"<tr>{head}</tr>" if any(heads) else ""
@@ -189,13 +203,13 @@ def html_table(table: Table) -> str:
 
 
 def _cells(heads: Iterable[str], cells: Iterable[str]) -> Iterator[str]:
-    """Cells of a row; each with the heading of its column, for pages that are too narrow for rows."""
+    """Yield the cells of a row, each with the heading of its column, for pages that are too narrow for rows."""
     for head, cell in zip(heads, cells, strict=True):
         yield f'<td data-head="{head}">{escape(cell)}</td>' if head else f"<td>{escape(cell)}</td>"
 
 
 def html_tables(tables: Iterable[Table]) -> str:
-    """Tables one below another, each after its notes, as a notebook shows them."""
+    """Return tables one below another, each after its notes, as a notebook displays them."""
     parts = []
     for table in tables:
         parts += [f"<p>{escape(note)}</p>" for note in table.notes]
@@ -208,9 +222,12 @@ BAR_WIDTH = 50
 
 
 def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] | None) -> str:
-    """A line for each bin: its lower edge, a bar as long as its density, and a mark at the density of a law, if any.
+    """Return a line for each bin: its lower edge, a bar as long as its density, and a mark at the density of a law.
 
-    lows: lower edges of the bins. density: of each bin, 1/unit. law: the same by a law.
+    Args:
+        lows: lower edges of the bins.
+        density: density of each bin, 1/unit.
+        law: density of each bin by a law; None without one.
     """
     highest = max(*density, *(law or ())) or 1.0
     names = _aligned([f"{low:.3g}" for low in lows])
@@ -225,6 +242,8 @@ def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] |
 
 
 def _aligned(numbers: list[str]) -> list[str]:
-    """Numbers with as many decimals as the one that has most, unless some have a power of ten."""
+    """Return numbers with as many decimals as the number with most decimals, unless any has a power of ten."""
     decimals = max(len(number.partition(".")[2]) for number in numbers)
-    return numbers if any("e" in number for number in numbers) else [f"{float(one):.{decimals}f}" for one in numbers]
+    return (
+        numbers if any("e" in number for number in numbers) else [f"{float(number):.{decimals}f}" for number in numbers]
+    )

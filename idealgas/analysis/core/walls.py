@@ -1,8 +1,8 @@
-"""Pressure on every wall and face in blocks of time: momentum that discs give to it, per time and exposed length.
+"""Pressure on every wall and face in blocks of time: the momentum that discs give to it, per time and exposed length.
 
-This is what a gauge in the wall would show. It needs no equilibrium and no theory. Walls act on the centres of the
-discs one radius inside the box; the length is that of the wall itself, of a side that of its part beside chambers with
-discs.
+This is what a gauge in the wall would measure, without equilibrium or theory. Walls act on the centres of the discs one
+radius inside the box. The length is that of the wall itself; for a side of the box, that of its part beside chambers
+with discs.
 """
 
 import math
@@ -26,11 +26,15 @@ from idealgas.state import Gas
 class WallImpulses:
     """Momentum given to each of W walls in each of B blocks of time, mass·length/time.
 
-    normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
-    faces: (B, W, 2, 2), momentum given to the first and to the second face by discs that touch the body of the wall,
-    perpendicular to it and along it; the direction along a wall is its first normal turned by -90°, for a segment from
-    its start to its end. given: (B, W, 2), momentum along x and y, with that of discs that touch the ends of the wall.
-    hits: (B, W), numbers of hits. The normal of an arc is that at the place of the hit.
+    The normal of an arc is that at the position of the hit.
+
+    Attributes:
+        normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
+        faces: (B, W, 2, 2), momentum given to the first and the second face by discs that touch the body of the wall,
+            perpendicular to it and along it. The direction along a wall is its first normal turned by -90°, for a
+            segment from its start to its end.
+        given: (B, W, 2), momentum along x and y, including that of discs that touch the ends of the wall.
+        hits: (B, W), numbers of hits.
     """
 
     columns: tuple[str, ...] = ("disc", "block", "kind", "partner", "end_velocity", "new_velocity")
@@ -58,22 +62,24 @@ class WallImpulses:
 
     def add(self, flights: Flights) -> None:
         """Add the hits at the ends of the next flights."""
-        some = np.flatnonzero(is_wall_hit(flights.kind))
-        wall = -1 - flights.partner[some]
-        place = flights.block[some] * len(self.normals) + wall
-        given = self._mass[flights.disc[some], None] * (flights.end_velocity[some] - flights.new_velocity[some])
+        wall_hits = np.flatnonzero(is_wall_hit(flights.kind))
+        wall = -1 - flights.partner[wall_hits]
+        place = flights.block[wall_hits] * len(self.normals) + wall
+        given = self._mass[flights.disc[wall_hits], None] * (
+            flights.end_velocity[wall_hits] - flights.new_velocity[wall_hits]
+        )
         add_to(self.hits, place)
         for axis in range(2):
             add_to(self.given, place * 2 + axis, given[:, axis])
-        body = np.flatnonzero(~np.isin(flights.kind[some], (Kind.WALL_END, Kind.FIXED_DISC)))
-        (px, py), (nx, ny) = given[body].T, self._normals(flights, some[body], wall[body]).T
+        body = np.flatnonzero(~np.isin(flights.kind[wall_hits], (Kind.WALL_END, Kind.FIXED_DISC)))
+        (px, py), (nx, ny) = given[body].T, self._normals(flights, wall_hits[body], wall[body]).T
         across = px * nx + py * ny
         face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
         add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
         add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
 
     def _normals(self, flights: Flights, hits: np.ndarray, wall: np.ndarray) -> np.ndarray:
-        """Unit normals (H, 2) of the first faces of walls where discs hit them."""
+        """Return unit normals (H, 2) of the first faces of walls where discs hit them."""
         normals = self.normals[wall]
         if (curved := np.flatnonzero(self._turn[wall])).size:
             assert flights.end_position is not None
@@ -87,9 +93,9 @@ class WallImpulses:
 
 
 class SampledWalls:
-    """Momentum given to W walls in B blocks of time, as that of `WallImpulses`, by sums in samples.
+    """Momentum given to W walls in B blocks of time, like that of `WallImpulses`, from sums in samples.
 
-    normals, faces, given, hits: as there, but what discs give to the ends of a segment counts for its faces.
+    The attributes are those of `WallImpulses`, but the momentum given to the ends of a segment counts for its faces.
     """
 
     def __init__(self, log: Log, impacts: SampledImpacts) -> None:
@@ -110,11 +116,15 @@ class SampledWalls:
 
 @dataclass(frozen=True)
 class Face:
-    """One face of a wall that discs can hit, with what they gave it in each of B blocks of time.
+    """One face of a wall that discs can hit, with the momentum given to it in each of B blocks of time.
 
-    name: of the wall, and for a wall segment of the direction in which the face looks. wall: number of the wall. push,
-    along: (B,), momentum pressed on the face and given along it, mass·length/time. exposed: (B,), length of the face
-    times the time that it was there, length·time. hits: number of hits of the wall.
+    Attributes:
+        name: name of the wall; that of a wall segment is followed by the direction in which the face looks.
+        wall: number of the wall.
+        push: (B,), momentum pressed on the face, mass·length/time.
+        along: (B,), momentum given along the face, mass·length/time.
+        exposed: (B,), length of the face times the time for which it was present, length·time.
+        hits: number of hits of the wall.
     """
 
     name: str
@@ -126,20 +136,22 @@ class Face:
 
 
 def wall_name(wall: int, name: str) -> str:
-    """Name of a wall by its number and its own name, for tables: a side of the box is called a wall."""
+    """Return the name of a wall for tables, where a side of the box is called a wall, from its number and name."""
     return f"{name} wall" if wall < FIRST_SEGMENT else name
 
 
 class WallGauge:
-    """Pressure on all walls of a log: the tallies that `stream` has to fill, and what follows from them.
+    """Pressure on all walls of a log: the tallies that `stream` has to fill, and the results.
 
-    impulses: momentum given to walls. moving: places of the pistons in time.
+    Attributes:
+        impulses: momentum given to walls.
+        moving: positions of the pistons in time.
     """
 
     impulses: WallImpulses | SampledWalls
 
     def __init__(self, log: Log, sampled: SampledWalls | None = None) -> None:
-        """Take the walls of a log; sampled: what they were given, if it does not come from events."""
+        """Take the walls of a log; sampled: the momentum given to them, if it does not come from events."""
         self._log = log
         self.impulses = sampled or WallImpulses(log)
         self.moving = tuple(MovingWall(log, k) for k in range(len(log.scene.piston)))
@@ -156,7 +168,7 @@ class WallGauge:
         return any(piston.outward for piston in self.moving)
 
     def _depth(self) -> np.ndarray:
-        """Mean length (B,) of the gas in each block of time along the axis of the pistons that bound it."""
+        """Return the mean length of the gas between the pistons that bound it, in each block of time, (B,)."""
         low: Any = 0.0
         high: Any = self._log.box[self.moving[0].axis]
         for piston in self.moving:
@@ -166,14 +178,20 @@ class WallGauge:
         return np.asarray(high - low)
 
     def area(self, edges: np.ndarray) -> np.ndarray:
-        """Area (B,) of the gas in each block of time: of chambers with discs, or the room of pistons, length²."""
+        """Return the area of the gas in each block of time, (B,), length².
+
+        It is that of chambers with discs, or the area that pistons leave.
+        """
         if not self.bounded:
             return np.full(len(edges) - 1, Chambers(self._log, float(edges[-1])).area)
         return self._depth() * self.moving[0].across
 
     def faces(self, edges: np.ndarray) -> list[Face]:
-        """Faces of sides that are not periodic and of wall segments; edges: (B + 1,), times between the blocks."""
-        found = []
+        """Return the faces of sides that are not periodic and of wall segments.
+
+        edges: (B + 1,), times between the blocks.
+        """
+        exposed_faces = []
         solids = any(self._log.scene.solids.walls.values())
         for k, wall in enumerate(number_walls(self._log.scene)):
             if wall.radius or (k < FIRST_SEGMENT and self._log.periodic[axis_of(k)]):
@@ -186,13 +204,13 @@ class WallGauge:
                 names = [f"{wall.name}, {name}" for name in self._looks(k, wall)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
-                if solids and not push.any():  # it looks into a solid
+                if solids and not push.any():  # the face looks into a solid
                     continue
-                found.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
-        return found
+                exposed_faces.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
+        return exposed_faces
 
     def _looks(self, k: int, wall: NumberedWall) -> tuple[str, str]:
-        """Directions in which the two faces of wall k look."""
+        """Return the directions in which the two faces of wall k look."""
         if wall.arc:
             return ("inside", "outside") if wall.arc.turn > 0 else ("outside", "inside")
         x, y = self.impulses.normals[k]
@@ -200,7 +218,10 @@ class WallGauge:
         return names if (x if abs(x) >= abs(y) else y) > 0 else (names[1], names[0])
 
     def _exposed(self, k: int, wall: NumberedWall, edges: np.ndarray) -> np.ndarray:
-        """Length of wall k times the time that it is there, in each block; of a side, where gas is beside it."""
+        """Return the length of wall k times the time for which it is present, in each block, (B,).
+
+        Of a side of the box only the part beside gas counts.
+        """
         width = np.diff(edges)
         if k < len(SIDES) and self.bounded and axis_of(k) != self.moving[0].axis:
             return self._depth() * width
@@ -214,14 +235,17 @@ class WallGauge:
 
 
 class MovingWall:
-    """Place of a piston in time, as a tally over the flights of a log.
+    """Position of a piston in time, as a tally over the flights of a log.
 
-    The piston position is known at its samples and at every hit of a disc, and lies on a parabola in between. A
-    bounce at the piston's end stop between two such times is left out.
+    The position of the piston is known at its samples and at every hit of a disc, and lies on a parabola in between. A
+    bounce at the end stop of the piston between two such times is not resolved.
 
-    wall: number of the piston among the walls. axis: along which it moves, 0 for x, 1 for y. across: its
-    length. outward: direction from the gas to it, 0 with gas on both its sides. place: (B,), its mean coordinate in
-    each block of time, length.
+    Attributes:
+        wall: number of the piston among the walls.
+        axis: axis along which it moves, 0 for x, 1 for y.
+        across: length of the piston, length.
+        outward: direction from the gas to it, 0 with gas on both sides.
+        place: (B,), its mean coordinate in each block of time, length.
     """
 
     columns = ("disc", "end", "kind", "partner", "end_position")
@@ -245,7 +269,7 @@ class MovingWall:
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
         """Start at time edges[0]; edges: (B + 1,), times between the blocks."""
         self._edges, self._radius = edges, gas.radius
-        self._sums = np.zeros(len(edges))  # integral of the place from the first known time to each edge
+        self._sums = np.zeros(len(edges))  # integral of the position from the first known time to each edge
         time, place = self._samples
         k = max(int(time.searchsorted(edges[0], "right")) - 1, 0)
         self._known = np.array([[time[k], place[k]]])
@@ -260,15 +284,15 @@ class MovingWall:
         self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
 
     def finish(self) -> None:
-        """Go on to the last edge, and turn the integrals into mean places."""
+        """Continue to the last edge, and convert the integrals to mean positions."""
         self._follow(np.empty((0, 2)), np.inf)
         self.place = np.diff(self._sums) / np.diff(self._edges)
 
     def _follow(self, hits: np.ndarray, until: float) -> None:
-        """Integrate over the places (K, 2) at hits and those of the samples up to a time; at infinity to all edges."""
+        """Integrate over the positions (K, 2) at hits and in samples up to a time; at infinity up to all edges."""
         time, place = self._samples
-        some = (time > self._known[-1, 0]) & (time <= until)
-        known = np.concatenate((self._known, np.column_stack((time[some], place[some])), hits))
+        in_step = (time > self._known[-1, 0]) & (time <= until)
+        known = np.concatenate((self._known, np.column_stack((time[in_step], place[in_step])), hits))
         t, x = known[np.unique(known[:, 0], return_index=True)[1]].T
         step = np.diff(t)
         bends = self._pull(t[:-1]) * step**3 / 12
@@ -280,7 +304,7 @@ class MovingWall:
         self._known, self._total, self._done = np.array([[t[-1], x[-1]]]), total[-1], reached
 
     def _within(self, t: np.ndarray, x: np.ndarray, k: np.ndarray, edges: np.ndarray) -> np.ndarray:
-        """Integral of the place from the known times t[k] to edges, on the parabola to the next known time."""
+        """Return the integral of the position from the known times t[k] to edges, on the parabola that follows."""
         since = edges - t[k]
         if len(t) == 1:
             return x[k] * since
@@ -290,10 +314,10 @@ class MovingWall:
         return since * (x[k] + since * (speed / 2 + since * pull / 6))
 
     def balance(self, start: float, end: float) -> float | None:
-        """Pressure (force/length) that holds the piston against the gas between two times, beside its inertia.
+        """Return the pressure that holds the piston against the gas between two times, besides its inertia.
 
-        None for an inner piston or one of a given velocity, if the pressure changes in between, and if it came near its
-        end stop, which holds it too.
+        The pressure is a force per length. It is None for an inner or a driven piston, if the pressure changes in
+        between, and if the piston came near its end stop, which would also hold it.
         """
         time, place = self._samples
         inside = (time >= start) & (time <= end)

@@ -237,8 +237,8 @@ class EvolutionAnalysis(Analysis):
         figure, axes = panels(-(-number // 2), 2) if number > MOST_IN_COLUMN else panels(number)
         for ax in axes[number:]:
             ax.remove()
-        ax, *others = axes = axes[:number]
-        rest = iter(others)
+        ax, *remaining = axes = axes[:number]
+        rest = iter(remaining)
         ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
         if result.spin is not None:
             ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
