@@ -79,7 +79,14 @@ class LyapunovAnalysis(Analysis):
     headline = "exponents.0"
     results = (Lyapunov,)
     options = (
-        Option("exponents", int, "How many exponents, the largest ones; 4N are all.", default=1, least=1, metavar="K"),
+        Option(
+            "exponents",
+            int,
+            "Number of exponents, the largest ones; 4N are the whole spectrum.",
+            default=1,
+            least=1,
+            metavar="K",
+        ),
     )
     sections = (Section("Chaos", "Growth of a small deviation of all positions and velocities"),)
 

@@ -107,7 +107,7 @@ class HistogramAnalysis(Analysis):
             "quantity",
             str,
             "Quantity whose distribution is measured. Free flights are those between two collisions with discs, impact "
-            "parameters are over the sum of the radii, and collisions are those of a disc in ten mean free times.",
+            "parameters are relative to the sum of the radii, and collisions are counted in ten mean free times.",
             default="speed",
             choices=tuple(QUANTITIES),
         ),

@@ -1,7 +1,8 @@
 """Distribution of the number of collisions of a disc in a time, in a dilute gas.
 
-A disc collides at a rate that depends on its speed, and its speed changes in collisions: the number is not that of a
-Poisson process. Visco, van Wijland & Trizac, J. Phys. Chem. B 112, 5412 (2008) and Phys. Rev. E 77, 041117 (2008).
+A disc collides at a rate that depends on its speed, and its speed changes in collisions, so that the number does not
+follow from a Poisson process. Visco, van Wijland & Trizac, J. Phys. Chem. B 112, 5412 (2008) and Phys. Rev. E 77,
+041117 (2008).
 """
 
 from dataclasses import dataclass
@@ -10,16 +11,16 @@ from functools import cache, cached_property
 import numpy as np
 
 BASIS = 10
-"""Number of Laguerre polynomials of the energy; with 8 the variance differs by 4e-6."""
+"""Number of Laguerre polynomials of the energy; with 8 of them the variance differs by 4e-6."""
 
 
 @cache
 def _operators() -> tuple[np.ndarray, np.ndarray]:
-    """Matrices (BASIS, BASIS) of K, by which discs come into a state, and of their collision rate ν, over its mean.
+    """Return matrices (BASIS, BASIS) of the gain K of a state by collisions and of the collision rate ν, over its mean.
 
-    With s and w the energies of the centre of mass and of the relative motion over T, and θ the angle between both
-    velocities, m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns θ by χ, with |b|/σ = |cos(χ/2)| even from 0 to 1,
-    so that the mean of cos kχ is -1/(4k² - 1).
+    Let s and w be the energies of the centre of mass and of the relative motion over T, and θ the angle between the two
+    velocities. Then m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns θ by χ, where |b|/σ = |cos(χ/2)| is
+    distributed uniformly from 0 to 1, so that the mean of cos kχ is -1/(4k² - 1).
     """
     from scipy import special
 
@@ -41,9 +42,9 @@ def _operators() -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True)
 class CollisionCountLaw:
-    """Number of collisions of a disc of a gas of equal discs, of which there are `mean` on the average.
+    """Number of collisions of a disc in a gas of equal discs, which is `mean` on average.
 
-    As a continuous distribution: that of the number plus an even deviate from -1/2 to 1/2.
+    As a continuous distribution, it is that of the number plus a uniform deviate from -1/2 to 1/2.
     """
 
     mean: float
@@ -67,12 +68,12 @@ class CollisionCountLaw:
         return second, third
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of the nearest whole number."""
+        """Return the probability of the nearest whole number."""
         n = np.rint(x).astype(int)
         inside = (n >= 0) & (n < len(self.probabilities))
         return np.where(inside, self.probabilities[np.where(inside, n, 0)], 0.0)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a value of at most x."""
+        """Return the probability of a value of at most x."""
         edges = np.arange(len(self.probabilities) + 1) - 0.5
         return np.interp(x, edges, np.append(0.0, np.cumsum(self.probabilities)))

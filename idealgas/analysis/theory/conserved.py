@@ -1,6 +1,6 @@
-"""Conserved motion of a gas: total momentum, the motion as a whole that goes with it, and states that are not reached.
+"""Conserved motion of a gas: total momentum, the motion of the whole gas, and states that are not reached.
 
-What is not met here is a caveat of every analysis; `caveats` has the sentences.
+A condition that is not met is a caveat of every analysis; `caveats` returns the sentences.
 """
 
 import numpy as np
@@ -10,23 +10,23 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 
 CHANCE = 12.0
-"""Largest share of the kinetic energy, times the number of discs, that the centre of mass of a gas has by chance.
+"""Largest fraction of the kinetic energy, times the number of discs, that the centre of mass has by chance.
 
-Its energy along one axis is T/2 on average, so that a share s occurs with a probability of about exp(-s N).
+Its energy along one axis is T/2 on average, so that a fraction s occurs with a probability of about exp(-s N).
 """
 
 FIXED = 1e12
-"""Mass, in units of that of the lightest disc, from which on a disc is as good as fixed.
+"""Mass, in units of that of the lightest disc, above which a disc counts as fixed.
 
-It takes as many collisions until such a disc has its share of the energy, which is more than any run has.
+A disc needs about as many collisions to acquire its share of the energy, more than any run has.
 """
 
 SAID_FROM = 0.01
-"""Least share of the kinetic energy from which on a conserved motion of the whole gas is mentioned."""
+"""Smallest fraction of the kinetic energy above which a conserved motion of the whole gas is mentioned."""
 
 
 def conserved_momentum(scene: Scene) -> np.ndarray:
-    """Whether the total momentum of the discs is conserved along x and along y: (2,) bool.
+    """Return whether the total momentum of the discs is conserved along x and y, (2,) bool.
 
     Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
     conserve both components.
@@ -36,10 +36,10 @@ def conserved_momentum(scene: Scene) -> np.ndarray:
 
 
 def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
-    """Velocity (2,) of the centre of mass, length/time; 0 along axes where momentum is not conserved.
+    """Return the velocity of the centre of mass, (2,), length/time; 0 along axes where momentum is not conserved.
 
-    Between sheared sides it is that relative to their flow, rate · (y − height/2) at the start. Where momentum along y
-    is conserved, so is that along x relative to a flow that moves along y with the gas.
+    Between sheared sides it is relative to their flow, which is rate · (y − height/2) at the start. If momentum along y
+    is conserved, so is momentum along x relative to a flow that moves along y with the gas.
     """
     conserved = conserved_momentum(scene)
     if scene.properties.shear:
@@ -48,35 +48,36 @@ def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def _mean_velocity(scene: Scene, gas: Gas) -> np.ndarray:
-    """Velocity (2,) of the centre of mass at the start, relative to a flow between sheared sides, length/time."""
+    """Return the initial velocity of the centre of mass, (2,), length/time, relative to a flow of sheared sides."""
     flow = flow_at(gas.position[:, 1], scene.properties.shear, gas.box[1]) if scene.properties.shear else 0.0
     return np.asarray(gas.mass @ (gas.velocity - np.multiply.outer(flow, (1.0, 0.0))) / gas.mass.sum())
 
 
 def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
-    """Kinetic energy of the motion of the whole gas that is conserved, energy."""
+    """Return the kinetic energy of the conserved motion of the whole gas, energy."""
     velocity = centre_of_mass_velocity(scene, gas)
     return float(gas.mass.sum() * (velocity @ velocity) / 2)
 
 
 def are_fixed(mass: np.ndarray) -> np.ndarray:
-    """Whether discs, or species, of these masses are too heavy to take part in the motion of the lightest."""
+    """Return whether discs, or species, of these masses are too heavy to take part in the motion of the lightest."""
     return mass >= FIXED * mass.min()
 
 
 def degrees_of_freedom(scene: Scene, gas: Gas) -> int:
-    """Number D of directions of motion of the discs that share energy, without those of a momentum that is conserved.
+    """Return the number D of directions of motion of the discs that share energy.
 
-    Fixed discs take the momentum of the others.
+    Directions whose momentum is conserved do not count. Fixed discs take the momentum of the other discs.
     """
     fixed = int(are_fixed(gas.mass).sum())
     return 2 * (len(gas) - fixed) - (0 if fixed else int(conserved_momentum(scene).sum()))
 
 
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
-    """Velocity (2,) of the whole gas at its start that is not thermal, length/time.
+    """Return the initial velocity of the whole gas that is not thermal, (2,), length/time.
 
-    That is its conserved motion and, along the other axes, a motion of the centre of mass that is too large for chance.
+    It consists of the conserved motion and, along the other axes, of a motion of the centre of mass that is too large
+    to be due to chance.
     """
     velocity = _mean_velocity(scene, gas)
     chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
@@ -84,7 +85,7 @@ def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Sentence on the part of `motion_at_start` that walls or a heat bath take away; empty if there is none."""
+    """Return a caveat on the part of `motion_at_start` that walls or a heat bath take away; empty if there is none."""
     lost = motion_at_start(scene, gas) - centre_of_mass_velocity(scene, gas)
     if not lost.any():
         return ()
@@ -96,17 +97,18 @@ def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
 
 
 def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
-    """Share of the kinetic energy of a gas that is a motion of all discs at `velocity` (2,); 0 for a gas at rest."""
+    """Return the fraction of the kinetic energy in a motion of all discs at `velocity` (2,); 0 for a gas at rest."""
     energy = gas.kinetic_energy
     return float(gas.mass.sum() * (velocity @ velocity) / 2 / energy) if energy > 0 else 0.0
 
 
 def is_ergodic(scene: Scene, gas: Gas) -> bool:
-    """Whether a gas reaches all states of its energy. False for one disc, and two equal discs without momentum.
+    """Return whether a gas reaches all states of its energy.
 
-    One disc keeps its speed along x and along y, or exchanges it between few motions at rough walls. The
-    velocities of the two remain equal in every component except for signs between walls, and as long as they meet with
-    opposite velocities only, the sum of their positions, unfolded at the walls, is conserved.
+    A single disc does not: it keeps its speed along x and along y, or exchanges it between few motions at rough walls.
+    Neither do two equal discs without total momentum between walls. Their velocities remain equal in every component
+    except for signs, and as long as they collide with opposite velocities only, the sum of their positions, unfolded at
+    the walls, is conserved.
     """
     properties, walled = scene.properties, ~np.array(scene.properties.periodic)
     if len(gas) > 2 or not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
@@ -120,25 +122,25 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
 
 
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Caveats of every average over time that follow from the start of a gas, `gas`."""
-    found = []
+    """Return the caveats of every time average that follow from the initial state `gas`."""
+    sentences = []
     if any(scene.properties.free_fall_axes):
-        found.append(
+        sentences.append(
             "Gravity makes the gas flow along periodic sides: temperatures and speeds contain this motion, except for "
             "those of `profile`."
         )
     if len(gas) == 1 and not is_ergodic(scene, gas):
         if not all(scene.properties.periodic):
-            found.append("A single disc does not share its energy evenly: its motions have no common temperature.")
+            sentences.append("A single disc does not share its energy evenly: its motions have no common temperature.")
     elif not is_ergodic(scene, gas):
-        found.append(
+        sentences.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
             "temperatures along x and y may differ indefinitely. Give them velocities of their own."
         )
     velocity = centre_of_mass_velocity(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:
-        found.append(
+        sentences.append(
             f"The gas moves as a whole with the velocity ({velocity[0]:.4g}, {velocity[1]:.4g}), {share:.1%} of its "
             "kinetic energy; temperatures and speeds are relative to this motion, which nothing stops."
         )
-    return tuple(found)
+    return tuple(sentences)

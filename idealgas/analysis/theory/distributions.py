@@ -1,9 +1,9 @@
 """Probability laws of a gas in equilibrium, each with `pdf`, `cdf` and `mean`.
 
 The velocity laws take `temperature`, the mean kinetic energy T of a disc (two degrees of freedom, k_B = 1), and `dof`,
-the number D of velocity degrees of freedom of a gas at fixed total energy. With D = ∞ they are Maxwell-Boltzmann's
-laws. Otherwise the kinetic energy of a disc, divided by its largest possible value TD/2, follows the distribution
-Beta(1, D/2 - 1), the projection of the uniform distribution on a sphere.
+the number D of velocity degrees of freedom of a gas at fixed total energy. For D = ∞ they are Maxwell-Boltzmann
+distributions. Otherwise the kinetic energy of a disc, divided by its largest possible value TD/2, follows the
+distribution Beta(1, D/2 - 1), the projection of the uniform distribution on a sphere.
 """
 
 import math
@@ -25,17 +25,19 @@ class Law(Protocol):
         """Mean of the quantity, in its unit."""
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density at the values x, in 1/unit of the quantity; same shape as x."""
+        """Return the probability density at the values x, 1/unit of the quantity; same shape as x."""
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a value of at most x; same shape as x."""
+        """Return the probability of a value of at most x; same shape as x."""
 
 
 @dataclass(frozen=True)
 class MeanLaw:
-    """Mean of several distributions of one quantity: one of them, by chance, holds for each value.
+    """Mean of several distributions of one quantity: each value follows one of them, chosen at random.
 
-    weights: relative probability of each; None if they are equal.
+    Attributes:
+        parts: the distributions.
+        weights: relative probability of each; None if they are equal.
     """
 
     parts: tuple[Law, ...]
@@ -47,19 +49,23 @@ class MeanLaw:
         return float(np.average([part.mean for part in self.parts], weights=self.weights))
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density at the values x."""
+        """Return the probability density at the values x."""
         return np.average([part.pdf(x) for part in self.parts], axis=0, weights=self.weights)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a value of at most x."""
+        """Return the probability of a value of at most x."""
         return np.average([part.cdf(x) for part in self.parts], axis=0, weights=self.weights)
 
 
 @dataclass(frozen=True)
 class EnergyLaw:
-    """Distribution of the kinetic energy of a disc: exponential; at fixed total energy P(> e) = (1 - 2e/TD)^(D/2 - 1).
+    """Distribution of the kinetic energy of a disc: exponential, or its counterpart at fixed total energy.
 
-    temperature: T, energy. dof: D.
+    At fixed total energy P(> e) = (1 - 2e/TD)^(D/2 - 1).
+
+    Attributes:
+        temperature: temperature T, energy.
+        dof: degrees of freedom D.
     """
 
     temperature: float
@@ -71,7 +77,7 @@ class EnergyLaw:
         return self.temperature
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the energies x, 1/energy."""
+        """Return the probability density of the energies x, 1/energy."""
         share = np.maximum(x, 0.0) / self.temperature
         if math.isinf(self.dof):
             return np.where(np.asarray(x) < 0, 0.0, np.exp(-share) / self.temperature)
@@ -82,7 +88,7 @@ class EnergyLaw:
         return np.where(possible, density, 0.0)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a kinetic energy of at most x."""
+        """Return the probability of a kinetic energy of at most x."""
         share = np.maximum(x, 0.0) / self.temperature
         if math.isinf(self.dof):
             return -np.expm1(-share)
@@ -94,7 +100,10 @@ class EnergyLaw:
 class SpeedLaw:
     """Distribution of the speed of a disc: f(v) = (m v/T) exp(-m v²/2T), or its counterpart at fixed total energy.
 
-    temperature: T, energy. mass: m of the disc, mass. dof: D.
+    Attributes:
+        temperature: temperature T, energy.
+        mass: mass m of the disc.
+        dof: degrees of freedom D.
     """
 
     temperature: float
@@ -107,12 +116,12 @@ class SpeedLaw:
         return mean_speed(self.temperature, self.mass, self.dof)
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the speeds x, time/length."""
+        """Return the probability density of the speeds x, time/length."""
         speed = np.maximum(x, 0.0)
         return EnergyLaw(self.temperature, self.dof).pdf(self.mass * speed**2 / 2) * self.mass * speed
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a speed of at most x."""
+        """Return the probability of a speed of at most x."""
         return EnergyLaw(self.temperature, self.dof).cdf(self.mass * np.maximum(x, 0.0) ** 2 / 2)
 
 
@@ -120,8 +129,12 @@ class SpeedLaw:
 class ComponentLaw:
     """Distribution of a velocity component of a disc: normal with mean 0 and variance T/m.
 
-    At fixed total energy its density is proportional to (1 - m v²/TD)^((D - 3)/2). temperature: T, energy. mass: m of
-    the disc, mass. dof: D.
+    At fixed total energy its density is proportional to (1 - m v²/TD)^((D - 3)/2).
+
+    Attributes:
+        temperature: temperature T, energy.
+        mass: mass m of the disc.
+        dof: degrees of freedom D.
     """
 
     temperature: float
@@ -134,7 +147,7 @@ class ComponentLaw:
         return 0.0
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the velocity components x, time/length."""
+        """Return the probability density of the velocity components x, time/length."""
         from scipy import special
 
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
@@ -144,7 +157,7 @@ class ComponentLaw:
         return norm * np.maximum(1 - z**2 / self.dof, 0.0) ** ((self.dof - 3) / 2)  # D > 3
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a velocity component of at most x."""
+        """Return the probability of a velocity component of at most x."""
         from scipy import special
 
         z = np.asarray(x) * math.sqrt(self.mass / self.temperature)
@@ -155,9 +168,10 @@ class ComponentLaw:
 
 
 def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -> np.ndarray:
-    """Mean relative speed ⟨|v - u|⟩ of a disc of speed v and discs of `mass` with thermal velocities u, length/time.
+    """Return the mean relative speed ⟨|v - u|⟩ of a disc of speed v and discs with thermal velocities u, length/time.
 
-    √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)], x = m v²/2T: the mean of a Rice distribution.
+    It is √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)] with x = m v²/2T, the mean of a Rice distribution. mass: mass
+    m of the discs with thermal velocities.
     """
     from scipy import special
 
@@ -168,21 +182,25 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
 
 @cache
 def _quadrature() -> tuple[np.ndarray, np.ndarray]:
-    """Nodes v √(m/2T) and weights of Gauss and Legendre's quadrature from 0 to 7; exp(-7²) is negligible in float64."""
+    """Return nodes v √(m/2T) and weights of Gauss-Legendre quadrature from 0 to 7; exp(-7²) is negligible."""
     y, weight = np.polynomial.legendre.leggauss(120)
     return 3.5 * (y + 1), 3.5 * weight
 
 
 @dataclass(frozen=True)
 class _FlightLaw(ABC):
-    """Distribution of the free flights of a disc of `mass` that collides with species j at the mean rate `rates[j]`.
+    """Distribution of the free flights of a disc that collides with species j at the mean rate `rates[j]`.
 
-    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩ with thermal velocities w, and has
-    after a collision the speed density f(v) ν(v)/Γ (by time reversal that of discs before a collision). The law assumes
-    independent collisions: it is exact in the dilute limit (Boltzmann). In denser gases two discs collide again soon.
+    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩ with thermal velocities w. After a
+    collision it has the speed density f(v) ν(v)/Γ, which by time reversal is that of discs before a collision. The law
+    assumes independent collisions: it is exact in the dilute limit (Boltzmann). In denser gases two discs may soon
+    collide again.
 
-    temperature: T, energy. mass: of the disc, mass. masses: of the discs of each species, mass. rates: collision rates
-    of the disc with each species, 1/time.
+    Attributes:
+        temperature: temperature T, energy.
+        mass: mass of the disc.
+        masses: masses of the discs of each species.
+        rates: collision rates of the disc with each species, 1/time.
     """
 
     temperature: float
@@ -196,14 +214,14 @@ class _FlightLaw(ABC):
         y, weight = _quadrature()
         speed = y * math.sqrt(2 * self.temperature / self.mass)
         rate = np.zeros_like(speed)
-        for other, mean_rate in zip(self.masses, self.rates, strict=True):
-            mean = mean_speed(self.temperature, self.mass * other / (self.mass + other))
-            rate += mean_rate * mean_relative_speed_at(speed, self.temperature, other) / mean
+        for partner_mass, mean_rate in zip(self.masses, self.rates, strict=True):
+            mean = mean_speed(self.temperature, self.mass * partner_mass / (self.mass + partner_mass))
+            rate += mean_rate * mean_relative_speed_at(speed, self.temperature, partner_mass) / mean
         return speed, weight * 2 * y * np.exp(-(y**2)) * rate / sum(self.rates), rate
 
     @abstractmethod
     def _decay(self) -> np.ndarray:
-        """Decay rate of the survival probability of a flight at each node, in 1/time or 1/length."""
+        """Return the decay rate of the survival probability of a flight at each node, 1/time or 1/length."""
 
     @property
     def mean(self) -> float:
@@ -211,12 +229,12 @@ class _FlightLaw(ABC):
         return float((self._nodes[1] / self._decay()).sum())
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the free times or paths x, 1/time or 1/length."""
+        """Return the probability density of the free times or paths x, 1/time or 1/length."""
         decay = self._decay()
         return np.exp(-np.multiply.outer(np.asarray(x, float), decay)) @ (self._nodes[1] * decay)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a free time or path of at most x."""
+        """Return the probability of a free time or path of at most x."""
         return 1 - np.exp(-np.multiply.outer(np.maximum(x, 0.0), self._decay())) @ self._nodes[1]
 
 
@@ -236,16 +254,16 @@ class FreePathLaw(_FlightLaw):
 
 @dataclass(frozen=True)
 class UniformLaw:
-    """Even distribution from 0 to 1."""
+    """Uniform distribution from 0 to 1."""
 
     mean = 0.5
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the values x."""
+        """Return the probability density at the values x."""
         return np.where((np.asarray(x) >= 0) & (np.asarray(x) <= 1), 1.0, 0.0)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a value of at most x."""
+        """Return the probability of a value of at most x."""
         return np.clip(x, 0.0, 1.0)
 
 
@@ -264,9 +282,9 @@ class WaitingTimeLaw:
         return 1 / self.rate
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability density of the waiting times x, 1/time."""
+        """Return the probability density of the waiting times x, 1/time."""
         return self.rate * np.exp(-self.rate * np.asarray(x))
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Probability of a waiting time of at most x."""
+        """Return the probability of a waiting time of at most x."""
         return -np.expm1(-self.rate * np.maximum(x, 0.0))

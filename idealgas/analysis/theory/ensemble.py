@@ -1,7 +1,7 @@
 """Equilibrium of a gas from its conserved quantities: the temperature and the velocities of each species and axis.
 
-Total energy, and total momentum along the axes where nothing takes it, are conserved; angular momentum never is, as
-sides and periodic images exert torques.
+Total energy is conserved, and total momentum along the axes where nothing takes it. Angular momentum is never
+conserved, as sides and periodic images exert torques.
 """
 
 import math
@@ -16,18 +16,22 @@ from idealgas.scene import Scene
 from idealgas.state import MOST_PAIRED, Gas
 
 DIRECTIONS = 128
-"""Number of directions over which speeds are averaged where the axes have different temperatures."""
+"""Number of directions over which speeds are averaged if the axes have different temperatures."""
 
 
 CLASSES = 32
-"""Number of classes of the discs of all species whose discs differ."""
+"""Number of classes of discs, for all species whose discs differ together."""
 
 
 class Composition(NamedTuple):
-    """Names, radii (length), masses (mass) and numbers of the S kinds of discs of a gas: species, or parts of them.
+    """Names, radii, masses and numbers of the S kinds of discs of a gas: species, or parts of them.
 
-    name: S names of the species. radius, mass, number: arrays of shape (S,), one entry for each kind. species: (S,),
-    index of its species.
+    Attributes:
+        name: S names of the species.
+        radius: (S,), radius of each kind, length.
+        mass: (S,), mass of each kind.
+        number: (S,), number of discs of each kind.
+        species: (S,), index of the species of each kind.
     """
 
     name: tuple[str, ...]
@@ -38,12 +42,12 @@ class Composition(NamedTuple):
 
     @property
     def members(self) -> np.ndarray:
-        """Whether a kind belongs to a species: (species, S), 1 or 0."""
+        """Whether a kind belongs to a species, (species, S), 1 or 0."""
         return (self.species == np.arange(self.species.max() + 1)[:, None]).astype(float)
 
     @property
     def shares(self) -> np.ndarray:
-        """Part of the discs of a species (species, S) that are of a kind."""
+        """Fraction of the discs of a species that are of a kind, (species, S)."""
         numbers = self.members * self.number
         return numbers / numbers.sum(axis=1, keepdims=True)
 
@@ -54,45 +58,45 @@ class Composition(NamedTuple):
         return names if len(names) <= MOST_PAIRED else ("all",)
 
     def with_partners(self, rates: np.ndarray) -> np.ndarray:
-        """Rates (species, G) of a disc of each species with groups of discs, from those (S, S) with each kind."""
+        """Return rates (species, G) of a disc of each species with groups of discs, from those (S, S) by kind."""
         first = np.flatnonzero(np.diff(self.species, prepend=-1))
         groups = first if len(first) <= MOST_PAIRED else [0]
         weight = self.number / np.add.reduceat(self.number, first)[self.species]
         return np.add.reduceat(weight[:, None] * np.add.reduceat(rates, groups, axis=1), first)
 
     def packing_fraction(self, density: np.ndarray) -> float:
-        """Packing fraction φ of a gas whose species have the number densities `density` (S,), in 1/length²."""
+        """Return the packing fraction φ of a gas whose species have the number densities `density` (S,), 1/length²."""
         return float(np.pi * (density * self.radius**2).sum())
 
     @property
     def mass_share_of_others(self) -> np.ndarray:
-        """Part 1 - m/M (S,) of the total mass M that is not in one disc of a species, no unit.
+        """Fraction 1 - m/M of the total mass M that is not in one disc of a species, (S,), no unit.
 
-        The other masses are added, so that no digits are lost where one disc is far heavier than all others.
+        The other masses are added up, so that no digits are lost if one disc is far heavier than all others.
         """
         all_of = self.number * self.mass
         lower = np.append(0.0, np.cumsum(all_of[:-1]))
         higher = np.append(0.0, np.cumsum(all_of[:0:-1]))[::-1]
-        others = lower + higher + (self.number - 1) * self.mass
-        return others / (others + self.mass)
+        rest = lower + higher + (self.number - 1) * self.mass
+        return rest / (rest + self.mass)
 
 
 def composition(gas: Gas) -> Composition:
-    """Composition of a gas by species, with the mean radius and the mean mass of one whose discs differ."""
+    """Return the composition of a gas by species, with the mean radius and mass of a species whose discs differ."""
     return _kinds(gas, 1, 1.0)
 
 
 def classes(gas: Gas) -> Composition:
-    """Composition of a gas with a species whose discs differ in classes of equal numbers, in order of their radii.
+    """Return the composition of a gas with unlike discs of a species divided into classes of equal numbers, by radius.
 
-    Its packing fraction and masses are those of the gas, and a mean over classes is that over discs up to a part 1/K²
-    of the square of the spread of radii, for K classes, whatever the number of discs.
+    Its packing fraction and masses are those of the gas. For K classes, a mean over classes differs from that over
+    discs by a fraction 1/K² of the squared spread of radii, for any number of discs.
     """
     return _kinds(gas, CLASSES, 2.0)
 
 
 def _kinds(gas: Gas, most: int, power: float) -> Composition:
-    """Composition of a gas with up to `most` kinds of discs that differ; their radius is (mean R^power)^(1/power)."""
+    """Return the composition with up to `most` kinds of unlike discs; their radius is (mean R^power)^(1/power)."""
     _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
     species, unlike = np.arange(len(first)), gas.unlike
     if not unlike:
@@ -111,7 +115,7 @@ def _kinds(gas: Gas, most: int, power: float) -> Composition:
 
 
 def _mean(values: np.ndarray, power: float) -> float:
-    """Mean of a power of positive values, as one of them; exact for equal ones."""
+    """Return the power mean of positive values; exact if they are equal."""
     return float(values[0] if np.ptp(values) == 0 else (values**power).mean() ** (1 / power))
 
 
@@ -119,12 +123,15 @@ def _mean(values: np.ndarray, power: float) -> float:
 class Ensemble:
     """Ensemble of a gas in equilibrium: at fixed energy (and momentum, if conserved), or in a heat bath.
 
-    centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes of no conserved momentum.
-    dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
-    temperature: T = 2E/D, energy (k_B = 1). discs: kinds of discs, see `classes`.
-    of_axes: (S, 2), mean m vx² and m vy² of a disc of each species, energy. It is T where this component of momentum is
-    not conserved, and T(1 - m/M) for a disc of mass m where it is, with the mass M of all discs. 0 for fixed discs
-    (`conserved.are_fixed`), whose energy no run brings to its share.
+    Attributes:
+        centre_of_mass_velocity: (2,), subtracted from all velocities, length/time; 0 along axes where momentum is not
+            conserved.
+        dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
+        temperature: T = 2E/D, energy (k_B = 1).
+        discs: kinds of discs, see `classes`.
+        of_axes: (S, 2), means of m vx² and m vy² of a disc of each species, energy. It is T if this component of
+            momentum is not conserved, and T(1 - m/M) for a disc of mass m if it is, with the mass M of all discs. It is
+            0 for fixed discs (`conserved.are_fixed`), which acquire their share of the energy in no run.
     """
 
     centre_of_mass_velocity: np.ndarray
@@ -135,24 +142,24 @@ class Ensemble:
 
     @property
     def of_species(self) -> np.ndarray:
-        """Mean kinetic energy of translation (S,) of a disc of each species, energy."""
+        """Mean kinetic energy of translation of a disc of each species, (S,), energy."""
         return self.of_axes.mean(axis=1)
 
     @property
     def mean_speed(self) -> np.ndarray:
-        """Mean speed (S,) of a disc of each species, length/time."""
+        """Mean speed of a disc of each species, (S,), length/time."""
         return np.array([self.velocity_law("speed", s).mean for s in range(len(self.of_axes))])
 
     @property
     def inverse_mass(self) -> np.ndarray:
-        """Mean of 1/m (S,) over the discs of each species, 1/mass."""
+        """Mean of 1/m over the discs of each species, (S,), 1/mass."""
         return self.discs.shares @ (1 / self.discs.mass)
 
     def variances(self, number: np.ndarray) -> np.ndarray:
-        """Variances (2, S) at an instant of Σ|v| (length²/time²) and Σ m v² (energy²) over the discs of each species.
+        """Return the variances at an instant of Σ|v| (length²/time²) and Σ m v² (energy²) over each species, (2, S).
 
-        They are those of Gaussian velocities less, at a fixed energy, what the energy explains: the squares of the
-        covariances with it over its own variance. number: (S,), of discs.
+        They are those of Gaussian velocities; at fixed energy the part that the energy explains is subtracted, the
+        squared covariance with it over its own variance. number: (S,), numbers of discs.
         """
         dof = number * self.of_axes.sum(axis=1) / self.temperature
         alone, shared = self.inverse_mass, (self.discs.shares @ self.discs.mass**-0.5) ** 2
@@ -160,9 +167,10 @@ class Ensemble:
         return np.array([speeds, 2 * self.temperature**2 * dof * (1 - dof / self.dof)])
 
     def of_directions(self, species: int) -> np.ndarray:
-        """Temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy; one if all are equal.
+        """Return temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy.
 
-        Velocities are √(T(θ)/m) times a vector that has all directions alike, so that speeds are means over θ.
+        If all are equal, there is only one. Velocities are √(T(θ)/m) times an isotropic vector, so that distributions
+        of speeds are averages over θ.
         """
         x, y = self.of_axes[species]
         if x == y:
@@ -171,9 +179,9 @@ class Ensemble:
         return x * np.cos(angle) ** 2 + y * np.sin(angle) ** 2
 
     def velocity_law(self, quantity: str, species: int, dof: float | None = None) -> distributions.Law:
-        """Distribution of vx, vy, speed or energy of a disc of a species.
+        """Return the distribution of vx, vy, speed or energy of a disc of a species.
 
-        dof: D; by default that of the ensemble. Infinite for the Maxwell-Boltzmann distribution.
+        dof: degrees of freedom D, by default those of the ensemble; infinite for the Maxwell-Boltzmann distribution.
         """
         dof = self.dof if dof is None else dof
         if quantity in ("vx", "vy"):
@@ -192,14 +200,15 @@ class Ensemble:
 
 
 def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
-    """Ensemble of a gas; None if the energy is neither conserved nor set by heat of one temperature.
+    """Return the ensemble of a gas; None if its energy is neither conserved nor set by heat of one temperature.
 
-    None too for a single disc whose momentum is conserved, as none of its energy is heat, or whose spin has some of it.
+    The result is also None for a single disc whose momentum is conserved, as none of its energy is heat, and for one
+    whose spin has a part of the energy.
 
     Args:
         scene: scene of the gas.
-        gas: at the start.
-        spin_energy: of all discs at the start, energy.
+        gas: the gas at the start.
+        spin_energy: initial energy of the spins of all discs, energy.
     """
     properties = scene.properties
     if not properties.conserves_energy or properties.varies or len(properties.temperatures) > 1:
@@ -207,27 +216,27 @@ def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
     dof, energy = _shared(scene, gas, spin_energy)
     if dof == 0 or (len(gas) == 1 and properties.isolated and properties.spins):
         return None
-    if properties.temperatures:  # a heat bath has no limit to its energy
+    if properties.temperatures:  # a heat bath has unlimited energy
         return ensemble_at(scene, gas, min(properties.temperatures), math.inf)
     return ensemble_at(scene, gas, 2 * energy / dof, dof)
 
 
 def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensemble:
-    """Ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
+    """Return the ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
     discs, kept = composition(gas), conserved.conserved_momentum(scene)
-    fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath gives them its temperature
-    others = discs.mass_share_of_others[:, None]
-    share = np.where(kept, others, 1.0)
-    share[fixed] = np.where(kept & (discs.number[fixed].sum() == 1), others[fixed], 0.0)  # a single one only recoils
+    fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath heats them
+    rest = discs.mass_share_of_others[:, None]
+    share = np.where(kept, rest, 1.0)
+    share[fixed] = np.where(kept & (discs.number[fixed].sum() == 1), rest[fixed], 0.0)  # a single fixed disc recoils
     return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, classes(gas), temperature * share)
 
 
 def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> float | None:
-    """Equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
+    """Return the equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
 
-    It is the temperature of thermal walls or a thermostat or, without them, the one at which a dilute gas has the
-    conserved energy of the start: kinetic energy, spin and height in the barometric distribution. None if other effects
-    leave it unknown, and for a single disc, which cannot share its energy.
+    It is the temperature of thermal walls or of a thermostat. Without them, it is the temperature at which a dilute gas
+    has the conserved initial energy: kinetic energy, spin and height in the barometric distribution. The result is None
+    if other effects leave it unknown, and for a single disc, which cannot share its energy.
     """
     properties = scene.properties
     if (
@@ -246,14 +255,14 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
 
 
 def column_profiles(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> list[ColumnProfile]:
-    """Density and temperature of each species of an isolated column."""
+    """Return density and temperature of each species of an isolated column."""
     return fixed_energy_column(*_column(scene, gas, spin_energy, axis))
 
 
 def _column(
     scene: Scene, gas: Gas, spin_energy: float, axis: int
 ) -> tuple[float, int, np.ndarray, np.ndarray, float, np.ndarray]:
-    """Arguments of `barometric_temperature` for a gas under gravity along `axis`."""
+    """Return the arguments of `barometric_temperature` for a gas under gravity along `axis`."""
     dof, energy = _shared(scene, gas, spin_energy)
     g, place = scene.properties.acceleration[axis], gas.position[:, axis]
     above = place if g < 0 else gas.box[axis] - place
@@ -263,7 +272,7 @@ def _column(
 
 
 def _shared(scene: Scene, gas: Gas, spin_energy: float) -> tuple[int, float]:
-    """Number D of degrees of freedom that share the energy of motion and spin, and this energy."""
+    """Return the number D of degrees of freedom that share the energy of motion and spin, and this energy."""
     dof = conserved.degrees_of_freedom(scene, gas)
     frame = conserved.centre_of_mass_velocity(scene, gas)
     energy = float(gas.mass @ ((gas.velocity - frame) ** 2).sum(axis=1)) / 2

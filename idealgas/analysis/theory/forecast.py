@@ -18,7 +18,7 @@ from idealgas.scene.defaults import reference_speed
 from idealgas.state import Gas
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
-"""Bytes of one event row in the log, by the kind of compression."""
+"""Bytes per event row in the log, by the kind of compression."""
 
 MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
 """Bytes that each further column adds to an event row, by the kind of compression."""
@@ -31,10 +31,10 @@ BYTES_A_SNAPSHOT, BYTES_A_DISC = 800, {"gzip": 31, "none": 36}
 class SpeciesForecast:
     """One species: its discs at the start, and its collision rate in equilibrium.
 
-    name: of the species. number: of its discs. radius: mean radius, length. polydispersity: standard deviation of the
-    radius over its mean. mass: mean mass. packing_fraction: area of its discs over the area of the box. temperature:
-    mean kinetic energy of its discs at the start, energy, without the motion of the gas as a whole. collision_rate:
-    collisions of one disc with other discs per time, 1/time; None without a theory.
+    name: name of the species. number: number of its discs. radius: mean radius, length. polydispersity: standard
+    deviation of the radius over its mean. mass: mean mass. packing_fraction: area of its discs over the area of the
+    box. temperature: initial mean kinetic energy of its discs, energy, without the motion of the whole gas.
+    collision_rate: collisions of one disc with other discs, 1/time; None without theory.
     """
 
     name: str
@@ -51,17 +51,17 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Values are None where there is no theory: it is that of a uniform gas of constant energy or in a heat bath,
-    or of a dilute column under gravity.
+    Theory describes a uniform gas of constant energy or in a heat bath, and a dilute column under gravity. Values
+    without theory are None.
 
-    number: of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene that
-    the theory does not include. temperature: in equilibrium, energy. collision_rate: collisions of one disc with other
-    discs per time. pair_collision_rate, wall_hit_rate, thermostat_collision_rate: pair collisions, wall hits and
-    thermostat collisions of the whole gas per time. duration: simulated time at the end of the run. events: number of
-    events. rows: number of event rows in the log. bytes: size of the log. species: forecast of each species. rough: why
-    rates, and all that follows from them, or the temperature where no rates are known, are approximate; empty if their
-    error is below 2 %. caveats: those of averages over time, by the start of the gas and its method. rest: behaviour of
-    discs that have come to rest; None if none can.
+    number: number of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene
+    that theory does not include. temperature: temperature in equilibrium, energy. collision_rate: collisions of one
+    disc with other discs per time. pair_collision_rate, wall_hit_rate, thermostat_collision_rate: pair collisions, wall
+    hits and thermostat collisions of the whole gas per time. duration: simulated time at the end of the run. events:
+    number of events. rows: number of event rows in the log. bytes: size of the log. species: forecast of each species.
+    rough: why the rates and their consequences, or the temperature if no rates are known, are approximate; empty if
+    their error is below 2 %. caveats: caveats of time averages, by the start of the gas and its method. rest: behaviour
+    of discs that have come to rest; None if no disc can.
     """
 
     number: int
@@ -83,22 +83,22 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy")
-"""Properties that a scene needs for the theory to apply; no heat of different temperatures may come in either."""
+"""Properties that a scene needs for theory to apply; heat of several temperatures is not allowed either."""
 
 PARTED = "walls inside the box may part the gas, and each part then keeps its own temperature"
 
 SLOW_BATH = 10.0
-"""Thermostat collisions of a disc in a run below which a forecast says that the heat bath is slow."""
+"""Number of thermostat collisions of a disc in a run below which a forecast reports a slow heat bath."""
 
 NEARLY = 0.05
-"""Part by which the temperature at the start may differ from that of a slow heat bath without being said."""
+"""Relative difference of the initial temperature from that of a slow heat bath below which there is no caveat."""
 
 ROUGH = 0.02
 """Relative error of rates above which a forecast is marked as approximate."""
 
 
 class _Rates(NamedTuple):
-    """Rates of a gas in equilibrium, in 1/time.
+    """Rates of a gas in equilibrium, 1/time.
 
     per_disc: (S,), collisions of one disc of each species. pairs, hits, trials, thermostat: pair collisions, wall hits,
     Monte Carlo trials and thermostat collisions of the whole gas. rough: why the rates are approximate; empty if they
@@ -114,14 +114,14 @@ class _Rates(NamedTuple):
 
     @property
     def events(self) -> float:
-        """All events of the whole gas but trials."""
+        """All events of the whole gas, without trials."""
         return self.pairs + self.hits + self.thermostat
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Forecast of a run: rates by Enskog's theory at the temperature of equilibrium, its end by the first stop rule.
+    """Forecast a run: rates by Enskog's theory at the equilibrium temperature, and the end by the first stop rule.
 
-    Of a gas under gravity they are those of a dilute column.
+    For a gas under gravity the rates are those of a dilute column.
     """
     heated = ("isolated",) if len(scene.properties.temperatures) > 1 else ()
     beyond, temperature = scene.lacking(*KNOWN, *heated), _temperature(scene, gas)
@@ -165,7 +165,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 
 def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
-    """Sentence on a heat bath that takes much of the run to make the gas as hot as itself."""
+    """Return a caveat if the heat bath takes much of the run to bring the gas to its temperature."""
     rate, bath = scene.properties.thermostat_rate, scene.properties.bath
     if bath is None or duration is None or rate * duration > SLOW_BATH:
         return ()
@@ -178,13 +178,13 @@ def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...
 
 
 def _has_room(gas: Gas, periodic: tuple[bool, bool]) -> bool:
-    """Whether every disc can move between the sides."""
+    """Return whether every disc can move between the sides."""
     least = min((length for length, on in zip(gas.box, periodic, strict=True) if not on), default=math.inf)
     return 2 * float(gas.radius.max()) < least
 
 
 def _bytes(scene: Scene, number: int, rows: float | None, duration: float | None) -> float | None:
-    """Size of the log from its rows and snapshots; None where their number is unknown."""
+    """Return the size of the log from its rows and snapshots; None if their number is unknown."""
     every = scene.log.snapshot_every
     if rows is None or (every and duration is None):
         return None
@@ -200,7 +200,7 @@ def _bytes_a_row(scene: Scene) -> int:
 
 
 def _spin_energy(scene: Scene) -> float:
-    """Total energy of the spins of all discs at the start, energy."""
+    """Return the initial total energy of the spins of all discs, energy."""
     if (factor := scene.properties.inertia) is None:
         return 0.0
     energy = 0.0
@@ -216,11 +216,11 @@ def _spin_energy(scene: Scene) -> float:
 
 
 def _temperature(scene: Scene, gas: Gas) -> float | None:
-    """Temperature in equilibrium; None if it is not known."""
+    """Return the temperature in equilibrium; None if it is not known."""
     properties, spin_energy = scene.properties, _spin_energy(scene)
     if not any(properties.acceleration):
-        found = equilibrium(scene, gas, spin_energy)
-        return found.temperature if found else None
+        ensemble = equilibrium(scene, gas, spin_energy)
+        return ensemble.temperature if ensemble else None
     axis = int(properties.acceleration[1] != 0)
     if properties.acceleration[1 - axis] or properties.periodic[axis] or not properties.empty:
         return None
@@ -228,7 +228,7 @@ def _temperature(scene: Scene, gas: Gas) -> float | None:
 
 
 def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
-    """Rates of a uniform gas; None if a disc has no room to move."""
+    """Return the rates of a uniform gas; None if a disc has no room to move."""
     discs, periodic = classes(gas), scene.properties.periodic
     if scene.run.method == "monte_carlo":
         return _rates_without_positions(scene, gas, temperature, discs)
@@ -247,24 +247,24 @@ def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
 
 
 def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
-    """Rates of a dilute gas in a closed box under gravity along one axis; None for others."""
+    """Return the rates of a dilute gas in a closed box under gravity along one axis; None for other gases."""
     properties, pull = scene.properties, np.abs(scene.properties.acceleration)
     if any(properties.periodic) or not pull.any() or not temperature > 0 or not _has_room(gas, properties.periodic):
         return None
     axis = int(pull[1] > 0)
     _, radius, mass, number, _ = discs = classes(gas)
-    found = column_rates(temperature, mass, radius, number, float(pull[axis]), gas.box[axis], gas.box[1 - axis])
-    if found.densest > DENSEST:
+    column = column_rates(temperature, mass, radius, number, float(pull[axis]), gas.box[axis], gas.box[1 - axis])
+    if column.densest > DENSEST:
         return None
-    rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {found.densest:.2g}"
+    rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {column.densest:.2g}"
     thermostat = len(gas) * properties.thermostat_rate
-    return _Rates(discs.shares @ found.per_disc, found.pairs, found.hits, thermostat=thermostat, rough=rough)
+    return _Rates(discs.shares @ column.per_disc, column.pairs, column.hits, thermostat=thermostat, rough=rough)
 
 
 def _why_rough(
     gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool], per_disc: np.ndarray
 ) -> str:
-    """Why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
+    """Return why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
     theory = box_theory(discs.radius, discs.number, gas.box, periodic)
     if theory.why_not:
         return theory.why_not
@@ -276,13 +276,13 @@ def _why_rough(
 
 
 def _rates_without_positions(scene: Scene, gas: Gas, temperature: float, discs: Composition) -> _Rates:
-    """Rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
+    """Return the rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
     contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, gas.box)
     per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    speeds = len(gas) + (scene.run.trials or 0)  # that discs have in a run, each of which may be the largest
+    speeds = len(gas) + (scene.run.trials or 0)  # number of speeds in a run, any of which may be the largest
     fastest = math.sqrt(2 * temperature * math.log(speeds) / discs.mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
@@ -306,7 +306,7 @@ def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) 
 
 
 def _wall_hit_rate(gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool]) -> float:
-    """Wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
+    """Return the wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
 
     The density of hard discs at a wall is Z times the mean density.
     """
@@ -323,7 +323,7 @@ def _wall_hit_rate(gas: Gas, discs: Composition, temperature: float, periodic: t
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Simulated time at which the first stop rule is met; None without a theory or if no rule is ever met."""
+    """Return the simulated time at which the first stop rule is met; None without theory or if no rule is ever met."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None

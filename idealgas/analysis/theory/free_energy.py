@@ -1,4 +1,4 @@
-"""Free energy of a few discs in a box: exact for one and two, by the second virial coefficient for more."""
+"""Free energy of few discs in a box: exact for one and two, by the second virial coefficient for more."""
 
 import math
 
@@ -9,19 +9,18 @@ from idealgas.analysis.theory.values import Theory
 from idealgas.state import Gas
 
 THIRD = 0.391
-"""Half of B₃/B₂², the part of the third virial coefficient in the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
+"""Half of B₃/B₂², the third virial coefficient's part of the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
 
 
 MOST_RADII = 32
-"""Largest number of different radii; the integrals over pairs of them would take seconds from there on."""
+"""Largest number of different radii; the integrals over pairs of more radii would take seconds."""
 
 
 def log_configurations(gas: Gas, box: tuple[float, float], periodic: tuple[bool, bool]) -> Theory | None:
-    """Logarithm ln Q of the volume of all configurations of the discs of a gas in a box.
+    """Return the logarithm ln Q of the volume of all configurations of the discs of a gas in a box.
 
-    None without room, or for more than MOST_RADII different radii.
-
-    Pairs are exact, so that Q is exact for two discs; three and more at once are left out, which is the error.
+    The result is None if the discs have no room, or for more than MOST_RADII different radii. Pairs are exact, so that
+    Q is exact for two discs. Correlations of three and more discs are neglected and counted as the error.
     """
     single, pairs = 0.0, 0.0
     radii, numbers = np.unique(gas.radius, return_counts=True)
@@ -35,11 +34,11 @@ def log_configurations(gas: Gas, box: tuple[float, float], periodic: tuple[bool,
         room.append((radius, number, math.prod(sides)))
         single += number * math.log(math.prod(sides))
     for k, (radius, number, area) in enumerate(room):
-        for other, others, its_area in room[k:]:
-            count = number * (number - 1) / 2 if other == radius else number * others
-            both = two_discs.configurations((radius, other), box, periodic)
+        for second, second_number, second_area in room[k:]:
+            count = number * (number - 1) / 2 if second == radius else number * second_number
+            both = two_discs.configurations((radius, second), box, periodic)
             if count and both <= 0:
                 return None
-            pairs += count * math.log(both / (area * its_area)) if count else 0.0
+            pairs += count * math.log(both / (area * second_area)) if count else 0.0
     error = THIRD * pairs**2 / len(gas) if len(gas) > 2 else 0.0
     return Theory(single + pairs, error, "exact" if len(gas) <= 2 else "second virial coefficient")

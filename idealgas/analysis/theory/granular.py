@@ -1,11 +1,11 @@
 """Kinetic theory of equal discs that lose energy in their collisions, as plain formulas (two dimensions, k_B = 1).
 
-Symbols: e coefficient of restitution of the motion along the line of centres; β that of the surfaces, -1 (smooth) to 1
-(perfectly rough); κ = I/mR²; T temperature of the motion, mean m v²/2; S that of the spin, mean I ω²; x = S/T; Γ
-collision rate of a disc. Rates are per collision of a disc.
+Symbols: e is the restitution coefficient for the motion along the line of centres and β that for the surfaces, from -1
+(smooth) to 1 (perfectly rough); κ = I/mR²; T is the temperature of the motion, the mean of m v²/2, and S that of the
+spin, the mean of I ω²; x = S/T; Γ is the collision rate of a disc. Rates are per collision of a disc.
 
-With Maxwellian velocities and spins the means over the collisions of one time are elementary. With q = κ/(1 + κ) and
-b = 1 + β
+With Maxwellian velocities and spins, the averages over the collisions at one time are elementary. With q = κ/(1 + κ)
+and b = 1 + β
 
     d ln T = -½ [(1 - e²) + b q - ½ b² q² (1 + x/κ)],    dS/T = -(b q/κ) x + ½ (b² q²/κ) (1 + x/κ).
 
@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 TESTED_FROM = 0.8
-"""Restitution coefficient from which on the errors are known; below it there is no theory, as clusters soon form.
+"""Smallest restitution coefficient for which the errors of theory are known; below it clusters soon form.
 
-Eight runs of 300 discs at φ = 0.05 had 0.91 of the loss at e = 0.6, and 0.74 at 0.4.
+In eight runs of 300 discs at φ = 0.05, the loss was 0.91 of theory at e = 0.6, and 0.74 at 0.4.
 """
 
 
@@ -33,20 +33,20 @@ class GranularParameters(NamedTuple):
 
     @property
     def rough(self) -> bool:
-        """Whether collisions exchange energy of motion and spin."""
+        """Whether collisions exchange energy between motion and spin."""
         return self.inertia is not None and self.roughness > -1
 
 
 def fourth_cumulant(e: float) -> float:
-    """Fourth cumulant a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1 of the velocities of smooth discs that cool homogeneously.
+    """Return the fourth cumulant a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1 of the velocities of smooth discs that cool homogeneously.
 
-    First order in a₂, two dimensions: van Noije & Ernst, Granular Matter 1, 57 (1998).
+    To first order in a₂, in two dimensions: van Noije & Ernst, Granular Matter 1, 57 (1998).
     """
     return 16 * (1 - e) * (1 - 2 * e**2) / (57 - 25 * e + 30 * e**2 * (1 - e))
 
 
 def loss_of_motion(parameters: GranularParameters, x: float) -> float:
-    """Part of T that a disc loses per collision, -d ln T, with Maxwellian velocities at the ratio x = S/T."""
+    """Return the fraction of T that a disc loses per collision, -d ln T, with Maxwellian velocities at x = S/T."""
     smooth = (1 - parameters.normal**2) / 2
     if not parameters.rough or parameters.inertia is None:
         return smooth
@@ -55,7 +55,7 @@ def loss_of_motion(parameters: GranularParameters, x: float) -> float:
 
 
 def loss_of_spin(parameters: GranularParameters, x: float) -> float:
-    """Loss of S per collision in units of T, -dS/T, with Maxwellian velocities at the ratio x = S/T."""
+    """Return the loss of S per collision in units of T, -dS/T, with Maxwellian velocities at x = S/T."""
     if not parameters.rough or parameters.inertia is None:
         return 0.0
     b, q = 1 + parameters.roughness, parameters.inertia / (1 + parameters.inertia)
@@ -63,13 +63,16 @@ def loss_of_spin(parameters: GranularParameters, x: float) -> float:
 
 
 def _ratio_loss(parameters: GranularParameters, x: float) -> float:
-    """Loss of the ratio x of spin to motion per collision, times the temperature of motion; 0 where it is steady."""
+    """Return the loss of the ratio x per collision, times the temperature of motion; 0 if x is steady."""
     return loss_of_spin(parameters, x) - x * loss_of_motion(parameters, x)
 
 
 def temperature_ratio(parameters: GranularParameters) -> float | None:
-    """Ratio x = S/T to which rough discs that cool homogeneously come; None for smooth ones, which keep their spin."""
-    from scipy.optimize import brentq  # which takes longer to import than most analyses to measure
+    """Return the ratio x = S/T that rough discs approach as they cool homogeneously.
+
+    The result is None for smooth discs, which keep their spin.
+    """
+    from scipy.optimize import brentq  # its import takes longer than most measurements
 
     if not parameters.rough:
         return None
@@ -77,7 +80,7 @@ def temperature_ratio(parameters: GranularParameters) -> float | None:
 
 
 def relaxation(parameters: GranularParameters) -> float:
-    """Collisions of a disc in which the ratio x comes nearer to `temperature_ratio` by e; 0 for smooth discs."""
+    """Return the collisions of a disc in which x approaches `temperature_ratio` by a factor e; 0 for smooth discs."""
     if (ratio := temperature_ratio(parameters)) is None:
         return 0.0
     low, high = (_ratio_loss(parameters, x) for x in (ratio * 0.999, ratio * 1.001))
@@ -85,10 +88,10 @@ def relaxation(parameters: GranularParameters) -> float:
 
 
 def cooling_per_collision(parameters: GranularParameters) -> float:
-    """Part of T that a disc loses per collision once the gas cools homogeneously.
+    """Return the fraction of T that a disc loses per collision once the gas cools homogeneously.
 
-    Smooth discs: with the first Sonine polynomial, (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16); a₂ raises the energy lost per
-    time by 3a₂/16 and changes the collision rate by -a₂/16. Rough ones: Maxwellian.
+    For smooth discs, with the first Sonine polynomial, it is (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16): a₂ changes the
+    energy loss per time by 3a₂/16 and the collision rate by -a₂/16. Velocities of rough discs are taken as Maxwellian.
     """
     if (ratio := temperature_ratio(parameters)) is not None:
         return loss_of_motion(parameters, ratio)
@@ -97,9 +100,10 @@ def cooling_per_collision(parameters: GranularParameters) -> float:
 
 
 def cooling_time(parameters: GranularParameters, rate: float) -> float:
-    """Haff's time τ of T = T₀/(1 + t/τ)², time: dT/dt = -(2/τ) T √(T/T₀); Haff, J. Fluid Mech. 134, 401 (1983).
+    """Return Haff's time τ of T = T₀/(1 + t/τ)², time.
 
-    rate: Γ at T₀ with Maxwellian velocities, 1/time. Smooth discs: with the first Sonine polynomial.
+    It follows from dT/dt = -(2/τ) T √(T/T₀): Haff, J. Fluid Mech. 134, 401 (1983). rate: Γ at T₀ with Maxwellian
+    velocities, 1/time. The first Sonine polynomial is used for smooth discs.
     """
     ratio = temperature_ratio(parameters)
     if ratio is not None:
@@ -110,10 +114,16 @@ def cooling_time(parameters: GranularParameters, rate: float) -> float:
 def homogeneous_cooling(
     parameters: GranularParameters, rate: float, temperature: float, spin: float, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Temperatures T and S (F,) of a gas that stays uniform, at times (F,).
+    """Return the temperatures T and S (F,) of a gas that remains uniform, at times (F,).
 
-    rate: Γ at the start with Maxwellian velocities, 1/time. temperature, spin: T and S at the start, energy. Smooth
-    discs follow Haff's law with `cooling_time`.
+    Smooth discs follow Haff's law with `cooling_time`.
+
+    Args:
+        parameters: coefficients of the collisions.
+        rate: Γ at the start with Maxwellian velocities, 1/time.
+        temperature: initial T, energy.
+        spin: initial S, energy.
+        time: (F,), times.
     """
     if not parameters.rough:
         return temperature / (1 + time / cooling_time(parameters, rate)) ** 2, np.full(len(time), spin)
@@ -121,7 +131,7 @@ def homogeneous_cooling(
     from scipy.integrate import solve_ivp
 
     def slopes(_: float, state: np.ndarray) -> list[float]:
-        """Of ln T, of S/T₀ and of the time, against the collisions of a disc."""
+        """Return the derivatives of ln T, S/T₀ and time by the number of collisions of a disc."""
         t = math.exp(state[0])
         x = state[1] / t
         return [-loss_of_motion(parameters, x), -t * loss_of_spin(parameters, x), 1 / (rate * math.sqrt(t))]
@@ -130,6 +140,6 @@ def homogeneous_cooling(
         return state[2] - float(time[-1])
 
     late.terminal = True  # type: ignore[attr-defined]
-    found = solve_ivp(slopes, (0.0, 1e9), [0.0, spin / temperature, 0.0], events=late, rtol=1e-8, atol=1e-12)
-    log_t, s, at = found.y
+    solution = solve_ivp(slopes, (0.0, 1e9), [0.0, spin / temperature, 0.0], events=late, rtol=1e-8, atol=1e-12)
+    log_t, s, at = solution.y
     return temperature * np.exp(np.interp(time, at, log_t)), temperature * np.interp(time, at, s)

@@ -1,7 +1,7 @@
 """Hard-disc kinetic theory and equation of state, as plain formulas (two dimensions, k_B = 1).
 
 Symbols: disc diameter σ, number density n, packing fraction φ = nπσ²/4, temperature T, mass m, velocity degrees of
-freedom D (2N discs between reflecting walls; momentum is not conserved there).
+freedom D (2N for discs between reflecting walls, where momentum is not conserved).
 """
 
 import math
@@ -32,16 +32,16 @@ _PRESSURE = Polynomial([0.0, 1.0]) * _RESUMMED  # φZ (1 - φ)²
 
 
 def virial_series(packing_fraction: ArrayLike, terms: int = len(VIRIAL)) -> np.ndarray:
-    """Compressibility factor Z = PA/NT by the virial series with its first `terms` coefficients (`VIRIAL`)."""
+    """Return Z = PA/NT by the virial series with its first `terms` coefficients (`VIRIAL`)."""
     return Polynomial(_SERIES.coef[:terms])(np.asarray(packing_fraction, float))
 
 
 def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:
-    """Compressibility factor Z = PA/NT of the hard-disc fluid: virial series to B10, resummed with 1/(1 - φ)².
+    """Return Z = PA/NT of the hard-disc fluid: virial series to B10, resummed with 1/(1 - φ)².
 
-    The polynomial over (1 - φ)² has quickly decreasing coefficients, so that the neglected ones are unimportant up to
-    φ = 0.5, where it was compared with simulations; from there to freezing it is an extrapolation. A closed system of
-    `number` discs has, to first order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′: Lebowitz & Percus, Phys. Rev. 124, 1673
+    The coefficients of the polynomial over (1 - φ)² decrease quickly, so that the neglected ones are unimportant up to
+    φ = 0.5, where it was compared with simulations; from there to freezing it is an extrapolation. For a closed system
+    of `number` discs, to first order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′: Lebowitz & Percus, Phys. Rev. 124, 1673
     (1961). At low density this is the factor 1 - 1/N in the number of pairs.
     """
     phi = np.asarray(packing_fraction, float)
@@ -53,37 +53,37 @@ def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf
 
 
 def inverse_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
-    """d(φZ)/dφ = (∂P/∂n)/T of the hard-disc fluid by the resummed virial series (no unit); it is 1/S(k → 0)."""
+    """Return d(φZ)/dφ = (∂P/∂n)/T of the hard-disc fluid by the resummed virial series (no unit), 1/S(k → 0)."""
     phi = np.asarray(packing_fraction, float)
     return _PRESSURE.deriv()(phi) / (1 - phi) ** 2 + 2 * _PRESSURE(phi) / (1 - phi) ** 3
 
 
 def henderson_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
-    """Compressibility factor Z = (1 + φ²/8)/(1 - φ)² of hard discs: Henderson, Mol. Phys. 30, 971 (1975)."""
+    """Return Z = (1 + φ²/8)/(1 - φ)² of hard discs: Henderson, Mol. Phys. 30, 971 (1975)."""
     phi = np.asarray(packing_fraction, float)
     return (1 + phi**2 / 8) / (1 - phi) ** 2
 
 
 def free_volume_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
-    """Compressibility factor Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
+    """Return Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
 
-    Free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950); φcp is that of close packing, near which it is exact.
+    Free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950). It is exact near close packing, φcp.
     """
     return np.asarray(1 / (1 - np.sqrt(np.asarray(packing_fraction, float) / CLOSE_PACKING)))
 
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
-    """Contact value χ = (Z - 1)/2φ of equal discs by the resummed virial series, for `number` discs in all."""
+    """Return the contact value χ = (Z - 1)/2φ of `number` equal discs by the resummed virial series."""
     return float((compressibility_factor(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
 def mixture_contact_value(
     radius: ArrayLike, number: ArrayLike, area: float, equal: Callable[[float], float] = contact_value
 ) -> np.ndarray:
-    """Contact values χ_ij (S, S) of a mixture: Santos, Yuste & López de Haro, J. Chem. Phys. 117, 5785 (2002).
+    """Return contact values χ_ij (S, S) of a mixture: Santos, Yuste & López de Haro, J. Chem. Phys. 117, 5785 (2002).
 
-    χ_ij = 1/(1 - φ) + [χ - 1/(1 - φ)] (⟨R⟩/⟨R²⟩) 2 R_i R_j/(R_i + R_j), with the contact value χ of equal discs,
-    `equal(φ)`. With Henderson's it is that of Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
+    χ_ij = 1/(1 - φ) + [χ - 1/(1 - φ)] (⟨R⟩/⟨R²⟩) 2 R_i R_j/(R_i + R_j), where χ is the contact value of equal discs,
+    `equal(φ)`. With Henderson's value it is that of Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     square = (number * radius**2).sum()
@@ -93,10 +93,10 @@ def mixture_contact_value(
 
 
 def mixture_compressibility_factor(radius: ArrayLike, number: ArrayLike, area: float) -> float:
-    """Compressibility factor Z = (1 - ξ)/(1 - φ) + ξ Z₁(φ) of a mixture of discs, with ξ = ⟨R⟩²/⟨R²⟩.
+    """Return Z = (1 - ξ)/(1 - φ) + ξ Z₁(φ) of a mixture of discs, with ξ = ⟨R⟩²/⟨R²⟩.
 
     Z₁ is that of equal discs, `compressibility_factor`: Santos, Yuste & López de Haro, Mol. Phys. 96, 1 (1999). The
-    second virial coefficient is exact, and the contact values of `mixture_contact_value` give the same.
+    second virial coefficient is exact, and the contact values of `mixture_contact_value` give the same Z.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     phi, alike = math.pi * float((number * radius**2).sum()) / area, likeness(radius, number)
@@ -104,7 +104,7 @@ def mixture_compressibility_factor(radius: ArrayLike, number: ArrayLike, area: f
 
 
 def likeness(radius: ArrayLike, number: ArrayLike) -> float:
-    """ξ = ⟨R⟩²/⟨R²⟩ of discs of some radii; 1 for equal discs."""
+    """Return ξ = ⟨R⟩²/⟨R²⟩ of discs of several radii; 1 for equal discs."""
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     return float((number @ radius) ** 2 / (number.sum() * (number @ radius**2)))
 
@@ -113,9 +113,9 @@ def likeness(radius: ArrayLike, number: ArrayLike) -> float:
 
 
 def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density: float) -> np.ndarray:
-    """g(r) of equal discs to first order in the number density n (1/length²), at distances r >= the diameter σ.
+    """Return g(r) of equal discs to first order in the number density n (1/length²), at distances r >= σ.
 
-    1 + n A(r), where A is the area that two circles of radius σ have in common: Hansen & McDonald, Theory of Simple
+    g(r) = 1 + n A(r), where A is the common area of two circles of radius σ: Hansen & McDonald, Theory of Simple
     Liquids, section 4.6, in two dimensions. The next order is about 2 φ² at contact.
     """
     half = np.minimum(np.asarray(distance, float) / (2 * diameter), 1.0)
@@ -125,13 +125,14 @@ def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density:
 def confinement(
     radius: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False), axis: int | None = None
 ) -> np.ndarray:
-    """Factor (S, S) by which walls change the number of contacts of species i and j, compared with a periodic box.
+    """Return the factor (S, S) by which walls change the number of contacts of species i and j.
 
     Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts, and a disc near a
     wall has neighbours on one side only, which decreases it. The factor is the average part of the contact circle that
-    lies inside the box. It is exact for two discs alone, and in a gas to first order in the density; `values.ERRORS`
-    has the error that simulations found. Periodic axes have no walls and give the factor 1. With an `axis`, contacts
-    count by the part of the pair virial along it, which the walls across this axis balance.
+    lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas to first order in the
+    density; `values.ERRORS` contains its errors from simulations. Periodic axes have no walls and give the factor 1.
+    With an `axis`, contacts are weighted with the part of the pair virial along it, which the walls across this axis
+    balance.
     """
     radius = np.asarray(radius, float)
     along_x, along_y = (_room_along(radius, *side) for side in zip(box, periodic, strict=True))
@@ -149,10 +150,10 @@ def confinement(
 
 
 def _room_along(radius: np.ndarray, side: float, is_periodic: bool) -> list[tuple[np.ndarray, ...]]:
-    """Room for a pair in contact along an axis, relative to that at random, where the component of r̂ is c = 0 to 1.
+    """Return the length available to a pair in contact along an axis, relative to that of random discs.
 
-    Both centres have room a + b c in each of the pieces least < c < most, which are (a, b, least, most), each (S, S):
-    as much as the larger disc, then less the larger c is, then none.
+    It is a function of the component c = 0 to 1 of r̂ and consists of pieces a + b c for least < c < most, given as (a,
+    b, least, most), each (S, S): first as for the larger disc, then decreasing with c, then zero.
     """
     none, all_of = np.zeros((len(radius), len(radius))), np.ones((len(radius), len(radius)))
     if is_periodic:
@@ -168,7 +169,10 @@ def _room_along(radius: np.ndarray, side: float, is_periodic: bool) -> list[tupl
 
 
 def _trigonometric_integrals(first: np.ndarray, last: np.ndarray, axis: int | None) -> Iterator[np.ndarray]:
-    """Integrals of w, w cos θ, w sin θ, w cos θ sin θ over θ, with w = 1, 2 cos² θ (axis 0) or 2 sin² θ (axis 1)."""
+    """Yield integrals of w, w cos θ, w sin θ and w cos θ sin θ over θ.
+
+    The weight w is 1, or 2 cos² θ for axis 0, or 2 sin² θ for axis 1.
+    """
 
     def primitives(angle: np.ndarray) -> tuple[np.ndarray, ...]:
         c, s = np.cos(angle), np.sin(angle)
@@ -184,11 +188,11 @@ def _trigonometric_integrals(first: np.ndarray, last: np.ndarray, axis: int | No
 def box_contacts(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> np.ndarray:
-    """Collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of a disc of species i with species j, 1/length.
+    """Return the collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of species i with species j, 1/length.
 
     A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
-    (Z - 1)/2φ of the resummed virial series for this number of discs, and mixtures those that follow from it by
-    `mixture_contact_value`. Not a number above φ = 0.62.
+    (Z - 1)/2φ of the resummed virial series for this number of discs, and mixtures have those that follow from it by
+    `mixture_contact_value`. The result is nan above φ = 0.62.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     area = box[0] * box[1]
@@ -201,12 +205,12 @@ def box_contacts(
         return 2 * sigma * number / area * alone * confinement(radius, box, periodic)
     n = float(number.sum())
     chi = mixture_contact_value(radius, number, area, lambda phi: fluid_contact_value(phi, n))
-    others = (number - np.eye(len(number))) * n / (n - 1)  # a disc does not meet itself
-    return 2 * sigma * others / area * chi * confinement(radius, box, periodic)
+    partners = (number - np.eye(len(number))) * n / (n - 1)  # a disc does not meet itself
+    return 2 * sigma * partners / area * chi * confinement(radius, box, periodic)
 
 
 def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[float, float]) -> np.ndarray:
-    """Collision rate per relative speed 2 σ_ij n_j χ (S, S) of discs without positions, 1/length.
+    """Return the collision rate over relative speed 2 σ_ij n_j χ (S, S) of discs without positions, 1/length.
 
     A disc does not collide with itself; χ is Henderson's contact value at the total packing fraction.
     """
@@ -219,7 +223,7 @@ def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[
 def box_compressibility_factor(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
-    """Compressibility factor Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box: expected value of both virials.
+    """Return Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box, the expected value of both virials.
 
     The contacts are those of `box_contacts`.
     """
@@ -232,10 +236,11 @@ def box_compressibility_factor(
 
 
 def finite_speed_factor(dof: float) -> float:
-    """Mean speed at fixed total energy over its Maxwell-Boltzmann value: √(D/2) Γ(D/2)/Γ(D/2 + 1/2), about 1 + 1/4D.
+    """Return the mean speed at fixed total energy over its Maxwell-Boltzmann value, about 1 + 1/4D.
 
-    dof: D, degrees of freedom that share the energy. The factor holds for relative speeds too: both are lengths of
-    two-dimensional projections of a uniform distribution on a sphere in D dimensions.
+    It is √(D/2) Γ(D/2)/Γ(D/2 + 1/2), where dof is the number D of degrees of freedom that share the energy. The factor
+    holds for relative speeds too: both are lengths of two-dimensional projections of a uniform distribution on a sphere
+    in D dimensions.
     """
     if math.isinf(dof):
         return 1.0
@@ -247,17 +252,17 @@ def mean_speed(temperature: float, mass: float, dof: float = math.inf) -> float:
 @overload
 def mean_speed(temperature: float, mass: np.ndarray, dof: float = math.inf) -> np.ndarray: ...
 def mean_speed(temperature: float, mass: float | np.ndarray, dof: float = math.inf) -> float | np.ndarray:
-    """⟨v⟩ = √(πT/2m) of discs of a mass, or of each of an array of masses; of a reduced mass a mean relative speed."""
+    """Return ⟨v⟩ = √(πT/2m) for a mass or an array of masses; for a reduced mass it is a mean relative speed."""
     return np.sqrt(math.pi * temperature / (2 * mass)) * finite_speed_factor(dof)
 
 
 def mean_relative_speed(temperature: float, mass: float) -> float:
-    """Mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass, length/time."""
+    """Return the mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass, length/time."""
     return math.sqrt(2) * float(mean_speed(temperature, mass))
 
 
 def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.inf) -> np.ndarray:
-    """Mean relative speeds ⟨|v_i - v_j|⟩ = √(πT/2μ_ij) (S, S) of species of masses (S,), with reduced masses μ_ij."""
+    """Return mean relative speeds ⟨|v_i - v_j|⟩ = √(πT/2μ_ij) (S, S) for masses (S,), with reduced masses μ_ij."""
     mass = np.asarray(mass, float)
     return mean_speed(temperature, mass[:, None] * mass / (mass[:, None] + mass), dof)
 
@@ -265,9 +270,9 @@ def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.
 def collision_rate(
     diameter: float, number_density: float, temperature: float, mass: float, packing_fraction: float
 ) -> float:
-    """Collision rate Γ = 2σnχ√(πT/m) of one disc with other discs, 1/time; the gas has NΓ/2 pair collisions per time.
+    """Return the collision rate Γ = 2σnχ√(πT/m) of one disc with other discs, 1/time, by Enskog's theory.
 
-    χ is Henderson's contact value: Enskog's theory.
+    χ is Henderson's contact value. The gas has NΓ/2 pair collisions per time.
     """
     chi = float(contact_value(packing_fraction))
     return 2 * diameter * number_density * chi * mean_relative_speed(temperature, mass)
@@ -276,7 +281,7 @@ def collision_rate(
 def mixture_collision_rate(
     radius: ArrayLike, mass: ArrayLike, number: ArrayLike, area: float, temperature: float
 ) -> np.ndarray:
-    """Collision rates Γ_ij (S, S) of one disc of species i with the discs of species j, 1/time.
+    """Return collision rates Γ_ij (S, S) of one disc of species i with the discs of species j, 1/time.
 
     Γ_ij = 2σ_ij n_j χ_ij √(πT/2μ_ij) with the reduced mass μ_ij. radius, mass, number: (S,).
     """
@@ -286,25 +291,25 @@ def mixture_collision_rate(
 
 
 def mean_free_path(diameter: float, number_density: float, packing_fraction: float) -> float:
-    """Mean free path λ = ⟨v⟩/Γ = 1/(2√2 σnχ) of equal discs, length, with Henderson's contact value χ."""
+    """Return the mean free path λ = ⟨v⟩/Γ = 1/(2√2 σnχ) of equal discs, length, with Henderson's contact value χ."""
     return 1 / (2 * math.sqrt(2) * diameter * number_density * float(contact_value(packing_fraction)))
 
 
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
-    """Flux n⟨v⟩/π through a slit in one direction, in discs per length and time; also the hit rate of a wall."""
+    """Return the flux n⟨v⟩/π through a slit in one direction, 1/(length time); also the hit rate of a wall."""
     return number_density * mean_speed(temperature, mass) / math.pi
 
 
 def enskog_diffusion(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Self-diffusion coefficient D = T/mΓ = √(T/πm)/(2σnχ) in the first approximation of Enskog's theory, length²/time.
+    """Return D = T/mΓ = √(T/πm)/(2σnχ) in the first approximation of Enskog's theory, length²/time.
 
-    In it the velocity correlation decays like exp(-Γt). Source: Gass, J. Chem. Phys. 54, 1898 (1971).
+    In this approximation the velocity correlation decays as exp(-Γt). Source: Gass, J. Chem. Phys. 54, 1898 (1971).
     """
     return math.sqrt(temperature / (math.pi * mass)) / (2 * diameter * number_density * chi)
 
 
 def enskog_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Shear viscosity η₀ (1/χ + y + 0.8729 χy²) by Enskog's theory, mass/time.
+    """Return the shear viscosity η₀ (1/χ + y + 0.8729 χy²) by Enskog's theory, mass/time.
 
     y = πnσ²/2 and η₀ = 1.022 √(mT/π)/2σ: Gass, J. Chem. Phys. 54, 1898 (1971).
     """
@@ -314,17 +319,17 @@ def enskog_viscosity(diameter: float, number_density: float, temperature: float,
 
 
 def enskog_bulk_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ by Enskog's theory, mass/time; y = πnσ²/2.
+    """Return the bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ by Enskog's theory, mass/time; y = πnσ²/2.
 
-    It is exact within this theory: collisions of discs that are distributed as in equilibrium. Gass, J. Chem. Phys. 54,
-    1898 (1971), writes 1.246 times the η₀ of `enskog_viscosity`.
+    It is exact within this theory, which describes collisions of discs that are distributed as in equilibrium. Gass, J.
+    Chem. Phys. 54, 1898 (1971), writes 1.246 times the η₀ of `enskog_viscosity`.
     """
     y = math.pi * number_density * diameter**2 / 2
     return 4 / math.pi * chi * y * y * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
 
 
 def enskog_conductivity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
+    """Return the thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
 
     λ₀ = 1.029 (2/σ) √(T/πm): Gass, J. Chem. Phys. 54, 1898 (1971).
     """
@@ -334,7 +339,7 @@ def enskog_conductivity(diameter: float, number_density: float, temperature: flo
 
 
 def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
-    """Velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at late times t (no unit).
+    """Return the velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at late times t (no unit).
 
     Sources: Alder & Wainwright, Phys. Rev. A 1, 18 (1970); Ernst, Hauge & van Leeuwen, Phys. Rev. Lett. 25, 1254
     (1970).

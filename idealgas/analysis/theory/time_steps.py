@@ -1,4 +1,4 @@
-"""Caveat of gases that move by time steps."""
+"""Caveat of gases that are simulated with time steps."""
 
 import math
 
@@ -8,9 +8,9 @@ from idealgas.state import Gas
 
 
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Caveat on the length of time steps, by the relative displacement of two discs per step at the start, `gas`.
+    """Return a caveat on the length of time steps, by the relative displacement of two discs per step in the gas `gas`.
 
-    From discs that start at rest no such length follows.
+    `gas` is the initial state; for discs that start at rest the displacement is unknown.
     """
     if scene.run.method != "time_driven" or scene.run.dt is None:
         return ()

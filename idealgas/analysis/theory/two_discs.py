@@ -1,14 +1,16 @@
 """Exact pressure of two discs in a box: every side reflecting or periodic, radii equal or not.
 
-The configurations that the two discs have without overlap fill Q = ∬ g_x(x) g_y(y) dx dy over all separations (x, y)
-longer than σ = R₁ + R₂, where g is the length along an axis over which the pair may be shifted: between reflecting
-walls ½(a₁ + a₂) - |x|, at most the smaller of a₁ and a₂, where a_i = L - 2R_i is what the centre of disc i reaches;
-along a periodic axis L, for |x| ≤ L/2. At fixed energy, which D degrees of freedom share, T = 2E/D and a force is
-T ∂lnQ/∂(length), exactly; at the temperature of thermal walls too. Equal radii between reflecting walls, σ ≤ min(a, b):
-Q = a²b² - πσ²ab + (4/3)σ³(a + b) - σ⁴/2. Periodic, σ ≤ min(Lx, Ly)/2: Q = A(A - πσ²).
+The volume of the configurations of the two discs without overlap is Q = ∬ g_x(x) g_y(y) dx dy over all separations (x,
+y) longer than σ = R₁ + R₂, where g is the length along an axis over which the pair may be shifted. Between reflecting
+walls g is ½(a₁ + a₂) - |x|, at most the smaller of a₁ and a₂, where a_i = L - 2R_i is the length that the centre of
+disc i can reach; along a periodic axis it is L, for |x| ≤ L/2. If D degrees of freedom share a fixed energy, T = 2E/D
+and a force is T ∂lnQ/∂(length), exactly; the same holds at the temperature of thermal walls. For equal radii between
+reflecting walls and σ ≤ min(a, b), Q = a²b² - πσ²ab + (4/3)σ³(a + b) - σ⁴/2. In a periodic box with σ ≤ min(Lx, Ly)/2,
+Q = A(A - πσ²).
 
-Z = PA/NT is that of the measurement, with N = 2 and T = 2E/D whatever D is: 4 between reflecting walls, 3 where one
-axis is periodic and 2 where both are, as total momentum along it is conserved and the motion with it does not count.
+Z = PA/NT is that of the measurement, with N = 2 and T = 2E/D for any D: 4 between reflecting walls, 3 if one axis is
+periodic and 2 if both are, as the total momentum along a periodic axis is conserved and the motion of the centre of
+mass does not count.
 """
 
 import math
@@ -21,11 +23,14 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 class TwoDiscs(NamedTuple):
-    """Z = PA/2T by each way of measuring; None where there is no such wall.
+    """Z = PA/2T by each route; None without such a wall.
 
-    pairs: by the virial of the pair. walls: by the virial of all walls; it differs from `pairs` where one axis is
-    periodic, as walls then give the pressure along the other axis only. sides: (x, y), by the force on the left or
-    right and on the bottom or top wall over the whole length of the box's side.
+    Attributes:
+        pairs: by the virial of the pair.
+        walls: by the virial of all walls. It differs from `pairs` if one axis is periodic, as walls then give the
+            pressure along the other axis only.
+        sides: (x, y), by the force on the left or right and on the bottom or top wall over the whole length of the
+            side.
     """
 
     pairs: float
@@ -34,7 +39,7 @@ class TwoDiscs(NamedTuple):
 
 
 class _Axis(NamedTuple):
-    """g of one axis: `most` for |x| up to `kink`, falling from there with slope -1 to 0 at `reach`, or at once."""
+    """g of one axis: `most` for |x| up to `kink`, then decreasing with slope -1 to 0 at `reach`, or at once."""
 
     length: float
     periodic: bool
@@ -43,13 +48,13 @@ class _Axis(NamedTuple):
     reach: float
 
     def shifts(self, separation: np.ndarray) -> np.ndarray:
-        """g, the length over which a pair of this separation can be shifted."""
+        """Return g, the length over which a pair of this separation can be shifted."""
         inside = np.abs(separation) < self.reach
         room = self.most if self.periodic else np.clip(self.reach - np.abs(separation), 0.0, self.most)
         return np.where(inside, room, 0.0)
 
     def allowed(self, separation: np.ndarray) -> np.ndarray:
-        """∂g/∂L of reflecting walls: 1 where the pair has room."""
+        """Return ∂g/∂L of reflecting walls: 1 if the pair has room."""
         return np.where(np.abs(separation) < self.reach, 1.0, 0.0)
 
     @property
@@ -61,9 +66,10 @@ class _Axis(NamedTuple):
 def two_discs(
     radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> TwoDiscs | None:
-    """Exact Z of two discs of radii R₁, R₂ in a box, by every way of measuring it.
+    """Return the exact Z of two discs of radii R₁, R₂ in a box, by every route.
 
-    None where no configuration without overlap is left, or where the discs are larger than a periodic box allows.
+    The result is None if no configuration without overlap is left, or if the discs are larger than a periodic box
+    allows.
     """
     x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
     sigma = radius[0] + radius[1]
@@ -87,7 +93,7 @@ def two_discs(
 def configurations(
     radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
-    """Q, length⁴: volume of the configurations without overlap of two discs in a box; 0 where there are none."""
+    """Return the volume Q of the configurations of two discs without overlap in a box, length⁴; 0 if there are none."""
     x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
     return _outside(radius[0] + radius[1], x, y, x.shifts, y.shifts) if min(x.most, y.most) > 0 else 0.0
 
@@ -102,13 +108,14 @@ def _axis(radius: Sequence[float], length: float, periodic: bool) -> _Axis:
 def _outside(
     sigma: float, x: _Axis, y: _Axis, along: Callable[[np.ndarray], np.ndarray], up: Callable[[np.ndarray], np.ndarray]
 ) -> float:
-    """∬ along(x) up(y) dx dy over the separations longer than σ, by Gauss and Legendre between all kinks.
+    """Return ∬ along(x) up(y) dx dy over the separations longer than σ, by Gauss-Legendre quadrature between all kinks.
 
-    In columns x = σ sin t, whose heights √(σ² - x²) = σ cos t are smooth in t; beyond σ columns are whole.
+    The integration is by columns x = σ sin t, whose heights √(σ² - x²) = σ cos t are smooth in t; beyond σ columns are
+    whole.
     """
     top = max(y.reach, sigma)
 
-    def column(height: np.ndarray) -> np.ndarray:  # from each height up
+    def column(height: np.ndarray) -> np.ndarray:  # integral from each height upwards
         start = np.minimum(height, y.reach)
         inner = np.clip(y.kink, start, y.reach)
         total = np.zeros_like(height)
@@ -127,7 +134,7 @@ def _outside(
 
 
 def _around(sigma: float, x: _Axis, y: _Axis, part: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> float:
-    """∮ g_x(σ cos θ) g_y(σ sin θ) part(cos θ, sin θ) dθ: the pair in contact."""
+    """Return ∮ g_x(σ cos θ) g_y(σ sin θ) part(cos θ, sin θ) dθ for the pair in contact."""
     turns = [math.pi / 2 - _angle(k, sigma) for k in x.kinks] + [_angle(k, sigma) for k in y.kinks]
     angle, weight = _nodes([0.0, math.pi / 2, *turns])
     c, s = np.cos(angle), np.sin(angle)
@@ -135,12 +142,12 @@ def _around(sigma: float, x: _Axis, y: _Axis, part: Callable[[np.ndarray, np.nda
 
 
 def _angle(separation: float, sigma: float) -> float:
-    """arcsin, of separations up to σ."""
+    """Return the arcsine of a separation over σ, at most π/2."""
     return math.asin(min(separation / sigma, 1.0))
 
 
 def _nodes(edges: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights that integrate exactly what is smooth between the edges."""
+    """Return points and weights that integrate exactly any function that is smooth between the edges."""
     ends = np.unique(edges)
     half = np.diff(ends)[:, None] / 2
     return (ends[:-1, None] + half * (1 + _NODES)).ravel(), (half * _WEIGHTS).ravel()

@@ -3,13 +3,14 @@
 Outside its range a theory has no value, only a reason. Errors are standard deviations, to be combined with those of a
 measurement as √(s.e.² + error²).
 
-Resummed virial series (`hard_discs.compressibility_factor`): within 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4 at 0.6, by
-molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and by this engine. Above, the error grows by a
-factor e every 0.0166 in φ: measured with 870 discs, 8e-4 at 0.62 and 3e-3 at 0.64; 1.7 % at 0.67. No value above 0.62.
+The resummed virial series (`hard_discs.compressibility_factor`) is accurate to 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4
+at 0.6, by molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and by this engine. At higher φ the
+error grows by a factor e every 0.0166 in φ: with 870 discs it is 8e-4 at 0.62, 3e-3 at 0.64 and 1.7 % at 0.67. Above
+0.62 there is no value.
 
-Finite gases (`hard_discs.box_compressibility_factor`): the first order in 1/N and in the walls. Its error is that found
-by simulations of 3 to 400 discs (ERRORS; tests/physics/test_theory_errors.py repeats them); where it exceeds a tenth of
-Z - 1 there is no value. Two discs are exact.
+For finite gases (`hard_discs.box_compressibility_factor`) theory is of first order in 1/N and in the walls. Its error
+is from simulations of 3 to 400 discs (ERRORS; tests/physics/test_theory_errors.py repeats them); if it exceeds a tenth
+of Z - 1 there is no value. Two discs are exact.
 """
 
 import math
@@ -23,14 +24,15 @@ from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.two_discs import two_discs
 
 THINNEST = 1e-12
-"""Smallest packing fraction at which theory has a value: Z - 1 still has four digits there."""
+"""Smallest packing fraction for which theory has a value; Z - 1 still has four digits there."""
 
 LARGEST_ERROR = 0.1
-"""Largest relative error of Z - 1 with which a formula counts as a theory."""
+"""Largest relative error of Z - 1 for which a formula counts as a theory."""
 
 PUBLISHED = {0.670: (7.98678, 3e-5), 0.680: (8.51325, 4e-5), 0.690: (8.96990, 8e-5), 0.700: (9.1297, 2e-4)}
 """βP(2R)² and its error by packing fraction, of 870 discs in a square periodic box: Li, Nishikawa, Höllmer, Carillo,
-Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022)."""
+Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022).
+"""
 
 MIXTURE = "Santos, Yuste & López de Haro 1999"
 """Name of the theory of mixtures."""
@@ -38,18 +40,19 @@ MIXTURE = "Santos, Yuste & López de Haro 1999"
 MIXING_ERROR = 0.02
 """Relative error of Z - 1 of mixtures by that of equal discs, in units of φ (1 - ξ).
 
-Of 2 000 discs measured with this engine, Z - 1 differs by -0.28 ± 0.10 % at φ = 0.5 and by -0.36 ± 0.17 % at 0.3 for
-two radii in the ratio 4, by 0.02 ± 0.09 % for 2, and by -0.13 ± 0.08 % for radii spread evenly by 20 %.
+For 2 000 discs of two radii in the ratio 4, Z - 1 differs by -0.28 ± 0.10 % at φ = 0.5 and by -0.36 ± 0.17 % at 0.3;
+for the ratio 2 by 0.02 ± 0.09 %, and for radii spread uniformly by 20 % by -0.13 ± 0.08 %.
 """
 
 FREEZING, MELTING, SOLID = 0.700, 0.716, 0.720
-"""Packing fractions between which fluid and hexatic are side by side, and from which on discs form a crystal: Engel,
-Anderson, Glotzer, Isobe, Bernard & Krauth, Phys. Rev. E 87, 042134 (2013)."""
+"""Packing fractions between which fluid and hexatic coexist, and from which on discs form a crystal: Engel, Anderson,
+Glotzer, Isobe, Bernard & Krauth, Phys. Rev. E 87, 042134 (2013).
+"""
 
 TOO_LOW = (0.4, 0.8)
-"""By how much Z of a crystal may be larger than by free-volume theory: 0.4 + 0.8 (φcp/φ - 1), an estimate.
+"""Excess of Z of a crystal over free-volume theory: at most 0.4 + 0.8 (φcp/φ - 1), an estimate.
 
-480 discs measured with this engine had 0.71, 0.58, 0.44, 0.36 and 0.20 more at φ = 0.72, 0.75, 0.82, 0.86 and 0.89.
+For 480 discs the excess is 0.71, 0.58, 0.44, 0.36 and 0.20 at φ = 0.72, 0.75, 0.82, 0.86 and 0.89.
 """
 
 PUBLISHED_NUMBER, SAME_FRACTION, SLOPE = 870, 1e-4, 50.0
@@ -61,12 +64,12 @@ ENSKOG_ERRORS = {
     "conductivity": ((0.0, 0.4, 0.5, 0.6), (0.02, 0.025, 0.025, 0.05)),
     "bulk viscosity": ((0.0, 0.6), (0.03, 0.03)),
 }
-"""Packing fractions, and the part by which transport coefficients that were measured with this engine differ from
-Enskog's there.
+"""Packing fractions, and relative differences of measured transport coefficients from Enskog's at these φ.
 
-That of self-diffusion is with 500 discs, as it lacks the long-time tail; more with larger N. Above φ = 0.45 it
-decreases again, to 0.13 at 0.55 and 0.04 at 0.62. The others are with 250 discs, resolved to 1.5 to 2 %. Towards
-freezing the viscosity rises far above Enskog's: García-Rojo, Luding & Brey, Phys. Rev. E 74, 061305 (2006).
+Self-diffusion is for 500 discs, as Enskog's theory lacks the long-time tail; the difference is larger for larger N.
+Above φ = 0.45 it decreases again, to 0.13 at 0.55 and 0.04 at 0.62. The other coefficients are for 250 discs, resolved
+to 1.5 to 2 %. Towards freezing the viscosity rises far above Enskog's: García-Rojo, Luding & Brey, Phys. Rev. E 74,
+061305 (2006).
 """
 
 FRACTIONS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
@@ -100,25 +103,27 @@ ERRORS = {
         (0.001, 0.002, 0.003, 0.004, 0.008, 0.008, 0.018),
     ),
 }
-"""Relative error of Z - 1 by number of discs (rows, NUMBERS) and packing fraction (columns, FRACTIONS) in a square box:
-by the virials in a periodic box and in one with walls; by the pressure along one axis if the two axes differ. In a
-longer box the error is at most that of the number of discs in a square of its shorter side."""
+"""Relative error of Z - 1 by number of discs (rows, NUMBERS) and packing fraction (columns, FRACTIONS) in a square box.
+
+The errors are those of the virials in a periodic box and in one with walls, and of the pressure along one axis if the
+two axes differ. In a longer box the error is at most that of the number of discs in a square of its shorter side.
+"""
 
 
 @dataclass(frozen=True)
 class Theory:
-    """Value of a quantity by theory. error: standard deviation of its error, in the same unit. source: which theory."""
+    """Value of a quantity by theory. error: standard deviation of its error, same unit. source: name of the theory."""
 
     value: float
     error: float
     source: str
 
     def times(self, factor: float) -> "Theory":
-        """Theory of the quantity multiplied by a factor."""
+        """Return the theory of the quantity multiplied by a factor."""
         return Theory(self.value * factor, self.error * abs(factor), self.source)
 
     def inverse(self) -> "Theory":
-        """Theory of one over the quantity."""
+        """Return the theory of one over the quantity."""
         return Theory(1 / self.value, self.error / self.value**2, self.source)
 
 
@@ -127,12 +132,12 @@ class NoTheoryError(ValueError):
 
 
 class BoxTheory(NamedTuple):
-    """Theory of Z = PA/NT of a gas in a box for each way of measuring it, and of its contacts.
+    """Theory of Z = PA/NT of a gas in a box by each route, and of its contacts.
 
     pairs, walls: Z by the virial of the pairs and of the walls. sides: Z by the force on the walls across x and across
-    y, divided by the whole length of the side. None without a theory, or without such walls. contacts: (S, S),
-    2 σ_ij n_j χ_ij as from `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts. Both nan
-    without a theory. why_not: why there is no theory; empty if there is one.
+    y, divided by the whole length of the side; None without theory or such walls. contacts: (S, S), 2 σ_ij n_j χ_ij as
+    from `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts; both are nan without theory.
+    why_not: why theory has no value; empty if it has one.
     """
 
     pairs: Theory | None
@@ -145,13 +150,13 @@ class BoxTheory(NamedTuple):
     def along_axes(
         self, radius: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
     ) -> tuple[Theory | None, Theory | None]:
-        """Z by the part of the pair virial along x and along y, whose mean is `pairs`; None without a value."""
+        """Return Z by the part of the pair virial along x and along y, whose mean is `pairs`; None without a value."""
         if self.pairs is None or (periodic[0] == periodic[1] and box[0] == box[1]):
             return self.pairs, self.pairs
         if periodic[0] != periodic[1] and self.walls is not None:
             error = 2 * self.pairs.error + self.walls.error
-            other = Theory(2 * self.pairs.value - self.walls.value, error, self.pairs.source)
-            return (other, self.walls) if periodic[0] else (self.walls, other)
+            periodic_axis = Theory(2 * self.pairs.value - self.walls.value, error, self.pairs.source)
+            return (periodic_axis, self.walls) if periodic[0] else (self.walls, periodic_axis)
         if any(periodic) or np.ptp(radius) > 0 or None in self.sides:
             return None, None
         x, y = (side and side.times((size - 2 * radius[0]) / size) for side, size in zip(self.sides, box, strict=True))
@@ -159,7 +164,7 @@ class BoxTheory(NamedTuple):
 
 
 def fluid(packing_fraction: float) -> Theory:
-    """Compressibility factor Z of an infinite fluid of equal discs.
+    """Return the compressibility factor Z of an infinite fluid of equal discs.
 
     Raises:
         NoTheoryError: above φ = 0.62.
@@ -173,15 +178,15 @@ def fluid(packing_fraction: float) -> Theory:
 
 
 def enskog_error(quantity: str, packing_fraction: float) -> float:
-    """Relative error of a transport coefficient by Enskog's theory; quantity: a key of ENSKOG_ERRORS."""
+    """Return the relative error of a transport coefficient by Enskog's theory; quantity: a key of ENSKOG_ERRORS."""
     return float(np.interp(packing_fraction, *ENSKOG_ERRORS[quantity]))
 
 
 def crystal(packing_fraction: float) -> Theory:
-    """Compressibility factor Z of an infinite crystal of equal discs by free-volume theory; its error is an estimate.
+    """Return Z of an infinite crystal of equal discs by free-volume theory; its error is an estimate.
 
     Raises:
-        NoTheoryError: where discs form no crystal, or beyond close packing.
+        NoTheoryError: if discs form no crystal, or beyond close packing.
     """
     if not SOLID <= packing_fraction < hard_discs.CLOSE_PACKING:
         raise NoTheoryError(f"discs form a crystal from a packing fraction of {SOLID:g} on")
@@ -200,7 +205,7 @@ def box_theory(
     *,
     ergodic: bool = True,
 ) -> BoxTheory:
-    """Theory of the pressure and of the contacts of a uniform gas of finite N in its box.
+    """Return the theory of the pressure and of the contacts of a uniform gas of finite N in its box.
 
     Args:
         radius: radius of each species, (S,), length.
@@ -226,14 +231,14 @@ def box_theory(
 
 
 def _two(radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]) -> BoxTheory:
-    own = np.repeat(radius, number.astype(int))
-    found = two_discs((own[0], own[1]), box, periodic)
-    if found is None:
+    radii = np.repeat(radius, number.astype(int))
+    exact = two_discs((radii[0], radii[1]), box, periodic)
+    if exact is None:
         raise NoTheoryError("the box has no room for two such discs to pass from place to place")
     pairs, walls, *sides = (
-        None if z is None else Theory(z, 0.0, "two discs, exact") for z in (found.pairs, found.walls, *found.sides)
+        None if z is None else Theory(z, 0.0, "two discs, exact") for z in (exact.pairs, exact.walls, *exact.sides)
     )
-    contacts = np.full((len(radius), len(radius)), 4 * (found.pairs - 1) / (math.pi * own.sum()))
+    contacts = np.full((len(radius), len(radius)), 4 * (exact.pairs - 1) / (math.pi * radii.sum()))
     if len(radius) == 2:
         np.fill_diagonal(contacts, 0.0)  # one disc of each species
     return BoxTheory(pairs, walls, (sides[0], sides[1]), contacts, np.zeros_like(contacts))
@@ -259,10 +264,12 @@ def _equal_discs(
     for axis in open_axes:
         alike = len(open_axes) == 2 and box[0] == box[1]
         along = pairs if alike else of(axis, "one axis")
-        by_axis[axis] = along.times(box[axis] / (box[axis] - 2 * r))  # walls act on centres, which reach less far
+        by_axis[axis] = along.times(box[axis] / (box[axis] - 2 * r))  # walls act on the centres, which reach less far
     walls = None if not open_axes else pairs if len(open_axes) == 2 else of(open_axes[0], "one axis")
-    others = (number - np.eye(len(number))) / (n - 1)  # share of each species in the discs that one may meet
-    contacts = others * 2 * (pairs.value - 1) / (math.pi * r)
+    partners = (number - np.eye(len(number))) / (
+        n - 1
+    )  # fraction of each species among the possible partners of a disc
+    contacts = partners * 2 * (pairs.value - 1) / (math.pi * r)
     error = np.full_like(contacts, pairs.error / (pairs.value - 1))
     return BoxTheory(pairs, walls, (by_axis[0], by_axis[1]), contacts, error)
 
@@ -270,10 +277,10 @@ def _equal_discs(
 def _mixture(
     radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
 ) -> BoxTheory:
-    """Theory of a mixture by the equation of state of equal discs, with the errors found in simulations.
+    """Return the theory of a mixture by the equation of state of equal discs, with errors from simulations.
 
-    The rates of single pairs of species have an additional error of up to 0.04 φ; for two discs larger
-    than the mean, which many small ones push together, it is larger by the ratio of their radius to the mean radius.
+    The rates of single pairs of species have an additional error of up to 0.04 φ. For two discs larger than the mean,
+    which many small discs push together, it is larger by the ratio of their radius to the mean radius.
     """
     n = int(number.sum())
     phi = math.pi * float((number * radius**2).sum()) / (box[0] * box[1])
@@ -282,7 +289,7 @@ def _mixture(
     first_order = abs((float(hard_discs.compressibility_factor(phi, n)) - 1) / exact - (1 - 1 / n))
     kind = "without walls" if all(periodic) else "with walls"
     finite = _finite_error(kind, n, float(radius.max()), phi, box)
-    relative = 1.5 * math.hypot(mixture_error(phi, alike) + first_order, finite)  # 1.5: what simulations ask for
+    relative = 1.5 * math.hypot(mixture_error(phi, alike) + first_order, finite)  # the factor 1.5 is from simulations
     if relative > LARGEST_ERROR:
         raise NoTheoryError(f"the theory of mixtures is off by {relative:.0%} for so few discs")
     pairs = Theory(z, relative * (z - 1), f"{MIXTURE}, for this N and box")
@@ -294,7 +301,7 @@ def _mixture(
 
 
 def mixture_error(packing_fraction: float, alike: float) -> float:
-    """Relative error of Z - 1 of infinite mixtures by that of equal discs; alike: ξ, see `hard_discs.likeness`."""
+    """Return the relative error of Z - 1 of infinite mixtures by that of equal discs; alike: ξ (`likeness`)."""
     series = fluid(packing_fraction)
     return math.hypot(series.error / (series.value - 1), MIXING_ERROR * packing_fraction * (1 - alike))
 
@@ -311,15 +318,15 @@ def _published(n: int, phi: float, box: tuple[float, float], periodic: tuple[boo
 
 
 def _series_error(phi: float) -> float:
-    """Relative error of Z - 1 by the resummed virial series."""
+    """Return the relative error of Z - 1 by the resummed virial series."""
     return float(np.exp(np.interp(phi, (0.5, 0.6, 0.67), np.log((1.5e-4, 2.5e-4, 1.7e-2)))))
 
 
 def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float, float]) -> float:
-    """Relative error of Z - 1 by the formula for finite gases, interpolated in ERRORS.
+    """Return the relative error of Z - 1 by the formula for finite gases, interpolated in ERRORS.
 
     Raises:
-        NoTheoryError: outside the range of simulations, or if the error is too large.
+        NoTheoryError: outside the range of the simulations, or if the error is too large.
     """
     across = min(box) / (2 * radius)
     n_square = min(n, 4 * phi / math.pi * across**2 * (1 + 1e-9))  # discs in the square of the shorter side

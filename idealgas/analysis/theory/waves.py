@@ -1,4 +1,4 @@
-"""Waves of density in a fluid, by linear hydrodynamics: heat that spreads, and sound."""
+"""Density waves in a fluid, by linear hydrodynamics: diffusion of heat, and sound."""
 
 import math
 from typing import NamedTuple
@@ -8,14 +8,17 @@ import numpy as np
 from idealgas.analysis.theory import hard_discs
 
 MOST_CALLS = 4000
-"""Evaluations of the correlation after which a fit is given up."""
+"""Number of evaluations of the correlation after which a fit is abandoned."""
 
 
 class Fluid(NamedTuple):
-    """What hydrodynamics takes of a fluid.
+    """Properties of a fluid that enter hydrodynamics.
 
-    speed: of sound, c, length/time. damping: of sound, Γ, length²/time. spreading: thermal diffusivity χ, length²/time.
-    exponent: adiabatic exponent γ (no unit).
+    Attributes:
+        speed: speed of sound c, length/time.
+        damping: damping of sound Γ, length²/time.
+        spreading: thermal diffusivity χ, length²/time.
+        exponent: adiabatic exponent γ (no unit).
     """
 
     speed: float
@@ -30,9 +33,12 @@ class Fluid(NamedTuple):
 
 
 class Decay(NamedTuple):
-    """Correlation ⟨ρ(t)ρ*(0)⟩ of a wave of density.
+    """Correlation ⟨ρ(t)ρ*(0)⟩ of a density wave.
 
-    size: at t = 0 (no unit). k: wave number, 1/length. fluid: in which the wave is.
+    Attributes:
+        size: value at t = 0 (no unit).
+        k: wave number, 1/length.
+        fluid: the fluid.
     """
 
     size: float
@@ -40,16 +46,15 @@ class Decay(NamedTuple):
     fluid: Fluid
 
     def at(self, time: np.ndarray) -> np.ndarray:
-        """Correlation at times (L,)."""
+        """Return the correlation at times (L,)."""
         return self.size * correlation(time, self.k, self.fluid)
 
 
 def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
-    """⟨ρ(t)ρ*(0)⟩/⟨ρρ*⟩ (L,) at times (L,) of a wave with the wave number k, 1/length.
+    """Return ⟨ρ(t)ρ*(0)⟩/⟨ρρ*⟩ (L,) at times (L,) of a wave with the wave number k, 1/length.
 
-    Its Laplace transform is (s² + bs + γχνk⁴ + (1 - 1/γ)c²k²)/(s³ + bs² + (c²k² + γχνk⁴)s + χc²k⁴) with
-    b = (ν + γχ)k²: Boon & Yip, Molecular Hydrodynamics (1980), section 5.3. To lowest order in k the poles are -χk² and
-    -Γk² ± ick.
+    Its Laplace transform is (s² + bs + γχνk⁴ + (1 - 1/γ)c²k²)/(s³ + bs² + (c²k² + γχνk⁴)s + χc²k⁴) with b = (ν + γχ)k²:
+    Boon & Yip, Molecular Hydrodynamics (1980), section 5.3. To lowest order in k the poles are -χk² and -Γk² ± ick.
     """
     gamma, square = fluid.exponent, (fluid.speed * k) ** 2
     heat, viscous = fluid.spreading * k**2, fluid.viscosity * k**2
@@ -61,12 +66,12 @@ def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
 
 
 def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> Decay | None:
-    """The law that is nearest to a correlation (L,) at times (L,), by least squares; None if there is none.
+    """Return the law that fits a correlation (L,) at times (L,) best, by least squares; None if the fit fails.
 
-    thermal: T/m, length²/time². The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ
-    is not free.
+    The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ is not a free parameter.
+    thermal: T/m, length²/time².
     """
-    from scipy.optimize import curve_fit  # which takes long to import, and only sound needs it
+    from scipy.optimize import curve_fit  # slow to import, and needed only for sound
 
     def fluid(size: float, speed: float, damping: float, spreading: float) -> Fluid:
         return Fluid(speed, damping, spreading, max(size * speed**2 / thermal, 1 + 1e-9))
@@ -84,7 +89,10 @@ def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> De
 
 
 def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float) -> Fluid:
-    """Fluid of hard discs, of a packing fraction φ up to 0.62: c² = (T/m)(d(φZ)/dφ + Z²), γ = 1 + Z²/(d(φZ)/dφ)."""
+    """Return the fluid of hard discs of packing fraction φ up to 0.62.
+
+    c² = (T/m)(d(φZ)/dφ + Z²) and γ = 1 + Z²/(d(φZ)/dφ).
+    """
     z, slope = float(hard_discs.compressibility_factor(phi)), float(hard_discs.inverse_compressibility(phi))
     density, gamma = 4 * phi / (math.pi * diameter**2), 1 + z**2 / slope
     state = diameter, density, temperature, mass, hard_discs.fluid_contact_value(phi)

@@ -33,7 +33,7 @@ class TransportAnalysis(Analysis):
         Option(
             "lag",
             float,
-            "Longest time for which discs and currents are followed, in mean free times.",
+            "Longest lag up to which discs and currents are followed, in mean free times.",
             default=20.0,
             positive=True,
             metavar="X",
