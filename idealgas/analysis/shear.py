@@ -67,7 +67,8 @@ class ShearFlow(Result):
         normal_stress: (P_xx - P_yy) over the pressure.
         slope: slope of the mean velocity against y, over the rate.
         y: (20,), middles of the strips, length.
-        velocity: (20,), mean velocity along x in the strips, relative to the flow in the middle of the box, length/time.
+        velocity: (20,), mean velocity along x in the strips, relative to the flow in the middle of the box,
+            length/time.
         temperatures: (B,), temperature of each block that was read, energy.
         viscosities: (B,), viscosity of each block that was read, mass/time.
     """
