@@ -110,8 +110,8 @@ class EffusionAnalysis(Analysis):
         wider slit. Theory is not available if the slit is wider than a mean free path, or for a dense chamber.
 
         Raises:
-            UserError: unless the log has events and its scene one species and one gate along an axis that is lower than
-                the box, or if the chambers are in balance.
+            UserError: unless the log has events, and its scene has one species and one gate along an axis that is lower
+                than the box; or if the chambers are in balance.
         """
         discs, equilibrium = composition(log.discs), ensemble(log)
         gate = _slit(log)

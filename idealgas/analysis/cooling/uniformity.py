@@ -23,9 +23,10 @@ def cells_of(log: Log) -> np.ndarray:
 
 
 def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
-    """Return the scatter of the numbers of discs in cells, and the mean square momentum of cells over that by chance.
+    """Return the scatter of the numbers of discs in cells, and the mean square momentum of cells.
 
-    The scatter is the variance over the mean. The momentum is taken per mass, from sums of velocities.
+    The scatter is the variance over the mean. The momentum is taken per mass, from sums of velocities, and relative to
+    that of discs that move independently.
     """
     velocity, cells = state.velocity - centre_of_mass_velocity(log), int(shape.prod())
     at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)

@@ -232,7 +232,7 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
     least = NOISE * left
     covariance[0] = left
     rest = 1.0  # 1 - Σ a_k
-    certainty = 0.0  # of Σ a_k: the sum over lower orders of (1 - Σ a_k)²/noise
+    certainty = 0.0  # precision of Σ a_k: sum over lower orders of (1 - Σ a_k)²/noise
     for p in range(noise.shape[0]):
         if p > 0:
             both = power = 0.0

@@ -51,7 +51,9 @@ class Currents:
         """Add the next flights."""
         mass, share = self._mass.take(flights.disc), self._share.take(flights.disc)
         change = carried(mass, share, flights.new_velocity) - carried(mass, share, flights.velocity)
-        current = np.cumsum(np.concatenate((self._total[None], change)), axis=0)  # before each event, and after all
+        current = np.cumsum(
+            np.concatenate((self._total[None], change)), axis=0
+        )  # before each event and after the last one
         self._flow_until(flights.end, current[:-1])
         self._total = current[-1]
         second, apart = contacts(flights, self._box, self._periodic)
@@ -98,7 +100,8 @@ def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.nda
 def pressure_tensor(log: Log, equilibrium: Ensemble, theory: BoxTheory, current: np.ndarray) -> dict[str, Estimate]:
     """Return components xx, yy and xy of the pressure tensor of a uniform gas, energy/length², from momentum currents.
 
-    By equipartition discs carry NT of xx and of yy; the measured value fluctuates far more than the collisional part.
+    By equipartition discs carry NT of xx and of yy. This value is used, as the measured one fluctuates far more than
+    the collisional part.
 
     Args:
         log: log of the gas.

@@ -25,7 +25,7 @@ two standard deviations at an instant.
 """
 
 ON_A_LINE = 8
-"""Smallest number of discs of a species whose temperature may be too low; fewer may always move along a line."""
+"""Number of discs of a species below which a low temperature is no violation, as they may move along a line."""
 
 ROUNDING = 1e-9
 """Relative change below which a quantity is constant."""

@@ -38,13 +38,16 @@ LEVEL = 0.1
 """Largest probability that a steady gas loses a part of its start; that of losing ℓ blocks is proportional to 1/ℓ."""
 
 REFERENCE = 64
-"""Number of last blocks that determine the fluctuations; if larger, the last quarter, but at most the last half."""
+"""Number of last blocks that determine the fluctuations: at most half of the series, and at least its last quarter."""
 
 STARTS = 33
 """Number of starts that are tried in the first half, evenly spaced in the logarithm of time."""
 
 MARGIN = 2
-"""Ratio of the start to the time at which a transient vanishes in the fluctuations, below which it continues."""
+"""Factor by which the start is later than the time at which a transient vanishes in the fluctuations.
+
+The transient continues below them.
+"""
 
 MEMORIES = 10.0
 """Number of correlation times after which a gas has lost its initial positions, if its equilibrium is not known."""

@@ -25,7 +25,7 @@ AT_ONCE = 2**13
 """Number of falls whose paths through the bins of a histogram are in memory at the same time."""
 
 _COLLISION, _WALL_HIT, _OTHER = range(3)
-_SORT = np.full(NO_EVENT + 1, _OTHER)  # of an event, by its kind
+_SORT = np.full(NO_EVENT + 1, _OTHER)  # sort of an event, by its kind
 _SORT[Kind.DISC] = _COLLISION
 _SORT[list(WALL_HITS)] = _WALL_HIT
 

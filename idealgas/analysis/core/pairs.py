@@ -1,4 +1,4 @@
-"""Distances of pairs of discs: their bins, and positions for trees."""
+"""Distances of pairs of discs: their bins, and positions for k-d trees."""
 
 import numpy as np
 

@@ -25,7 +25,7 @@ HALVINGS = 40
 
 
 Fit = Callable[[np.ndarray], np.ndarray]
-"""Function of centres (M, 2) of discs: whether they overlap no wall there."""
+"""Function that returns whether discs with centres (M, 2) overlap no wall."""
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Function of fractions (M,) of the length of a wall: positions on it and its normals there, broadcast to (M, 2)."""

@@ -23,7 +23,7 @@ RESAMPLES = 2000
 """Number of samples of a bootstrap."""
 
 LEAST_DOUBT = 1e-4
-"""One over the degrees of freedom above which an error counts as exactly known."""
+"""Inverse number of degrees of freedom below which an error counts as exactly known."""
 
 FEWEST_BLOCKS = 8
 """Smallest number of blocks whose scatter gives an error, which is then known to 27 %."""
@@ -43,7 +43,8 @@ class Estimate:
         value: measured value, in the unit of the quantity.
         standard_error: its standard error in the same unit; nan if there are too few samples.
         independent_samples: number of independent samples that would give the standard error as precisely, one more
-            than its degrees of freedom; inf if it is known by a law, or if it is 0 because the quantity is known.
+            than its degrees of freedom; inf if the standard error is known by a law, or 0 because the quantity is
+            known.
         theory: value expected by theory, in the same unit; None if no theory applies.
         theory_error: standard deviation of the error of that value, in the same unit.
         blocks: lengths of blocks as fractions of the series, and the error by blocks of this length over standard_error

@@ -93,7 +93,7 @@ def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None
 
     Its theory is N T ∫ Z dA/A, the work of a slow piston, which is N T ln(A₁/A₂) for an ideal gas. Its error follows
     from the deviations from theory on parts of the stroke. The result is None unless the gas lies on one side of a
-    driven piston at the temperature of a heat bath, and if its area hardly changes.
+    driven piston at the temperature of a heat bath, and changes its area noticeably.
 
     Args:
         log: log with the piston.

@@ -235,7 +235,7 @@ def _ends(log: Log) -> tuple[str, ...]:
 
 
 def _chambers(log: Log, window: Window) -> tuple[str, ...]:
-    """Return a caveat for each inner wall that divides a side of the box into parts of different chambers."""
+    """Return a caveat for each inner wall that meets a side of the box with gas on both sides of the wall."""
     sentences, chambers = [], Chambers(log, window.end)
     for wall in walls_inside(log.scene):
         places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]

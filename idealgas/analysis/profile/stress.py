@@ -21,9 +21,10 @@ def pressure_of_strips(
 ) -> dict[str, tuple[Estimate, ...]]:
     """Return the components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
-    xy is the flow, across the axis, of momentum along it. Between walls, the component along the axis is the force
-    through a line across the box over the width of the box. Smooth walls across the axis transfer no momentum along
-    themselves. The momentum that has gone through a line is then only what the gas on one side of it has lost.
+    xy is the flux, along the axis, of the momentum component perpendicular to it. Between walls, the component along
+    the axis is the force through a line across the box over the width of the box. Smooth walls perpendicular to the
+    axis transfer no momentum along themselves. The perpendicular momentum that has gone through a line is then only
+    what the gas on one side of it has lost.
 
     Args:
         log: log of the gas.
@@ -31,7 +32,8 @@ def pressure_of_strips(
         edges: edges of the strips, length.
         times: (F,), times of the frames.
         carried: (F, K, 3), parts of xx, yy and xy that the discs of each frame carry, energy.
-        stored: (F, K), momentum, across the axis, of the discs below a line, averaged over the lines of a strip.
+        stored: (F, K), momentum perpendicular to the axis of the discs below a line, averaged over the lines of a
+            strip.
         progress: called with the numbers of rows read and of all rows.
     """
     passed_on = PassedOn(axis, edges, log.periodic, log.scene.properties.shear)

@@ -46,8 +46,8 @@ def collect(
     Returns:
         sums: (F, S, K, 5), sums of 1, m v²/2, I ω², m u and m over the discs of each species and strip.
         carried: (F, K, 3), sums of m vx², m vy² and m vx vy over the discs of each strip.
-        stored: (F, K), momentum, across the axis, of the discs below a line across the box, averaged over the lines of
-            a strip.
+        stored: (F, K), momentum perpendicular to the axis of the discs below a line, averaged over the lines of a
+            strip.
     """
     gas, frame = log.discs, centre_of_mass_velocity(log)
     shape = (len(gas.species_names), len(edges) - 1)

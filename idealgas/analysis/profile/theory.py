@@ -23,7 +23,7 @@ POINTS = 64
 """Number of points in a strip over which theory is averaged."""
 
 MOST_KINDS = 16
-"""Largest number of kinds of discs in the theory of a column of fixed energy, whose cost grows as the square of it."""
+"""Largest number of kinds of discs in the theory of a column of fixed energy, whose cost grows as its square."""
 
 JUMP = 2.7
 """Length over which the gradient extends beyond a side that accommodates discs completely, in mean free paths.

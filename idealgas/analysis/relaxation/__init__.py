@@ -256,7 +256,7 @@ class RelaxationAnalysis(Analysis):
 def _caveats(
     fit: Estimate | None, collisions: np.ndarray, kurtosis: np.ndarray, number: int, late: bool
 ) -> Iterator[str]:
-    """Yield caveats on a relaxation time in collisions per disc; late: whether the window starts after the log."""
+    """Yield caveats on a relaxation time in collisions per disc; late: whether the window starts later than the log."""
     if fit is None:
         return
     if collisions[-1] < fit.value:

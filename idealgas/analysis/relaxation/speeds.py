@@ -37,7 +37,7 @@ LEAST_RELAXATION = 4.0
 """Smallest initial deviation of the kurtosis for a fit, in its standard deviations in equilibrium."""
 
 MEMORY = 2 / 3
-"""Correlation time of the fluctuations of the kurtosis (2) over the relaxation time of the whole relaxation (3)."""
+"""Correlation time of the fluctuations of the kurtosis over the relaxation time from equal speeds: 2 over 3."""
 
 
 def check_steady(log: Log) -> None:

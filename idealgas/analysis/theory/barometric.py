@@ -71,10 +71,9 @@ def fixed_energy_column(
     """Return the profile of each species of a dilute column at fixed energy.
 
     With a disc at the height h, the other discs and all motion share the energy E' = E - m g h. Their density of states
-    G'(E') is the density of discs, and G/G' is the temperature. G is the inverse Laplace transform of Π z(β)/β^(D/2 +
-    1), where z is the mean of exp(-β m g h) over the heights of each other disc. It is integrated through the saddle
-    point, at which 1/β is the temperature of a column of the energy E'. For N discs in a tall box, T = (E - m g h)/(D/2
-    + N - 1).
+    G'(E') is the density of discs, and G/G' is the temperature. G is the inverse Laplace transform of Π z(β)/β^(D/2+1),
+    where z is the mean of exp(-β m g h) over the heights of each other disc. It is integrated through the saddle point,
+    at which 1/β is the temperature of a column of the energy E'. For N discs in a tall box, T = (E - m g h)/(D/2+N-1).
 
     The arguments are those of `barometric_temperature`; dof is its freedom D.
     """

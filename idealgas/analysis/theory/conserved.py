@@ -18,7 +18,7 @@ Its energy along one axis is T/2 on average, so that a fraction s occurs with a 
 FIXED = 1e12
 """Mass, in units of that of the lightest disc, above which a disc counts as fixed.
 
-A disc needs about as many collisions to acquire its share of the energy, more than any run has.
+Such a disc needs about as many collisions to acquire its share of the energy, more than any run has.
 """
 
 SAID_FROM = 0.01
@@ -48,7 +48,7 @@ def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def _mean_velocity(scene: Scene, gas: Gas) -> np.ndarray:
-    """Return the initial velocity of the centre of mass, (2,), length/time, relative to a flow of sheared sides."""
+    """Return the initial velocity of the centre of mass, (2,), length/time, relative to the flow of sheared sides."""
     flow = flow_at(gas.position[:, 1], scene.properties.shear, gas.box[1]) if scene.properties.shear else 0.0
     return np.asarray(gas.mass @ (gas.velocity - np.multiply.outer(flow, (1.0, 0.0))) / gas.mass.sum())
 
@@ -85,7 +85,7 @@ def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Return a caveat on the part of `motion_at_start` that walls or a heat bath take away; empty if there is none."""
+    """Return a caveat on the part of `motion_at_start` that walls or a heat bath remove; empty if there is none."""
     lost = motion_at_start(scene, gas) - centre_of_mass_velocity(scene, gas)
     if not lost.any():
         return ()

@@ -20,7 +20,7 @@ DIRECTIONS = 128
 
 
 CLASSES = 32
-"""Number of classes of discs, for all species whose discs differ together."""
+"""Number of classes into which all discs of species with unlike discs are divided."""
 
 
 class Composition(NamedTuple):

@@ -83,7 +83,7 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy")
-"""Properties that a scene needs for theory to apply; heat of several temperatures is not allowed either."""
+"""Properties that theory requires of a scene, in addition to heat of at most one temperature."""
 
 PARTED = "walls inside the box may part the gas, and each part then keeps its own temperature"
 

@@ -8,7 +8,7 @@ from idealgas.state import Gas
 
 
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Return a caveat on the length of time steps, by the relative displacement of two discs per step in the gas `gas`.
+    """Return a caveat on the length of time steps, by the relative displacement of two discs per step in `gas`.
 
     `gas` is the initial state; for discs that start at rest the displacement is unknown.
     """
