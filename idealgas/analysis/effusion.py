@@ -1,7 +1,6 @@
 """Measure the flow through a gate that opens, and compare it with n⟨v⟩/π.
 
-Of several logs, or of the folder of a sweep with the analysis "effusion", runs that differ only in their seeds are
-averaged.
+DIR is the folder of a sweep with the analysis "effusion". Runs that differ only in their seeds are averaged.
 """
 
 import math

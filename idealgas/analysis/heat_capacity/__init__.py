@@ -1,8 +1,8 @@
 """Measure the heat capacity by every route that the logs allow.
 
 Logs at several temperatures give the slope dE/dT. A single log gives E/T from the pressure on the walls of a closed
-box, Var(E)/T² in a heat bath, and the fluctuations of the kinetic energy with spin, gravity or a piston. The folder of
-a sweep with the analysis "heat-capacity" may be given instead of logs.
+box, Var(E)/T² in a heat bath, and the fluctuations of the kinetic energy with spin, gravity or a piston. DIR is the
+folder of a sweep with the analysis "heat-capacity".
 """
 
 import math

@@ -1,10 +1,10 @@
 """Measure the pressure by walls and virial, and compare Z = PA/NT with the ideal gas and hard discs.
 
-Collision rates and mean free paths come from the same events. Several logs, or the folder of a sweep with the analysis
-"pressure", give the equation of state: Z against the packing fraction, and its virial coefficients. Z is not defined
-under gravity, with a piston or walls inside the box, with collisions that lose energy or with several temperatures. The
-result is then the mechanical pressure on every wall, that is, the momentum that the discs give to it per time and
-length.
+Collision rates and mean free paths come from the same events. Several logs, or DIR, the folder of a sweep with the
+analysis "pressure", give the equation of state: Z against the packing fraction, and its virial coefficients. Z is not
+defined under gravity, with a piston or walls inside the box, with collisions that lose energy or with several
+temperatures. The result is then the mechanical pressure on every wall, that is, the momentum that the discs give to it
+per time and length.
 """
 
 from typing import TYPE_CHECKING, Any

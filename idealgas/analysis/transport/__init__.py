@@ -2,8 +2,8 @@
 
 The results are compared with Enskog's theory and the rates of kinetic theory. Viscosities and thermal conductivity
 require a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution of free paths.
-Several logs, or the folder of a sweep with the analysis "transport", give the coefficients over Enskog's values against
-the packing fraction.
+Several logs, or DIR, the folder of a sweep with the analysis "transport", give the coefficients over Enskog's values
+against the packing fraction.
 """
 
 from typing import TYPE_CHECKING, Any

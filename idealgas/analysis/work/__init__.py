@@ -1,6 +1,6 @@
 """Measure the work of a piston and compare it with the free energy, by Jarzynski's equality and Crooks' theorem.
 
-The strokes of several logs, or of the folder of a sweep with the analysis "work", are combined.
+The strokes of several logs are combined. DIR is the folder of a sweep with the analysis "work".
 """
 
 from collections.abc import Iterator, Sequence
