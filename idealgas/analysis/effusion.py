@@ -110,7 +110,7 @@ class EffusionAnalysis(Analysis):
 
         Raises:
             UserError: unless the log has events, and its scene has one species and one gate along an axis that is lower
-                than the box; or if the chambers are in balance.
+                than the box; or if no net flow is expected.
         """
         discs, equilibrium = composition(log.discs), ensemble(log)
         gate = _slit(log)

@@ -49,7 +49,7 @@ class Escape(Result):
         left: (INSTANTS,), number of discs in the gas.
         expected: (INSTANTS,), mean of this number by theory; None without theory.
         spread: (INSTANTS,), its standard deviation, including the error of theory; None without theory.
-        per_path: escapes per length that discs fly, 1/length; None under gravity.
+        per_path: escapes per length of path, 1/length; None under gravity.
         mean_time: time that discs spend in the gas per escape. If escapes do not depend on the time already spent, this
             is the mean escape time, even if not all discs have left.
     """
@@ -154,7 +154,7 @@ class EscapeAnalysis(Analysis):
 
 
 def _flights(log: Log, first: float, last: float, progress: Progress | None) -> tuple[np.ndarray, float, float, int]:
-    """Return the times of the escapes in order, the time and the path that all discs fly, and the number of collisions.
+    """Return the times of the escapes in order, the total time and path of all discs, and the number of collisions.
 
     A collision of two discs is counted twice, once for each.
     """

@@ -56,7 +56,7 @@ class Deviations:
 def sensitivity(
     log: Log, start: float | None = None, end: float | None = None, discs: list[int] | None = None
 ) -> np.ndarray:
-    """Return the derivatives of the state of all discs at one time by the state of some discs at an earlier time.
+    """Return the derivatives of the state of all discs with respect to the state of some discs at an earlier time.
 
     They are exact for the recorded motion. As the motion is chaotic, they are large after some collisions per disc.
 
@@ -67,7 +67,8 @@ def sensitivity(
         discs: ids of the discs whose initial state is varied; by default all.
 
     Returns:
-        (N, 4, D, 4): component (x, y, vx, vy) of each disc by component of each of the D varied discs.
+        (N, 4, D, 4): derivative of each component (x, y, vx, vy) of each disc with respect to each component of each of
+            the D varied discs.
 
     Raises:
         UserError: for other effects and methods, unknown discs, times outside the log, or more than 2²⁶ numbers.

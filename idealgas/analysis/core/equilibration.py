@@ -46,7 +46,7 @@ STARTS = 33
 MARGIN = 2
 """Factor by which the start is later than the time at which a transient vanishes in the fluctuations.
 
-The transient continues below them.
+Smaller than the fluctuations, the transient lasts for longer.
 """
 
 MEMORIES = 10.0

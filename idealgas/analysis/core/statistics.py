@@ -174,10 +174,10 @@ def mean_of_flux(
 ) -> Estimate:
     """Return the estimate of the mean of a flux through a boundary, such as the force on a wall.
 
-    The flow through the boundary of a gas has come through its bulk, or the stored amount has changed. The two series
-    differ by the rate of change of a bounded quantity of the gas, such as its momentum. This rate fluctuates strongly,
-    back and forth with the sound in the box, and nearly cancels in the mean. The error is therefore that of the bulk
-    and that of the change of the store between two instants.
+    The flux through the boundary of a gas differs from the flux through its bulk only by the rate of change of a
+    bounded quantity that the gas stores, such as its momentum. This rate fluctuates strongly, as sound travels back and
+    forth in the box, but it nearly cancels in the mean. The error is therefore composed of that of the bulk and that of
+    the change of the store between two instants.
 
     Args:
         flux: (n,), flux through the boundary.

@@ -33,7 +33,7 @@ ROUNDING = 1e-9
 
 
 def mean_position(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
-    """Return the mean position of a single piston with a mass once it is steady, and the time from which on it is.
+    """Return the mean position of a single piston with a mass once it is steady, and the time at which this begins.
 
     The position is compared with theory. Both results are None without such a piston, or if it is never steady.
     """

@@ -244,8 +244,8 @@ def _at_rest(log: Log, ones: np.ndarray) -> Law | None:
     """Return the mean position of a piston with a mass and the temperature there, from the energy N T + T/2 + P L X.
 
     These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
-    position has the weight X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is its mean. It is None for few discs,
-    and if the end stop holds the piston.
+    probability of a position is proportional to X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is the mean. It
+    is None for few discs, and if the end stop holds the piston.
     """
     (table,), (_, places, speeds) = log.scene.piston, _track(log)
     if not table.pressure or len(log.discs) < FEW:
@@ -270,9 +270,9 @@ def _at_rest(log: Log, ones: np.ndarray) -> Law | None:
 def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> Law | None:
     """Return temperature and position of an inner piston with a mass in equilibrium, and the relaxation of both gases.
 
-    In equilibrium the position has the weight X^N₁ (L - X)^N₂ between dilute gases of N₁ and N₂ discs. Once the
-    pressures are equal, the temperatures follow `adiabatic_piston.relaxation`. Theory does not predict the temperatures
-    at which different pressures become equal.
+    In equilibrium the probability of a position X between dilute gases of N₁ and N₂ discs is proportional to
+    X^N₁ (L - X)^N₂. Once the pressures are equal, the temperatures follow `adiabatic_piston.relaxation`. Theory does
+    not predict the temperatures at which different pressures become equal.
     """
     (table,), gas = log.scene.piston, log.discs
     if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:

@@ -23,8 +23,8 @@ def pressure_of_strips(
 
     xy is the flux, along the axis, of the momentum component perpendicular to it. Between walls, the component along
     the axis is the force through a line across the box over the width of the box. Smooth walls perpendicular to the
-    axis transfer no momentum along themselves. The perpendicular momentum that has gone through a line is then only
-    what the gas on one side of it has lost.
+    axis transfer no tangential momentum. The perpendicular momentum that has gone through a line is then exactly what
+    the gas on one side of it has lost.
 
     Args:
         log: log of the gas.

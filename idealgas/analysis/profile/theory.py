@@ -17,7 +17,7 @@ UNIFORM = "uniform"
 """Name of the law of a uniform gas."""
 
 LEAST = 1e-100
-"""Density and temperature, relative to those at the lowest position, where the energy lifts no disc; practically 0."""
+"""Density and temperature, relative to those at the bottom, at heights that the energy of no disc reaches: nearly 0."""
 
 POINTS = 64
 """Number of points in a strip over which theory is averaged."""

@@ -42,9 +42,9 @@ def _operators() -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True)
 class CollisionCountLaw:
-    """Number of collisions of a disc in a gas of equal discs, which is `mean` on average.
+    """Distribution of the number of collisions of a disc, with mean `mean`, in a gas of equal discs.
 
-    As a continuous distribution, it is that of the number plus a uniform deviate from -1/2 to 1/2.
+    The continuous distribution is that of the number plus a uniform deviate from -1/2 to 1/2.
     """
 
     mean: float

@@ -200,7 +200,7 @@ class Ensemble:
 
 
 def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
-    """Return the ensemble of a gas; None if its energy is neither conserved nor set by heat of one temperature.
+    """Return the ensemble of a gas; None if its energy is neither conserved nor set by a single temperature.
 
     The result is also None for a single disc whose momentum is conserved, as none of its energy is heat, and for one
     whose spin has a part of the energy.

@@ -60,8 +60,8 @@ class Forecast:
     hits and thermostat collisions of the whole gas per time. duration: simulated time at the end of the run. events:
     number of events. rows: number of event rows in the log. bytes: size of the log. species: forecast of each species.
     rough: why the rates and their consequences, or the temperature if no rates are known, are approximate; empty if
-    their error is below 2 %. caveats: caveats of time averages, by the start of the gas and its method. rest: behaviour
-    of discs that have come to rest; None if no disc can.
+    their error is below 2 %. caveats: caveats of time averages that follow from the initial state and the method.
+    rest: behaviour of discs that have come to rest; None if no disc can.
     """
 
     number: int
@@ -83,7 +83,7 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy")
-"""Properties that theory requires of a scene, in addition to heat of at most one temperature."""
+"""Properties that theory requires of a scene, besides heat sources of at most one temperature."""
 
 PARTED = "walls inside the box may part the gas, and each part then keeps its own temperature"
 

@@ -9,7 +9,7 @@ from idealgas.analysis.theory.values import Theory
 from idealgas.state import Gas
 
 THIRD = 0.391
-"""Half of B₃/B₂², the third virial coefficient's part of the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
+"""Half of B₃/B₂², which gives the third virial term of the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
 
 
 MOST_RADII = 32

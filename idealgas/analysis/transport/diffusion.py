@@ -93,7 +93,7 @@ class Limits(NamedTuple):
         return int(np.flatnonzero(displacement <= self.reach**2)[-1])
 
     def are_walls(self, lag: np.ndarray, displacement: np.ndarray) -> bool:
-        """Return whether discs are beyond reach before they diffuse."""
+        """Return whether walls reflect discs before they diffuse."""
         last = self.within(displacement)
         return last < len(lag) - 1 and (lag[last] < self.needed or last < FEWEST_LAGS)
 

@@ -73,9 +73,9 @@ def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> lis
 def first_order_error(mass: float, others: np.ndarray) -> np.ndarray:
     """Return the relative excess of D over the first approximation, for discs of a mass among those of other masses.
 
-    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times the first approximation, as every speed keeps its own free path.
-    For a Brownian disc the approximation is exact, and for equal discs in the dilute limit the measured excess is 2.3 ±
-    0.2 %, which agrees with the cube of the mass fraction.
+    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times the first approximation, as discs keep their speed. For a Brownian
+    disc the approximation is exact, and for equal discs in the dilute limit the measured excess is 2.3 ± 0.2 %, which
+    agrees with the cube of the mass fraction.
     """
     return (3 * math.pi / 8 - 1) * (others / (mass + others)) ** 3
 
