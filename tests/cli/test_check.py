@@ -44,21 +44,14 @@ def test_walls_are_listed_by_their_numbers():
     assert "piston of mass 20 under pressure 2" in piston
 
 
-def test_what_theory_does_not_know_is_said():
+def test_what_theory_does_not_know_and_what_it_knows_roughly_is_said():
     shown = check(CONFIGS / "piston.toml").stdout
     assert "not known: the theory of a uniform gas does not cover piston\n" in shown
     found = json.loads(check(CONFIGS / "piston.toml", "--json").stdout)
-    assert (found["effects"], found["beyond"], found["temperature"], found["rows"]) == (
-        ["piston"],
-        ["piston"],
-        None,
-        None,
-    )
+    assert (found["effects"], found["beyond"]) == (["piston"], ["piston"])
+    assert (found["temperature"], found["rows"]) == (None, None)
     assert found["duration"] == 2000
     assert found["compiled_out"] == [name for name in EFFECT_NAMES if name != "piston"]
-
-
-def test_a_column_under_gravity_is_known_roughly():
     shown = check(CONFIGS / "atmosphere.toml").stdout
     assert "about: the law of a dilute column, whose lowest layer has a packing fraction of 0.0063\n" in shown
     assert "not known" not in shown
@@ -117,11 +110,7 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
     [
         ("restitution.wall=0.9", "at rest: a disc keeps bouncing, 13.72 to 15.25 times per time, up to a height", ""),
         ("restitution.contact_duration=1e-6", "1e+06 to 1.111e+06 times per time", "warning: A disc at rest has up to"),
-        (
-            "restitution.wall=0",
-            "",
-            "warning: With a coefficient of restitution of 0, a resting disc collides endlessly",
-        ),
+        ("restitution.wall=0", "", "warning: With a coefficient of restitution of 0, a resting disc collides end"),
         ("gravity=", "", ""),
     ],
 )

@@ -44,30 +44,24 @@ def test_a_narrow_terminal_shows_every_digit(log, command, monkeypatch):
         assert columns < 40 or max(map(len, tables)) <= columns
 
 
-def test_what_is_written_is_named(log, tmp_path):
+def test_what_is_written_is_named_but_for_a_quiet_command(log, tmp_path):
     picture = tmp_path / "t.png"
     for options, stream in (((), "stdout"), (("--json",), "stderr"), (("--csv",), "stderr")):
         done = called("temperature", log, "--plot", picture, "--force", *options)
         assert f"{picture}: written\n" in getattr(done, stream)
         assert done.stdout.count(": written") == (not options)
     assert output_of("temperature", log, "--plot", picture, "--force", "--quiet") == ""
-
-
-def test_a_quiet_command_still_prints_what_is_asked_for(log):
     assert called("temperature", log, "-q", "--json").stdout.startswith("{")
     assert called("temperature", log, "-q", "--csv").stdout.startswith("quantity,group,index,value,")
 
 
-def test_a_whole_number_may_be_written_with_an_exponent(log):
-    done = called("check", "scene.toml", "--set", "species.count=5e1", "--json", folder=log.parent)
-    assert json.loads(done.stdout)["scene"]["species"][0]["count"] == 50
-
-
-def test_a_window_beyond_the_end_has_all_digits(log):
+def test_numbers_have_all_digits_and_may_have_an_exponent(log):
     end = json.loads(called("info", log, "--json").stdout)["run"]["end_time"]
     beyond = end * (1 + 1e-15)
     done = called("pressure", log, "--from", repr(beyond))
     assert done.stderr == f"{log}: empty time window t = {beyond!r} to {end!r}: the log covers t = 0 to {end!r}\n"
+    done = called("check", "scene.toml", "--set", "species.count=5e1", "--json", folder=log.parent)
+    assert json.loads(done.stdout)["scene"]["species"][0]["count"] == 50
 
 
 def test_a_histogram_is_printed_with_its_law(log):
@@ -108,27 +102,10 @@ def test_completion(shell):
         assert answer in CliRunner().invoke(main, env=environment, prog_name="idealgas").stdout
 
 
-def test_every_analysis_has_json_csv_and_a_picture():
-    for name in registry.commands():
-        command = main.get_command(None, name)
-        options = {option for param in command.get_params(click.Context(command)) for option in param.opts}
-        assert {"--json", "--csv", "--plot", "--quiet"} <= options
-
-
-def test_help_imports_nothing_heavy():
-    heavy = ("numpy", "numba", "scipy", "h5py", "matplotlib", "pydantic", "rich")
-    program = (
-        "import sys\nfrom idealgas_cli.main import main\n"
-        "try: main(['--help'])\nexcept SystemExit: pass\n"
-        f"print(*(name for name in {heavy} if name in sys.modules), file=sys.stderr, end='')"
-    )
-    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (result.returncode, result.stderr) == (0, "")
-
-
 @pytest.mark.parametrize(
     ("command", "unused"),
     [
+        ("--help", ("numpy", "numba", "scipy", "h5py", "matplotlib", "pydantic", "rich")),
         ("info run.h5", ("numba", "scipy", "matplotlib", "pandas")),
         ("check scene.toml", ("numba", "scipy.stats", "matplotlib", "pandas")),
         ("histogram run.h5", ("scipy.stats", "scipy.optimize", "matplotlib", "pandas")),
@@ -144,24 +121,24 @@ def test_a_command_imports_only_what_it_needs(log, command, unused):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_every_command_has_help():
+def test_version():
+    assert called("--version").stdout == called("-V").stdout == f"idealgas, version {__version__}\n"
+
+
+def test_every_command_is_a_module_with_help():
+    listed = main.list_commands(click.Context(main))
+    modules = {path.stem for path in (ROOT / "cli").glob("[!_]*.py")} - {"main"}
+    assert sorted(listed) == sorted([*(name.replace("_", "-") for name in modules), *registry.commands()])
     context = click.Context(main)
     for name in main.list_commands(context):
         command = main.get_command(context, name)
         assert command.name == name
         assert command.get_short_help_str()
         assert CliRunner().invoke(main, [name, "--help"]).exit_code == 0
-
-
-@pytest.mark.parametrize("flag", ["--version", "-V"])
-def test_version(flag):
-    assert called(flag).stdout == f"idealgas, version {__version__}\n"
-
-
-def test_every_module_is_a_command_of_one_group():
-    listed = main.list_commands(click.Context(main))
-    modules = {path.stem for path in (ROOT / "cli").glob("[!_]*.py")} - {"main"}
-    assert sorted(listed) == sorted([*(name.replace("_", "-") for name in modules), *registry.commands()])
+    for name in registry.commands():
+        command = main.get_command(None, name)
+        options = {option for param in command.get_params(click.Context(command)) for option in param.opts}
+        assert {"--json", "--csv", "--plot", "--quiet"} <= options
 
 
 def test_help_shows_every_group_with_an_example_and_no_summary_cut_off():
@@ -174,9 +151,6 @@ def test_help_shows_every_group_with_an_example_and_no_summary_cut_off():
     assert not re.search(r"\w\.\.\.", said)
     assert "_options" not in said
     assert called("-h").stdout == called("help").stdout == said
-
-
-def test_help_of_a_command():
     assert called("help", "run").stdout == called("run", "--help").stdout
 
 

@@ -8,9 +8,9 @@ from functools import partial
 
 import h5py
 import pytest
-from helpers.support import IDEALGAS, ROOT, called, idealgas, output_of
+from helpers.support import IDEALGAS, ROOT, called, idealgas, output_of, wait_for_rows
 
-from idealgas.log import LogError, open_log
+from idealgas.log import open_log
 
 QUICKSTART = ROOT / "configs" / "quickstart.toml"
 LONG = ("--set", "run.collisions_per_disc=1e6")
@@ -32,17 +32,8 @@ def copy(finished, tmp_path):
 def start_run(path, rows=200_000):
     """A run that goes on for long, once it has so many rows on record."""
     child = subprocess.Popen([IDEALGAS, "run", QUICKSTART, "-o", path, *LONG], stdout=subprocess.DEVNULL)
-    deadline = time.monotonic() + 120
-    while time.monotonic() < deadline:
-        time.sleep(0.1)
-        try:
-            with open_log(path) as log:
-                if len(log) > rows:
-                    return child
-        except LogError:
-            assert child.poll() is None
-    child.kill()
-    raise TimeoutError
+    wait_for_rows(path, rows, child)
+    return child
 
 
 @pytest.fixture(scope="module")

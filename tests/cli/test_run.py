@@ -1,16 +1,14 @@
 """`idealgas run` as a user meets it: what is printed, what is written, and what is refused."""
 
 import json
-import os
 import resource
 import shutil
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
-from helpers.support import IDEALGAS, ROOT, called, error_of, idealgas, output_of
+from helpers.support import IDEALGAS, ROOT, called, error_of, idealgas, output_of, wait_for_rows
 
 from idealgas.log import open_log
 
@@ -18,12 +16,7 @@ CORNER = ROOT / "configs" / "corner.toml"
 ENDLESS = """
 box.size = [30, 30]
 run.until = 1e9
-[[species]]
-name = "gas"
-count = 100
-radius = 0.5
-temperature = 1
-placement = "lattice"
+species = [{ name = "gas", count = 100, radius = 0.5, temperature = 1, placement = "lattice" }]
 """
 
 
@@ -53,7 +46,7 @@ def test_overrides_come_last(tmp_path):
 NO_LOG = "is not a log of idealgas and is not overwritten"
 
 
-def test_an_existing_output_is_refused_and_left_alone(tmp_path):
+def test_an_existing_output_and_a_scene_are_left_alone(tmp_path):
     output = tmp_path / "run.h5"
     output.write_bytes(b"precious")
     for force, why in (((), "already exists (use --force to overwrite)"), (("--force",), NO_LOG)):
@@ -64,9 +57,6 @@ def test_an_existing_output_is_refused_and_left_alone(tmp_path):
         output_of("run", CORNER, "-o", "run.h5", "--force", folder=tmp_path)
     with open_log(output) as log:
         assert len(log) == 10
-
-
-def test_a_scene_is_not_replaced_by_its_log(tmp_path):
     scene = Path(shutil.copy(CORNER, tmp_path))
     (tmp_path / "link.h5").symlink_to(scene)
     for name in (scene.name, "link.h5"):
@@ -99,8 +89,7 @@ def test_a_signal_ends_the_run_with_a_readable_log(tmp_path, how):
     output = tmp_path / "run.h5"
     command = [IDEALGAS, "run", "scene.toml", "-o", "run.h5"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        while process.poll() is None and not (output.exists() and os.path.getsize(output) > 1_000_000):
-            time.sleep(0.05)
+        wait_for_rows(output, 10_000, process)
         process.send_signal(how)
         stdout, stderr = process.communicate(timeout=60)
     assert (process.returncode, stderr) == (128 + how, "interrupted; `idealgas resume run.h5` continues it\n")
@@ -133,14 +122,10 @@ run = { until = 3, method = "brute_force" }
 WIDE = "box.size = [1, 10]\ndisc = [{ position = [0.5, 5], velocity = [1, 0.5], radius = 0.5 }]"
 NO_GAP = """
 box.size = [4, 10]
-[[disc]]
-position = [1, 5]
-velocity = [1, 0.5]
-radius = 1
-[[disc]]
-position = [3, 5]
-velocity = [-1, 0.5]
-radius = 1
+disc = [
+    { position = [1, 5], velocity = [1, 0.5], radius = 1 },
+    { position = [3, 5], velocity = [-1, 0.5], radius = 1 },
+]
 """
 
 

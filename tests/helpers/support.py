@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from idealgas.columns import BLOCK, EventBatch, empty_batch
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import EntryPoint
-from idealgas.log import Log, open_log
+from idealgas.log import Log, LogError, open_log
 from idealgas.run.layout import row_columns
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, SceneError, parse_scene
@@ -156,6 +157,19 @@ def started(*arguments: object, **options: Any) -> Iterator[tuple[subprocess.Pop
         child.kill()
         child.wait()
         child.stderr.close()
+
+
+def wait_for_rows(path: Path, rows: int, child: subprocess.Popen[Any]) -> None:
+    """Wait until a process has committed so many event rows of a log."""
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline:
+        with contextlib.suppress(LogError), open_log(path) as log:
+            if len(log) >= rows:
+                return
+        assert child.poll() is None
+        time.sleep(0.02)
+    child.kill()
+    raise TimeoutError
 
 
 def ended(child: subprocess.Popen[str]) -> tuple[int, str]:

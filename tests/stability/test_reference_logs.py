@@ -3,7 +3,7 @@
 The numbers hold for every gas of the scene, within their errors; the digest holds for this program, or another that
 rounds as it does. Once scenes or their logs have changed, this makes the table:
 
-    python tests/stability/test_reference_logs.py
+    PYTHONPATH=tests python tests/stability/test_reference_logs.py
 """
 
 import csv

@@ -2,21 +2,18 @@
 
 Once the logs of scenes have changed (see test_golden_logs.py), this makes the table:
 
-    python tests/stability/test_scene_digests.py
+    PYTHONPATH=tests python tests/stability/test_scene_digests.py
 """
 
 import json
 import shutil
 
 import pytest
-from click.testing import CliRunner
-from helpers.support import ROOT
-from idealgas_cli.main import main
+from helpers.support import ROOT, called, logged, output_of
 
-from idealgas import load_scene, open_log
+from idealgas import load_scene
 from idealgas.log.digest import digest
 from idealgas.run.digest import EVENTS, scene_digest
-from idealgas.run.simulate import simulate
 
 TABLE = ROOT / "configs" / "digests.json"
 SCENES = sorted(ROOT.glob("configs/*.toml"))
@@ -35,8 +32,7 @@ def test_every_scene_is_on_record():
     "name", [pytest.param(p.stem, marks=[] if p.stem in QUICK else pytest.mark.slow) for p in SCENES]
 )
 def test_a_scene_has_its_digest(name):
-    done = CliRunner().invoke(main, ["digest", "--check", name])
-    assert (done.exit_code, done.output) == (0, f"{name}: same {on_record()[name]}\n")
+    assert output_of("digest", "--check", name) == f"{name}: same {on_record()[name]}\n"
 
 
 def test_a_difference_gives_exit_code_1(tmp_path, monkeypatch):
@@ -44,9 +40,9 @@ def test_a_difference_gives_exit_code_1(tmp_path, monkeypatch):
     (tmp_path / "digests.json").write_text(json.dumps({"quickstart": "0" * 64}))
     for module in ("idealgas.examples", "idealgas_cli.digest"):
         monkeypatch.setattr(f"{module}.path_of", tmp_path.joinpath)
-    done = CliRunner().invoke(main, ["digest", "--check"])
-    assert (done.exit_code, done.output) == (1, f"quickstart: differs {on_record()['quickstart']}\n")
-    assert CliRunner().invoke(main, ["digest", "--check", "nothing"]).exit_code == 2
+    done = called("digest", "--check")
+    assert (done.returncode, done.stdout, done.stderr) == (1, f"quickstart: differs {on_record()['quickstart']}\n", "")
+    assert called("digest", "--check", "nothing").returncode == 2
 
 
 def test_storage_does_not_matter_and_one_disc_does(tmp_path):
@@ -54,10 +50,9 @@ def test_storage_does_not_matter_and_one_disc_does(tmp_path):
     quickstart = ROOT / "configs" / "quickstart.toml"
     for changes in ((), ('log.compression="none"', "run.threads=2"), ("scene.seed=99",)):
         path = tmp_path / f"{len(found)}.h5"
-        simulate(load_scene(quickstart, [f"run.events={EVENTS}", *changes]), path)
-        with open_log(path) as log:
+        with logged(load_scene(quickstart, [f"run.events={EVENTS}", *changes]), path) as log:
             found.append(digest(log))
-        assert CliRunner().invoke(main, ["digest", str(path)]).output == found[-1] + "\n"
+        assert output_of("digest", path) == found[-1] + "\n"
     assert found[0] == found[1] == on_record()["quickstart"] != found[2]
 
 

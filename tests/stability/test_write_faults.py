@@ -51,20 +51,16 @@ def faults(library: Path, folder: Path, *arguments: object, **environment: str) 
 
 
 @linux
-def test_a_few_writes_that_fail(library, tmp_path):
-    assert faults(library, tmp_path, 20, 160, 16, 70, "run", NUMBA_DISABLE_JIT="1") >= 12
-
-
-@linux
-@pytest.mark.slow
-def test_many_writes_that_fail(library, tmp_path):
-    assert faults(library, tmp_path, 100, 8000, 1, 12) > 300
-
-
-@linux
-@pytest.mark.long
-def test_every_single_write_fails(library, tmp_path):
-    assert faults(library, tmp_path, 100, 8000, 1, 1) > 4000
+@pytest.mark.parametrize(
+    ("arguments", "environment", "least"),
+    [
+        pytest.param((20, 160, 16, 70, "run"), {"NUMBA_DISABLE_JIT": "1"}, 12, id="a few"),
+        pytest.param((100, 8000, 1, 12), {}, 301, id="many", marks=pytest.mark.slow),
+        pytest.param((100, 8000, 1, 1), {}, 4001, id="every single one", marks=pytest.mark.long),
+    ],
+)
+def test_writes_that_fail(library, tmp_path, arguments, environment, least):
+    assert faults(library, tmp_path, *arguments, **environment) >= least
 
 
 def full_at(folder: Path, kilobytes: int) -> list[str]:
@@ -101,9 +97,7 @@ def undisturbed(tmp_path_factory):
 @pytest.mark.parametrize("kilobytes", [1, 2, 4, 8, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256])
 def test_a_file_that_may_not_grow(kilobytes, undisturbed, tmp_path):
     assert full_at(tmp_path, kilobytes) == []
-    for path in tmp_path.iterdir():
-        resume(path)
-        assert differences(path, undisturbed) == []
+    go_on(tmp_path.iterdir(), undisturbed)
 
 
 @pytest.mark.needs("a disk to mount")
@@ -113,6 +107,10 @@ def test_a_small_disk(kilobytes, undisturbed, tmp_path):
     with small_disk(tmp_path / "disk", kilobytes):
         assert full_at(tmp_path / "disk", 1024) == []
         left = [shutil.copy(path, tmp_path) for path in (tmp_path / "disk").iterdir()]
-    for path in left:
+    go_on(left, undisturbed)
+
+
+def go_on(paths, undisturbed):
+    for path in paths:
         resume(path)
         assert differences(path, undisturbed) == []

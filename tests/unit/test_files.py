@@ -85,7 +85,7 @@ def test_a_link_is_written_through(tmp_path):
     assert [path.name for path in (tmp_path / "folder").iterdir()] == ["page.html"]
 
 
-def test_what_fails_leaves_nothing(tmp_path):
+def test_what_fails_leaves_nothing_and_what_came_in_between_stays(tmp_path):
     def fail():
         with written(tmp_path / "film.gif", ".gif") as part:
             part.write_text("half")
@@ -95,9 +95,6 @@ def test_what_fails_leaves_nothing(tmp_path):
         fail()
     assert caught.value.exit_code == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_came_in_between_stays(tmp_path):
     path = tmp_path / "table.csv"
 
     def late():
@@ -108,10 +105,7 @@ def test_what_came_in_between_stays(tmp_path):
     with pytest.raises(OutputError, match="already exists"):
         late()
     assert path.read_text() == "theirs"
-
-
-def test_a_part_that_was_removed_is_one_line(tmp_path):
-    path = tmp_path / "table.csv"
+    path = tmp_path / "other.csv"
     path.write_text('"time","disc"')
 
     def lose():

@@ -37,17 +37,7 @@ ALLOWED = {
     "locks": set(),
     "pairs": set(),
     "system": set(),
-    "": {
-        "scene",
-        "log",
-        "run",
-        "analysis",
-        "movie",
-        "report",
-        "sweep",
-        "accuracy",
-        "examples",
-    },  # the Python interface, imported when it is asked for
+    "": {"scene", "log", "run", "analysis", "movie", "report", "sweep", "accuracy", "examples"},  # when it is asked for
     "__main__": set(),
 }
 
@@ -142,18 +132,6 @@ def test_physics_only_computes(name):
 def test_commands_use_what_is_public(name):
     used = {part(other) for other in GRAPH[name] if other.split(".")[0] == "idealgas"}
     assert used <= FREE | {
-        "toml",
-        "effects",
-        "scene",
-        "initial",
-        "run",
-        "log",
-        "analysis",
-        "report",
-        "movie",
-        "sweep",
-        "accuracy",
-        "bench",
-        "examples",
-        "gallery",
-    }
+        "toml", "effects", "scene", "initial", "run", "log", "analysis", "report", "movie", "sweep", "accuracy",
+        "bench", "examples", "gallery",
+    }  # fmt: skip

@@ -49,15 +49,10 @@ WRONG = {
 }
 """Slips of the pen that a type checker finds."""
 
-SCENE = """[box]
-size = [5, 5]
-[[species]]
-name = "gas"
-count = 30
-radius = 0.1
-temperature = 1.0
-[run]
-until = 1
+SCENE = """
+box.size = [5, 5]
+species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1.0 }]
+run.until = 1
 """
 
 

@@ -101,6 +101,9 @@ def test_a_pressed_piston_and_an_inner_one():
     assert energy_parts(effects, gas)["piston"] == pytest.approx(4 * 1.75 * 7, rel=1e-15)
     piston.v = 2.0
     assert energy_parts(effects, gas, 0.5)["piston"] == pytest.approx(8 + 4 * 1.75 * 7, rel=1e-14)  # conserved
+    below = 'piston = [{ side = "bottom", position = 0.25, mass = 4, pressure = 0.5 }]'
+    (piston,) = made(below, "gravity.acceleration=[0, 0.125]")[1].piston
+    assert (piston.a, piston.outward, piston.wall, piston.axis) == (0.5 * 10 / 4 + 0.125, -1.0, 2, 1)
     moved = made('piston = [{ side = "left", position = 1, velocity = [[0, 0.5], [2, 0], [4, -0.25]] }]')[1]
     assert (moved.piston[0].outward, moved.piston[0].v, moved.piston[0].m) == (-1.0, 0.5, 0.0)
     assert [(time, item, value) for time, _, item, value in moved.schedule] == [(2.0, 1, 0.0), (4.0, 1, -0.25)]

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers.support import gas_of
 
 from idealgas.effects import piston
 from idealgas.effects.bundle import Effects
@@ -20,38 +21,24 @@ from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.piston import PISTON
-from idealgas.state import Gas
 
 pytestmark = pytest.mark.interpreted
 
 
 def gas(n=100, speed=1.0, side=50.0):
     draw = np.random.default_rng(3)
-    return Gas(
-        box=(side, side),
-        position=draw.uniform(1, side - 1, (n, 2)),
-        velocity=speed * draw.normal(size=(n, 2)),
-        radius=np.full(n, 0.5),
-        mass=np.ones(n),
-        species=np.zeros(n, np.uint16),
-        species_names=("gas",),
-    )
+    return gas_of((side, side), draw.uniform(1, side - 1, (n, 2)), speed * draw.normal(size=(n, 2)), 0.5)
 
 
 def length_for(gas):
     return epoch_length(gas, encounters_per_length(gas))
 
 
-def test_a_power_of_two():
+def test_a_power_of_two_that_scales_with_speed_whatever_the_order_of_the_discs():
     for speed in (1e-8, 0.3, 1.0, 1e8):
         assert math.frexp(length_for(gas(speed=speed)))[0] == 0.5
-
-
-def test_scales_with_speed():
     assert length_for(gas(speed=4.0)) == length_for(gas()) / 4
-
-
-def test_does_not_depend_on_the_order_of_the_discs():
+    assert [length_for(gas(n, speed=0.0)) for n in (1, 100)] == [math.inf, math.inf]
     one = gas()
     for seed in range(20):
         order = np.random.default_rng(seed).permutation(len(one))
@@ -74,11 +61,6 @@ def test_close_to_a_power_of_two_the_exact_sum_of_the_speeds_decides():
             rounded = float(speeds[order].sum()) / len(one)
             wrong += 2.0 ** math.floor(math.log2(events / (rounded * close))) != exact
     assert wrong >= 10
-
-
-@pytest.mark.parametrize("n", [1, 100])
-def test_infinite_at_rest(n):
-    assert length_for(gas(n, speed=0.0)) == math.inf
 
 
 @pytest.mark.parametrize("side", [50.0, 300.0])

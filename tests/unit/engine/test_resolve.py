@@ -71,14 +71,11 @@ def segments():
     return make_segments(np.array([[2.0, 3.0], [5.0, 4.0]]), np.array([[6.0, 3.0], [5.0, 7.0]]))
 
 
-def test_energy_of_motion_and_spin():
+def test_energy_of_motion_and_spin_and_what_two_discs_lose():
     spins = Rotation(np.array([0.0, 3.0]), np.array([1.0, 0.5]), 0.0, 0.0)
     assert energy_of(disc(0, 0, 1.0, -2.0), 1, None) == 5.0
     assert energy_of(disc(0, 0, 1.0, -2.0), 1, spins) == 7.25
-
-
-def test_what_two_discs_lose():
-    """Masses of 2 that approach at 3 lose ½ μ v² (1 - e²) = ½ · 1 · 9 · ¾."""
+    # Masses of 2 that approach at 3 lose ½ μ v² (1 - e²) = ½ · 1 · 9 · ¾.
     effects = effects_of(restitution=inelastic())
     a, b = disc(0, 0, 1, 0.5), disc(2.75, 0.125, -2, 0.5, time=0.25)
     resolve_pair(a, b, 0, 1, 0.5, (0, 0), effects)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers.support import record
+from helpers.support import gas_of, record
 
 from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
@@ -15,25 +15,19 @@ from idealgas.initial.build import make_gas
 from idealgas.physics.gravity import Gravity
 from idealgas.run.effects import make_effects
 from idealgas.scene import parse_scene
-from idealgas.state import Gas
 
 pytestmark = pytest.mark.interpreted
 
 methods = pytest.mark.parametrize("method", [EventDriven, BruteForce])
 
 
-def gas_of(box, *discs):
+THREE = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
+
+
+def discs_in(box, *discs):
     """Unit-mass discs from (x, y, vx, vy, radius)."""
     table = np.array(discs, float)
-    return Gas(
-        box=(float(box[0]), float(box[1])),  # whole numbers would take machine code of their own
-        position=table[:, :2].copy(),
-        velocity=table[:, 2:4].copy(),
-        radius=table[:, 4].copy(),
-        mass=np.ones(len(table)),
-        species=np.zeros(len(table), np.uint16),
-        species_names=("gas",),
-    )
+    return gas_of(box, table[:, :2], table[:, 2:4], table[:, 4])
 
 
 def run(simulation, stop, batch_rows=64):
@@ -43,56 +37,37 @@ def run(simulation, stop, batch_rows=64):
 
 
 @methods
-def test_one_disc_bounces_between_two_sides(method):
-    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0, 1)), method())
+def test_events_of_one_disc_and_ties_come_in_their_order(method):
+    simulation = Simulation(discs_in((10, 10), (5, 5, 1, 0, 1)), method())
     assert run(simulation, Stop(time=30.0)) == [(4, 0, -2), (12, 0, -1), (20, 0, -2), (28, 0, -1)]
     end = simulation.state()[0]
     assert end.position.tolist() == [[3, 5]]
     assert end.velocity.tolist() == [[1, 0]]
-
-
-@methods
-def test_a_corner_is_two_events_at_one_time(method):
-    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 1, 1)), method())
+    simulation = Simulation(discs_in((10, 10), (5, 5, 1, 1, 1)), method())
     assert run(simulation, Stop(events=3)) == [(4, 0, -2), (4, 0, -4), (12, 0, -1)]
-
-
-@methods
-def test_ties_come_in_the_order_of_ids(method):
     discs = [(5, 2, 1, 0, 1), (5, 5, 1, 0, 1), (5, 8, 1, 0, 1)]
-    simulation = Simulation(gas_of((10, 10), *discs), method())
+    simulation = Simulation(discs_in((10, 10), *discs), method())
     assert run(simulation, Stop(time=5.0)) == [(4, 0, -2), (4, 1, -2), (4, 2, -2)]
 
 
 @methods
-def test_stops_where_it_should(method):
-    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
-    whole = run(Simulation(gas_of((10, 10), *discs), method()), Stop(time=200.0))
-    some = Simulation(gas_of((10, 10), *discs), method())
+def test_stops_where_it_should_and_limits_count_from_time_0_through_all_calls(method):
+    whole = run(Simulation(discs_in((10, 10), *THREE), method()), Stop(time=200.0))
+    some = Simulation(discs_in((10, 10), *THREE), method())
     assert run(some, Stop(time=200.0, events=17)) == whole[: len(run_rows(whole, 17))]
     assert some.counters.events == 17
-    pairs = Simulation(gas_of((10, 10), *discs), method())
+    pairs = Simulation(discs_in((10, 10), *THREE), method())
     run(pairs, Stop(time=200.0, disc_collisions=5))
     assert pairs.counters.disc_collisions == 5
-    early = Simulation(gas_of((10, 10), *discs), method())
+    early = Simulation(discs_in((10, 10), *THREE), method())
     assert run(early, Stop(time=20.0)) == [row for row in whole if row[0] <= 20.0]
-
-
-@methods
-def test_a_later_stop_in_the_same_epoch_is_another(method):
-    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
-    at_once, on_the_way = (Simulation(gas_of((10, 10), *discs), method()) for _ in range(2))
+    at_once, on_the_way = (Simulation(discs_in((10, 10), *THREE), method()) for _ in range(2))
     assert at_once.length > 5.0
     rows = run(on_the_way, Stop(time=2.0))
     assert on_the_way.finished(Stop(time=2.0))
     assert not on_the_way.finished(Stop(time=5.0))
     assert rows + run(on_the_way, Stop(time=5.0)) == run(at_once, Stop(time=5.0))
-
-
-@methods
-def test_limits_count_from_time_0_through_all_calls(method):
-    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
-    made = Simulation(gas_of((10, 10), *discs), method())
+    made = Simulation(discs_in((10, 10), *THREE), method())
     for stop in (Stop(disc_collisions=2), Stop(disc_collisions=5)):
         run(made, stop)
         assert made.counters.disc_collisions == stop.disc_collisions
@@ -106,7 +81,7 @@ def test_limits_count_from_time_0_through_all_calls(method):
 def test_epochs_end_at_changes_and_time_counts_from_the_start_of_the_run(method):
     """The pull changes at t = 3, one after the start at t = 2; from there the disc falls to y = 5 + 1 - 2 · 1/2."""
     effects = Effects(gravity=Gravity(0.0, 0.0), schedule=((3.0, 0, 1, -2.0),))
-    made = Simulation(gas_of((10, 10), (5, 5, 0, 1, 1)), method(), effects, time=2.0)
+    made = Simulation(discs_in((10, 10), (5, 5, 0, 1, 1)), method(), effects, time=2.0)
     assert (made.length, made.effects.gravity.y) == (1.0, 0.0)
     run(made, Stop(time=4.0))
     assert (made.reached, made.effects.gravity.y) == (4.0, -2.0)
@@ -128,33 +103,28 @@ def run_rows(rows, events):
 @methods
 @pytest.mark.parametrize("rows", [3, 7, 1000])
 def test_the_size_of_the_batch_changes_nothing(method, rows):
-    discs = [(2, 5, 1, 0.1, 0.5), (8, 5.2, -1, 0, 0.5), (5, 8, 0.3, -0.4, 0.5)]
     stop = Stop(time=60.0)
-    assert run(Simulation(gas_of((10, 10), *discs), method()), stop, rows) == run(
-        Simulation(gas_of((10, 10), *discs), method()), stop
+    assert run(Simulation(discs_in((10, 10), *THREE), method()), stop, rows) == run(
+        Simulation(discs_in((10, 10), *THREE), method()), stop
     )
 
 
 @methods
-def test_discs_at_rest_end_at_the_end_time(method):
-    simulation = Simulation(gas_of((10, 10), (2, 2, 0, 0, 1), (4, 2, 0, 0, 1)), method())
+def test_three_discs_in_line_pass_the_motion_on_and_discs_at_rest_end_at_the_end_time(method):
+    discs = [(2, 5, 1, 0, 1), (5, 5, 0, 0, 1), (7, 5, 0, 0, 1)]
+    simulation = Simulation(discs_in((20, 10), *discs), method())
+    assert run(simulation, Stop(time=2.0)) == [(1, 0, 1), (1, 1, 0), (1, 1, 2), (1, 2, 1)]
+    assert simulation.state()[0].velocity.tolist() == [[0, 0], [0, 0], [1, 0]]
+    simulation = Simulation(discs_in((10, 10), (2, 2, 0, 0, 1), (4, 2, 0, 0, 1)), method())
     assert run(simulation, Stop(time=1e6)) == []
     assert simulation.finished(Stop(time=1e6))
-    simulation = Simulation(gas_of((10, 10), (2, 2, 0, 0, 1)), method())
+    simulation = Simulation(discs_in((10, 10), (2, 2, 0, 0, 1)), method())
     assert run(simulation, Stop(events=5)) == []
 
 
 @methods
-def test_three_discs_in_line_pass_the_motion_on(method):
-    discs = [(2, 5, 1, 0, 1), (5, 5, 0, 0, 1), (7, 5, 0, 0, 1)]
-    simulation = Simulation(gas_of((20, 10), *discs), method())
-    assert run(simulation, Stop(time=2.0)) == [(1, 0, 1), (1, 1, 0), (1, 1, 2), (1, 2, 1)]
-    assert simulation.state()[0].velocity.tolist() == [[0, 0], [0, 0], [1, 0]]
-
-
-@methods
 def test_the_end_of_an_epoch_changes_only_records(method):
-    simulation = Simulation(gas_of((10, 10), (5, 5, 1, 0.5, 1)), method())
+    simulation = Simulation(discs_in((10, 10), (5, 5, 1, 0.5, 1)), method())
     stop = Stop(time=4 * simulation.length)
     simulation.run(stop)
     assert simulation.epoch == 3
@@ -170,13 +140,10 @@ def test_the_end_of_an_epoch_changes_only_records(method):
 def test_diagnostics_find_overlaps_and_escapes():
     discs = [(5, 5, 1, 0, 1), (6.5, 5, 0, 0, 1), (0.9, 2, 0, 0, 1)]
     for method in (EventDriven, BruteForce):
-        diagnostics = Simulation(gas_of((10, 10), *discs), method()).check_invariants()
+        diagnostics = Simulation(discs_in((10, 10), *discs), method()).check_invariants()
         assert diagnostics.overlap == pytest.approx(0.25)
         assert diagnostics.outside == pytest.approx(0.05)
-
-
-def test_no_disc_is_beyond_a_periodic_side():
-    """A disc at a periodic side reaches across it by its radius; at the side that reflects another one by a tenth."""
+    # A disc at a periodic side reaches across it by its radius; at the side that reflects another one by a tenth.
     scene = """
     box = { size = [10, 10], left = "periodic", right = "periodic" }
     disc = [{ position = [0.1, 5], radius = 1 }, { position = [5, 5], radius = 1, velocity = [1, 0] }]
@@ -193,7 +160,7 @@ def test_a_gas_keeps_its_energy_and_never_overlaps(method):
     draw = np.random.default_rng(5)
     places = [(2.0 * i + 1.5, 2.0 * j + 1.5) for i in range(4) for j in range(4)]
     discs = [(x, y, *draw.normal(size=2), 0.8) for x, y in places]
-    simulation = Simulation(gas_of((9, 9), *discs), method())
+    simulation = Simulation(discs_in((9, 9), *discs), method())
     energy = simulation.gas.kinetic_energy
     stop = Stop(events=600)
     overlap = 0.0

@@ -167,23 +167,6 @@ def test_a_temporary_cache_where_no_other_can_be_written(package, tmp_path):
     assert [path.name for path in (tmp_path / "temporary").iterdir()] == [f"idealgas-{os.geteuid()}"]
 
 
-@pytest.mark.parametrize(
-    ("variables", "expected"),
-    [
-        ({"NUMBA_CACHE_DIR": "{}/one", "XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "one"),
-        ({"XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "two/idealgas"),
-        ({"HOME": "{}/three"}, "three/.cache/idealgas"),
-    ],
-)
-def test_base_of_the_cache(package, tmp_path, variables, expected):
-    variables = {name: value.format(tmp_path) for name, value in variables.items()}
-    folder = Path(
-        python("from idealgas.jit.files import cache_folder; print(cache_folder())", package.parent, **variables)
-    )
-    assert folder.is_dir()
-    assert folder.parent == tmp_path / expected
-
-
 OLD = """
 import os, time
 from pathlib import Path
@@ -251,20 +234,25 @@ def place(tmp_path):
 
 
 @posix
-def test_a_relative_cache_home_is_ignored(place):
-    """Source: XDG Base Directory Specification: relative paths are invalid and to be ignored."""
-    found = cache_folder_with(place, HOME=str(place / "home"), XDG_CACHE_HOME="cache")
-    assert found.parent == place / "home" / ".cache" / "idealgas"
-    assert found.stat().st_mode & 0o777 == found.parent.stat().st_mode & 0o777 == 0o700
-
-
-@posix
-def test_a_user_without_a_home_has_a_cache_among_temporary_files(place):
+@pytest.mark.parametrize(
+    ("variables", "expected"),
+    [
+        ({"NUMBA_CACHE_DIR": "{}/one", "XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "one"),
+        ({"XDG_CACHE_HOME": "{}/two", "HOME": "{}/three"}, "two/idealgas"),
+        ({"HOME": "{}/three"}, "three/.cache/idealgas"),
+        ({"XDG_CACHE_HOME": "cache", "HOME": "{}/three"}, "three/.cache/idealgas"),
+        ({"HOME": "~"}, f"tmp/idealgas-{os.geteuid() if hasattr(os, 'geteuid') else 0}"),
+    ],
+    ids=["given", "of caches", "of the user", "relative", "no home"],
+)
+def test_base_of_the_cache(place, variables, expected):
+    """XDG Base Directory Specification: relative ones are invalid. `expanduser` leaves "~" of a user without a home."""
     for _ in range(2):
-        found = cache_folder_with(place, HOME="~")  # what `expanduser` leaves of a user without a home
-        assert found.parent == place / "tmp" / f"idealgas-{os.geteuid()}"
-        assert found.is_dir()
-    assert [path.name for path in place.iterdir()] == ["tmp"]
+        found = cache_folder_with(place, **{name: value.format(place) for name, value in variables.items()})
+        assert found.parent == place / expected
+        assert found.stat().st_mode & 0o777 == 0o700
+        assert "idealgas" not in expected or found.parent.stat().st_mode & 0o777 == 0o700
+    assert {path.name for path in place.iterdir()} == {"tmp", expected.partition("/")[0]}
 
 
 @posix

@@ -125,12 +125,7 @@ def test_a_digest_does_not_change_with(after):
     assert part("K = 2\ndef f(x):\n    'Doc.'\n    return x + K").digest == part(after).digest
 
 
-def test_options_of_the_compiler_count():
-    function = module("def f(x): return x").f
-    assert Part(function, forceinline=True).digest != Part(function, forceinline=False).digest
-
-
-def test_a_module_counts_by_what_is_used_of_it():
+def test_options_of_the_compiler_and_what_is_used_of_a_module_count():
     """Of modules of numpy, numba and Python the version counts, which is in the name of the cache folder."""
 
     def using(k, unused):
@@ -140,6 +135,8 @@ def test_a_module_counts_by_what_is_used_of_it():
 
     assert using(1, 1).digest == using(1, 2).digest != using(2, 1).digest
     assert vars(names_of(using(1, 1).py_func)[0]["constants"])["K"] == 1
+    function = module("def f(x): return x").f
+    assert Part(function, forceinline=True).digest != Part(function, forceinline=False).digest
 
 
 @pytest.mark.parametrize("value", [np.zeros(3), object(), iter(())], ids=["array", "object", "iterator"])
@@ -192,12 +189,9 @@ def names(keys):
     return {key.partition(".")[2] for key in keys}
 
 
-def test_functions_count_that_were_compiled(laws):
+def test_functions_count_that_were_compiled_and_all_that_a_choice_mentions(laws):
     """Not those that a function only mentions: code for absent effects is not compiled."""
     assert names(reached([f"{laws.__name__}.caller", f"{laws.__name__}.law"])) == {"caller", "law"}
-
-
-def test_all_counts_that_a_choice_mentions(laws):
     assert names(reached([f"{laws.__name__}.user"])) == {"user", "target", "helper"}
 
 

@@ -79,12 +79,9 @@ def test_a_function_that_does_nothing_is_left_out(function):
         assert types.unliteral(by_numba) == kind
 
 
-def test_functions_behind_it_count():
+def test_functions_behind_it_count_and_an_effect_in_a_bundle_is_absent():
     keys = leave_out(part_of(behind_another), (types.int64, types.none))
     assert {key.rpartition(".")[2] for key in keys} == {"behind_another", "nothing", "argument"}
-
-
-def test_an_effect_in_a_bundle_is_absent():
     bundle = numba.typeof(Effects(None, 2.0))
     assert len(leave_out(part_of(of_a_bundle), (types.float64, bundle))) == 2
     with pytest.raises(TypeError):

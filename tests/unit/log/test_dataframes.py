@@ -115,6 +115,7 @@ log.events = {events}
 """
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_logs_without_positions_events_or_anything(tmp_path):
     text = SMALL.format(run='method = "monte_carlo", trials = 500', events="true")
     simulate(parse_scene(text), tmp_path / "run.h5", force=True)

@@ -4,13 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.support import logged, uncompiled
 from scipy.integrate import quad
 
 import idealgas.log.flights as module
 from idealgas.columns import Kind
-from idealgas.log import Flights, LogError, open_log
+from idealgas.log import Flights, LogError
 from idealgas.log.flights import NO_EVENT, NOBODY
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 GAS = """
@@ -38,8 +38,8 @@ CASES = {
 
 
 def make(path, *overrides):
-    simulate(parse_scene(GAS, overrides=overrides), path)
-    return open_log(path)
+    with uncompiled():
+        return logged(parse_scene(GAS, overrides=overrides), path)
 
 
 @pytest.fixture(scope="module", params=CASES)

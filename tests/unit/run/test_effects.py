@@ -120,19 +120,6 @@ def test_a_thermostat():
     assert effects.wall_energy is None
 
 
-def test_a_piston_of_given_velocity_and_one_with_a_mass_under_pressure_and_gravity():
-    (record,) = effects_of("piston=[{ velocity = -0.5 }]")[1].piston
-    assert (record.x, record.v, record.a, record.m, record.length) == (20, -0.5, 0, 0, 20)
-    assert (record.wall, record.outward) == (1, 1)
-    piston = "piston=[{ side = 'bottom', position = 0.25, mass = 4, pressure = 0.5 }]"
-    region = "species.b.region=[0, 1, 5, 9]"
-    (record,) = effects_of(piston, region, "gravity.acceleration=[0, 0.125]")[1].piston
-    assert (record.x, record.v, record.m, record.length, record.wall, record.outward) == (0.25, 0, 4, 10, 2, -1)
-    assert record.a == 0.5 * 20 / 4 + 0.125
-    (record,) = effects_of(piston.replace("bottom", "top").replace("0.25", "9.75"), region)[1].piston
-    assert (record.a, record.axis, record.wall) == (-0.5 * 20 / 4, 1, 3)
-
-
 def test_an_inner_piston_is_the_last_wall_with_two_faces():
     wall = "wall=[{ from = [1, 1], to = [1, 3] }]"
     inner = "piston=[{ inner = 'x', position = 12, velocity = 0.25 }]"

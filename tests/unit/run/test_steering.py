@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT
+from helpers.support import ROOT, logged
 
-from idealgas import load_scene, open_log, parse_scene, simulate
+from idealgas import load_scene, open_log, parse_scene
 from idealgas.columns import OUTSIDE, Kind
 from idealgas.log.start import continued_scene
 
@@ -20,6 +20,7 @@ run.until = 18
 """
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_the_same_by_brute_force_and_resumed(tmp_path):
     summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, (), *(f"run.until={until}" for until in (1, 2, 4, 5.5)))
     with open_log(tmp_path / "whole.h5") as log:
@@ -28,8 +29,7 @@ def test_the_same_by_brute_force_and_resumed(tmp_path):
 
 
 def test_all_velocities_and_spins_are_reversed_in_rows_of_their_own(tmp_path):
-    simulate(load_scene(GOLDEN), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(load_scene(GOLDEN), tmp_path / "run.h5") as log:
         n = len(log.discs)
         steered = [block.kind == Kind.STEERED for block in log.chunks(("kind",))]
         assert np.flatnonzero(np.concatenate(steered)).tolist() == [
@@ -43,6 +43,8 @@ def test_all_velocities_and_spins_are_reversed_in_rows_of_their_own(tmp_path):
         assert np.array_equal(after.angular_velocity, -before.angular_velocity)
         assert np.array_equal(after.velocity, rows.velocity)
         assert np.abs(after.position - before.position).max() < 1e-13
+        assert "reversed_at = 3.0" in continued_scene(log, 2.0, "run.h5")
+        assert "reversed_at" not in continued_scene(log, 5.0, "run.h5")
 
 
 def right_half(log, time):
@@ -55,17 +57,9 @@ def test_an_expanded_gas_runs_back_with_16_digits_and_not_with_7(tmp_path, preci
     overrides = [] if precision is None else ["run.method=brute_force", f"run.precision={precision}"]
     if precision:
         overrides.append("wall=")
-    simulate(parse_scene(EXPANSION, overrides=overrides), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(parse_scene(EXPANSION, overrides=overrides), tmp_path / "run.h5") as log:
         out, back = log.state_at(1), log.state_at(17)
         assert right_half(log, 9) > 0.25
         apart = np.abs(out.position - back.position).max()
         assert (apart < 1e-3) == returns
         assert not returns or right_half(log, 18) == 0
-
-
-def test_later_scenes_have_the_later_reversals(tmp_path):
-    simulate(load_scene(GOLDEN), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        assert "reversed_at = 3.0" in continued_scene(log, 2.0, "run.h5")
-        assert "reversed_at" not in continued_scene(log, 5.0, "run.h5")

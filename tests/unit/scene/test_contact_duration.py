@@ -30,15 +30,9 @@ def test_without_a_force_it_is_far_below_every_free_time():
 
 
 def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
-    """√2 · 2R n χ and 2/π over the room of the centres along each axis, at √(v² + gL): a fall through half the box."""
+    """`test_defaults` has the mean free time, also under gravity."""
     found = scene(FALL)
-    phi = 20 * math.pi * 0.04 / 80
-    chi = (1 - 7 * phi / 16) / (1 - phi) ** 2
-    pairs = math.sqrt(2) * 0.4 * 19 / 80 * chi
-    sides = 2 / math.pi * (1 / 9.6 + 1 / 7.6)
-    free_time = 1 / ((pairs + sides) * math.sqrt(4 + 3 * 8))
-    assert found.mean_free_time == pytest.approx(free_time, rel=1e-14)
-    assert found.restitution.contact_duration == pytest.approx(free_time / 20, rel=1e-14)
+    assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
     assert parse_scene(GAS, overrides=[FALL]).restitution == found.restitution
 
 
@@ -62,6 +56,8 @@ def test_rest():
     assert rest.energy == pytest.approx(3 * rest.height)
     assert rest.per_free_time == pytest.approx(125 * scene(FALL).mean_free_time)
     assert scene(FALL).rest.per_free_time == pytest.approx(20 / 0.8)
+    one_way = scene(FALL, "restitution={ normal=0.5, contact_duration=0.1 }").rest
+    assert (one_way.hits, one_way.energy) == (pytest.approx((10, 20)), pytest.approx(9 * 0.1**2 / 8))
     stuck = scene(FALL, "restitution.wall=0").rest
     assert (stuck.hits[1], stuck.per_free_time) == (None, None)
 

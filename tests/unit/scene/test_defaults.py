@@ -48,13 +48,3 @@ def test_free_times_of_a_dilute_gas():
     assert scene.expected_end == pytest.approx(300 / 40 / per_length / 2, rel=1e-13)
     falling = parse_scene(text + "gravity.acceleration = [0.5, -3]")
     assert falling.mean_free_time == pytest.approx(1 / per_length / math.sqrt(4 + 0.5 * 20 + 3 * 10), rel=1e-13)
-
-
-def test_discs_at_rest_on_a_wall():
-    """Of bounces of one contact duration t in the acceleration 2: a t²/8 high, with a² t²/8 of energy, 1/t per time."""
-    scene = parse_scene(GAS + "gravity.acceleration = [0, -2]\nrestitution = { normal = 0.5, contact_duration = 0.1 }")
-    assert scene.rest.hits == pytest.approx((10.0, 20.0), rel=1e-14)
-    assert (scene.rest.height, scene.rest.energy) == pytest.approx((2 * 0.01 / 8, 0.04 / 8), rel=1e-14)
-    assert parse_scene(GAS).rest is None
-    default = parse_scene(GAS + "gravity.acceleration = [0, -2]\nrestitution = { normal = 0.5 }")
-    assert default.contact_duration == pytest.approx(0.05 * default.mean_free_time, rel=1e-14)

@@ -62,7 +62,7 @@ def test_another(digest, overrides):
     assert digest(scene(*overrides)) != digest(scene())
 
 
-def test_a_seed_that_nothing_is_drawn_from_makes_no_other_run_nor_temperatures_of_walls_another_gas():
+def test_seeds_without_draws_and_other_temperatures_of_walls():
     assert draws_random_numbers(scene())
     assert not draws_random_numbers(scene(text=DISCS))
     assert run_digest(scene("scene.seed=9", text=DISCS)) == run_digest(scene(text=DISCS))

@@ -24,31 +24,17 @@ pytestmark = [pytest.mark.interpreted, pytest.mark.filterwarnings("ignore:overfl
 
 
 def test_the_order_of_simultaneous_events():
-    events = [
-        (0, FIRST_WALL + 0),
-        (0, FIRST_WALL + 2),
-        (0, 1),
-        (0, 7),
-        (1, FIRST_WALL + 3),
-        (1, 2),
-        (5, FIRST_WALL + 1),
-        (5, 6),
-    ]
+    walls = [FIRST_WALL + k for k in range(4)]
+    events = [(0, walls[0]), (0, walls[2]), (0, 1), (0, 7), (1, walls[3]), (1, 2), (5, walls[1]), (5, 6)]
     for k, first in enumerate(events):
         for second in events[k + 1 :]:
             for a in (first, first[::-1] if first[1] >= 0 else first):
                 for b in (second, second[::-1] if second[1] >= 0 else second):
                     assert precedes(*a, *b)
                     assert not precedes(*b, *a)
-
-
-def test_no_event_precedes_itself():
     for event in ((0, 1), (1, 0), (3, FIRST_WALL + 2)):
         assert not precedes(*event, *event)
     assert not precedes(4, 2, 2, 4)
-
-
-def test_it_is_an_order():
     draw = random.Random(1)
     events = [(draw.randrange(6), draw.choice([FIRST_WALL + draw.randrange(4), draw.randrange(6)])) for _ in range(12)]
     for a in events:

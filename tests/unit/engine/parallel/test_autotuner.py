@@ -10,7 +10,7 @@ from idealgas.engine.parallel.decomposition import STOP, DomainDecomposition
 from idealgas.engine.simulation import Stop
 
 
-def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
+def test_the_faster_way_is_taken_and_the_slower_one_tried_again_later(monkeypatch):
     now = [0.0]
     monkeypatch.setattr("time.perf_counter", lambda: now[0])
     autotuner = ThreadAutotuner()
@@ -23,12 +23,8 @@ def test_the_faster_way_is_taken_and_the_slower_one_tried_again(monkeypatch):
     assert autotuner.use_threads()
     autotuner.note(True, 100, 0.5)
     assert autotuner.use_threads()
-
-
-def test_a_way_that_gets_slow_is_not_tried_again_at_once(monkeypatch):
-    """As when other work begins on the machine."""
-    now = [0.0]
-    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    # As when other work begins on the machine.
+    now[0] = 0.0
     autotuner = ThreadAutotuner()
     autotuner.note(False, 100, 1.0)
     autotuner.note(True, 100, 0.5)

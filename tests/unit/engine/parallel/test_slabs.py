@@ -30,10 +30,5 @@ def test_a_number_of_threads_and_why(monkeypatch):
     assert choose_threads(None, 100, 10**6, "")[:2] == (3, "each has at least 32 rows of cells")
     assert choose_threads(None, 10, 100, "")[0] == 1
     assert choose_threads(3, 100, 50, "far")[:2] == (1, "far")
-
-
-def test_where_no_core_is_left_one_thread_can_be_asked_for(monkeypatch):
-    monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
-    monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 4)
     assert 0 < choose_threads(None, 1000, 10**6, "").serial_events < DEFAULT_TUNING.min_events
     assert [threads for threads in (1, 3, 4, 5) if choose_threads(threads, 1000, 10**6, "").serial_events] == [4, 5]

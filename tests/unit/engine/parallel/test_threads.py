@@ -31,33 +31,31 @@ from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
+pytestmark = pytest.mark.slow
+
 GAS = """
 box.size = [60.0, 60.0]
 log = { pressure = true, snapshot_every = 20.0 }
 run.collisions_per_disc = 200
-[[species]]
-name = "a"
-count = 600
-radius = 0.5
-temperature = 1.0
-[[species]]
-name = "b"
-count = 900
-radius = 0.25
-temperature = 1.0
+species = [
+    { name = "a", count = 600, radius = 0.5, temperature = 1.0 },
+    { name = "b", count = 900, radius = 0.25, temperature = 1.0 },
+]
 """
 
 PLAIN_SEEDS, LATTICE_SEEDS = range(8), range(10)
 
 
-@pytest.mark.slow
+def assert_equal(found, expected, what=""):
+    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), what
+
+
 def test_gases_have_the_log_of_one_thread():
     counts = sum((compare(lambda s=seed: tall_scene("plain", s), seed) for seed in PLAIN_SEEDS), Counter())
     assert counts["7 slabs"] == len(PLAIN_SEEDS)
     assert counts["migrations"] > 1000
 
 
-@pytest.mark.slow
 def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
     """Slices by one thread and by several follow each other, as now the one way is faster and now the other."""
     monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 3)
@@ -66,18 +64,17 @@ def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
     stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER._replace(autotune=True))
     found = log_with(*tall_scene("plain", 3), stop, 300, method)
     expected = log_with(*tall_scene("plain", 3), stop, 300, EventDriven())
-    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert_equal(found, expected)
     assert method.threads[:2] == (3, "as many as there are cores")
     assert method.threads.slices - method.threads.aborted > 2
 
 
-@pytest.mark.slow
-def test_a_time_without_an_event_is_passed():
+def test_times_without_an_event_and_of_several_events():
     """A slice may be shorter than the time to the next event."""
     compare(lambda: tall_scene("plain", 1005), 1005)
+    compare(lambda: lattice(1822), 1822)
 
 
-@pytest.mark.slow
 def test_a_run_may_go_on_without_a_log():
     gas, effects = tall_scene("plain", 3)
     simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
@@ -90,19 +87,12 @@ def test_a_run_may_go_on_without_a_log():
     assert simulation.method.threads.slices > shared > 0
 
 
-@pytest.mark.slow
 def test_lattices_have_the_log_of_one_thread():
     counts = sum((compare(lambda s=seed: lattice(s), seed) for seed in LATTICE_SEEDS), Counter())
     assert counts["tie"] > 0
     assert counts["slices"] > 2 * counts["tie"]
 
 
-@pytest.mark.slow
-def test_a_disc_that_comes_over_has_its_turn_among_events_of_one_time():
-    compare(lambda: lattice(1822), 1822)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("until", [3.9, 4.1, 4.4])
 def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time(until):
     stop = Stop(time=until)
@@ -110,11 +100,10 @@ def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time
     method = EventDriven(1e-3, 2, EAGER)
     method.workers.rate = 1000.0, 500.0  # all is one slice
     found = log_with(*tie_at_an_interface(), stop, UNLIMITED, method)
-    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert_equal(found, expected)
     assert (method.threads.slices, method.threads.aborted) == (1, 0)
 
 
-@pytest.mark.slow
 def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
     """Which slab is ahead is random: in most of 20 runs the rows would be adjacent in the wrong order."""
     stop, ties = Stop(time=6.0), 0
@@ -123,12 +112,11 @@ def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
         method = EventDriven(SMALLEST_CELLS, 2, EAGER)
         method.workers.rate = 1000.0, 500.0  # all is one slice
         found = log_with(*tie_with_a_late_migrant(), stop, UNLIMITED, method)
-        assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+        assert_equal(found, expected)
         ties += method.workers.counts["tie"]
     assert ties > 0
 
 
-@pytest.mark.slow
 def test_slabs_begin_an_epoch_in_parallel(monkeypatch):
     gas, effects = tall_scene("plain", 2)
     simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
@@ -141,7 +129,6 @@ def test_slabs_begin_an_epoch_in_parallel(monkeypatch):
     assert simulation.counters.events > simulation.totals.events
 
 
-@pytest.mark.slow
 def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
     """The other threads wait at their interfaces for a missing one, and notice that the slice is aborted."""
     stop, sample = Stop(events=3000), lambda: tall_scene("plain", 3)
@@ -157,11 +144,10 @@ def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
     monkeypatch.setattr(_Slab, "run", fail)
     method = EventDriven(1e-9, 3, EAGER)
     found = log_with(*sample(), stop, 1000, method)
-    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+    assert_equal(found, expected)
     assert 0 < method.workers.counts["error"] <= method.threads.aborted
 
 
-@pytest.mark.slow
 def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
     gas, effects = tall_scene("plain", 3)
     simulation = Simulation(gas, EventDriven(1e-9, 3, EAGER), effects)
@@ -184,7 +170,6 @@ def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
     assert np.array_equal(simulation.state()[0].position, before.position)
 
 
-@pytest.mark.slow
 def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
     one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
     simulate(parse_scene(GAS), one)
@@ -203,13 +188,11 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
 @pytest.mark.parametrize(
     "effects", ["steps", "vibration", "fixed", "permeable", "absorbing", "steering", "arcs", "flow"]
 )
-@pytest.mark.slow
 def test_moving_and_fixed_obstacles_have_the_log_of_one_thread(effects):
     counts = sum((compare(lambda s=seed: tall_scene(effects, s), seed, (2, 4)) for seed in range(2)), Counter())
     assert counts["slices"] > 0
 
 
-@pytest.mark.slow
 def test_everything_at_once_has_the_log_of_one_thread():
     counts = sum((compare(lambda s=seed: tall_scene("everything", s), seed, (3, 7)) for seed in range(1)), Counter())
     assert counts["migrations"] > 100
@@ -251,7 +234,7 @@ def test_discs_that_go_from_strip_to_strip_all_the_time_have_the_log_of_one_thre
         for number in (3, 7):
             method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=1e9))
             found = log_with(*wind(seed), stop, 100, method)
-            assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), (seed, number)
+            assert_equal(found, expected, (seed, number))
             assert method.threads.number == number
             total += method.workers.counts
     print(dict(total))
