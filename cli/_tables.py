@@ -93,7 +93,7 @@ def _columns(table: "Table") -> list[_Column]:
 
 
 def _fitting(first: _Column, remaining: Sequence[_Column], width: int, between: int) -> int:
-    """Return how many of the remaining columns fit into a width together with the first column; at least one."""
+    """Return how many of the remaining columns (at least one) fit into a width together with the first column."""
     number, used = 0, first.least + between
     for column in remaining:
         used += column.least + between

@@ -1,4 +1,4 @@
-"""Command `idealgas accuracy`: errors and CPU time of the methods for a scene."""
+"""Command `idealgas accuracy`: measure errors and CPU time of the methods for a scene."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any

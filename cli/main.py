@@ -44,7 +44,7 @@ EXAMPLES = {
 
 
 class Commands(click.Group):
-    """The group of all commands, which are the modules in this folder and the analyses; it prints errors of users."""
+    """The group of all commands, which are the modules in this folder and the analyses; it prints user errors."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands, group by group."""
@@ -85,8 +85,8 @@ class Commands(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program."""
         set_up_streams()
-        gc.set_threshold(100_000, 50, 50)  # imports create many permanent objects, which would be searched repeatedly
-        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # the search for plugins reads all packages
+        gc.set_threshold(100_000, 50, 50)  # imports create many permanent objects, which it would scan repeatedly
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # the search for plugins would read all packages
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no warnings if its cache cannot be written
         return super().main(*args, **options)
 

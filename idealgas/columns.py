@@ -87,7 +87,7 @@ COUNTED = {
     Kind.STEERED: Column("steered", "i8"),
     Kind.ESCAPED: Column("escaped", "i8"),
 }
-"""Columns of checkpoints that count the events of a kind; only logs whose checkpoints have one have such events."""
+"""Columns of checkpoints that count events of optional kinds; a log without such a column has no events of its kind."""
 
 Arrays = dict[Column, np.ndarray]
 """Columns with an entry for each disc."""

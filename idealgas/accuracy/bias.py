@@ -1,7 +1,7 @@
 """The bias of a quantity caused by time steps, a dt + b dt².
 
-The first term arises because contacts are detected half a step late on average, the second because fast pairs pass
-through each other.
+Contacts are detected half a step late on average, which gives the first term. The second term arises because fast pairs
+pass through each other.
 """
 
 import math

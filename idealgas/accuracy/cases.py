@@ -1,4 +1,4 @@
-"""The cases whose accuracy is compared, which are methods, time steps and precisions, and how to run a gas in each."""
+"""The cases whose accuracy is compared: methods, time steps and precisions, and how a gas is run in each of them."""
 
 import copy
 import time

@@ -114,10 +114,7 @@ def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
 
 
 def error_on_return(start: Start, case: Case, duration: float) -> float:
-    """Return the rms distance from the start after a run, reversal of all velocities and an equally long run.
-
-    It is in mean diameters.
-    """
+    """Return the rms distance from the start, in mean diameters, after a run, a reversal and an equally long run."""
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())

@@ -56,7 +56,7 @@ def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTO
 def flat_events(blocks: Iterable[EventBatch], names: Sequence[str]) -> Iterator[Columns]:
     """Yield the columns of event rows, block by block; `kind` is an index into KIND_NAMES.
 
-    The first block is empty, so that a log without events has columns, too.
+    The first block is empty, so that even a log without events has columns.
 
     Args:
         blocks: blocks of event rows.

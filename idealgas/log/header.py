@@ -37,7 +37,7 @@ class LogHeader:
 
     @cached_property
     def wrapped_axes(self) -> tuple[bool, bool]:
-        """Along which axes a flight may lead through periodic sides; the crossing of a sheared side is an event."""
+        """Whether flights cross periodic sides along x and along y; crossing a sheared side is an event instead."""
         x, y = self.periodic
         return x, y and not self.scene.properties.shear
 

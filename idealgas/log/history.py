@@ -19,7 +19,7 @@ from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.summary import parse_summary
 
 COUNTS = ("events", "disc_collisions", "trials")
-"""Counters of every run, which may end it."""
+"""Numbers that every run counts; a run may end at a given value of each."""
 
 
 _CACHED = ("runs", "checkpoints", "observables", "snapshot_times", "summary", "changes", "end_time", "counts")

@@ -92,7 +92,7 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
 
 
 def _sampled(log: Log, column: str, time: float) -> np.ndarray:
-    """Value of a column of the samples at the time of one."""
+    """Return the value of a column of the samples at a time. Raises UserError if there is no sample at this time."""
     times, values = log.observables[column]
     k = int(np.abs(times - time).argmin()) if len(times) else 0
     if not len(times) or times[k] != time:
