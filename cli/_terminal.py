@@ -75,7 +75,7 @@ class _StandardOutput(io.FileIO):
         try:
             return super().write(data)
         except OSError as error:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # which absorbs the data that are still in the buffers
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # absorbs data that are still in the buffers
             if isinstance(error, BrokenPipeError):
                 raise
             raise OutputError(f"standard output: cannot be written: {error.strerror}", exit_code=1) from None
