@@ -22,7 +22,7 @@ BINS = 36
 FASTEST, BRIGHTEST = 3.2, 2.0
 """End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
 
-STRIP = 9  # pixels, height of the strip with the colours
+STRIP = 9  # height of the strip with the colours, pixels
 
 
 class Panel(Protocol):

@@ -1,4 +1,4 @@
-// ── a log that may still be being written: the motion part by part, from the server of the page ──
+// ── a log that a run may still be writing: the motion part by part, from the server of the page ──
 
 let received = {}, live = null;
 stored = name => received[name];

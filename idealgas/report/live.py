@@ -53,7 +53,7 @@ MEASURING = 0.2
 
 
 class Live:
-    """Parts of the motion in a log, and curves of its temperature and pressure; the log may still be being written."""
+    """Parts of the motion, and curves of temperature and pressure, of a log that a run may still be writing."""
 
     def __init__(self, log: Log) -> None:
         """Prepare the log.

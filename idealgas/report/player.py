@@ -40,7 +40,7 @@ TICKS = 2.0**32 - 1
 """Number of ticks in the time of the player; times of events are multiples of a tick."""
 
 LEAP = 2**16 - 1
-"""Number of ticks between events from which on it is stored separately, with 32 bits instead of 16."""
+"""Smallest number of ticks between two events that is stored separately, with 32 bits instead of 16."""
 
 ACCURACY = 2.0**-24
 """Largest deviation of a position from the position in the log, relative to the longer side of the box."""

@@ -113,7 +113,7 @@ class _Target(io.RawIOBase):
     """A file for HDF5, which would crash if a write failed: after a failure, this file ignores all calls.
 
     Attributes:
-        failure: error of the call that failed; None if none has.
+        failure: error of the call that failed; None if there was no failure.
     """
 
     def __init__(self, path: Path) -> None:
