@@ -17,6 +17,8 @@ from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate, parts_of
 from idealgas.analysis.core.stream import span
 from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
+from idealgas.analysis.effusion import LAW_OFF_PER_PATH
+from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.theory.values import NoTheoryError, Theory
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
@@ -98,7 +100,7 @@ class EscapeAnalysis(Analysis):
         caveats: tuple[str, ...] = ()
         theory = expected = spread = None
         try:
-            theory = _theory(log)
+            theory = _theory(log, spent / (last - first))
             expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
             missing = "No theory" if theory is None else "No theory of the number left"
@@ -175,11 +177,16 @@ def _flights(log: Log, first: float, last: float, progress: Progress | None) -> 
 # ── theory ──
 
 
-def _theory(log: Log) -> Theory:
+def _theory(log: Log, number: float) -> Theory:
     """Return the number of escapes per length of path, ℓ/(π A), 1/length.
 
     The relative error is the sum of ℓ/P, where P is the whole perimeter that discs touch, as a hole depletes the gas in
-    front of it; R/ℓ for the ends of the holes; and 2φ for the density at the wall.
+    front of it; 2φ for the density at the wall; the error of a slit of the width ℓ in `effusion`, as discs stream out
+    together; and the uncertain part of ℓ around corners of absorbing and other walls.
+
+    Args:
+        log: log of the gas.
+        number: mean number of discs in the gas.
 
     Raises:
         NoTheoryError: if theory does not apply.
@@ -195,7 +202,11 @@ def _theory(log: Log) -> Theory:
     if not reach.holes > 0 or not reach.area > 0:
         raise NoTheoryError("discs do not reach a hole")
     rate = reach.holes / (math.pi * reach.area)
-    doubt = reach.holes / reach.perimeter + radius / reach.holes + 2 * gas.packing_fraction
+    path = hard_discs.mean_free_path(2 * radius, number / gas.area, number / len(gas) * gas.packing_fraction)
+    together = LAW_OFF_PER_PATH * reach.holes / path
+    doubt = reach.holes / reach.perimeter + reach.shared / reach.holes + 2 * gas.packing_fraction + together
+    if doubt >= 1:
+        raise NoTheoryError(f"the holes are {reach.holes / path:.2g} mean free paths long, not small")
     return Theory(rate, rate * doubt, "ℓ/(π A) of a small hole")
 
 

@@ -87,7 +87,10 @@ def test_a_trap_in_a_box(tmp_path):
 
 @pytest.mark.usefixtures("uncompiled")
 def test_a_hole_just_inside_a_side(tmp_path):
-    """Discs reach it from one side only, and do not reach the side behind it: ℓ = 2, A = (10 - 2R)²."""
+    """Discs reach it from above only, and do not reach the side behind it: A = (10 - 2R)².
+
+    On the way along the side a disc touches an end of the hole R sin α before it is above it, cos α = (R - 0.001)/R.
+    """
     text = """
         box.size = [10, 10]
         run.until = 20
@@ -95,7 +98,8 @@ def test_a_hole_just_inside_a_side(tmp_path):
         species = [{ name = "gas", count = 30, radius = 0.2, temperature = 1 }]
     """
     found = escape_of(tmp_path, parse_scene(text))
-    assert found.per_path.theory == pytest.approx(2 / (math.pi * 9.6**2), rel=2e-3)
+    length = 2 + 2 * 0.2 * math.acos(0.199 / 0.2)
+    assert found.per_path.theory == pytest.approx(length / (math.pi * 9.6**2), rel=2e-3)
 
 
 @pytest.mark.usefixtures("uncompiled")
@@ -135,3 +139,18 @@ def test_falling_discs_have_no_path(tmp_path):
     assert found.per_path is None
     assert found.mean_time.value > 0
     assert found.caveats == ("No theory: discs fall, or walls move.",)
+
+
+@pytest.mark.slow
+def test_a_free_wall_also_catches_discs_at_its_ends(tmp_path):
+    """In a chaotic box ℓ = 2L + 2πR of a wall of length L, here 1.73 · 2L."""
+    walls = (ROOT / "configs" / "escape.toml").read_text().replace("absorbing = true, ", "")
+    trap = "    { from = [5.3, 4.9], to = [5.35, 4.9], absorbing = true },\n]\n\n[scene]"
+    scene = parse_scene(walls.replace("]\n\n[scene]", trap), overrides=["species.radius=0.0116", "run.until=1200"])
+    found = escape_of(tmp_path, scene)
+    length = 0.1 + 2 * math.pi * 0.0116
+    assert found.per_path.theory == pytest.approx(length / (math.pi * 41.85), rel=2e-3)
+    assert found.per_path.standard_error < 0.04 * found.per_path.value
+    assert found.per_path.theory_error < 0.08 * found.per_path.theory
+    assert abs(found.per_path.deviation) < 4
+    assert_number_left(found)

@@ -37,13 +37,17 @@ class Reach(NamedTuple):
     Attributes:
         area: area of all their positions, length².
         perimeter: perimeter of this area, along which discs touch walls, length; a wall with gas on both sides counts
-            twice.
-        holes: part of the perimeter along walls that absorb discs, length.
+            twice, with a half circle around a free end.
+        holes: part of the perimeter along walls that absorb discs, length, with half of the arcs around ends that these
+            walls have in common with other walls.
+        shared: the other half of these arcs, length; the order of the walls and rounding decide which of them a disc
+            hits there.
     """
 
     area: float
     perimeter: float
     holes: float
+    shared: float
 
 
 def reach_of(log: Log, radius: float) -> Reach:
@@ -53,12 +57,15 @@ def reach_of(log: Log, radius: float) -> Reach:
     """
     faces = list(_faces(log, radius))
     area = log.discs.area - radius * math.fsum(half for _, (_, half) in faces)
-    holes = math.fsum(length for is_hole, (length, _) in faces if is_hole)
-    return Reach(area, math.fsum(length for _, (length, _) in faces), holes)
+    holes = math.fsum(hole * length for hole, (length, _) in faces)
+    shared = math.fsum(length / 2 for hole, (length, _) in faces if 0 < hole < 1)
+    return Reach(area, math.fsum(length for _, (length, _) in faces), holes, shared)
 
 
-def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
-    """Yield for each face and end of a wall whether it is a hole, and the lengths of the line of touching centres.
+def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
+    """Yield for each face and end of a wall how far it is a hole, and the lengths of the line of touching centres.
+
+    It is one (1), or none (0), or an end of both kinds of walls (½).
 
     The lengths are those for discs of the radius and of half of it. As they are linear in the radius, the second one is
     their mean over all smaller radii, which gives the area.
@@ -84,7 +91,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
             reached.append(_share(touches, places) * (whole + bend * r))
         return reached
 
-    ends: dict[Point, list[float]] = defaultdict(list)
+    ends: dict[Point, list[tuple[float, bool]]] = defaultdict(list)
     for k, wall in walls.items():
         hole = k >= FIRST_SEGMENT and scene.walls[k - FIRST_SEGMENT].absorbing
         start, chord = np.array(wall.start), np.subtract(wall.end, wall.start)
@@ -104,11 +111,12 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[bool, list[float]]]:
                 yield hole, lengths(_straight(start, chord, side), float(np.hypot(*chord)), 0.0, beside)
         if k >= FIRST_SEGMENT and wall.start != wall.end:
             for end, direction in zip((wall.start, wall.end), _tangents(wall), strict=True):
-                ends[end].append(direction)
-    for end, directions in ends.items():
-        begin, free = _free_angle(directions)
+                ends[end].append((direction, hole))
+    for end, meeting in ends.items():
+        begin, free = _free_angle([direction for direction, _ in meeting])
+        holes = {hole for _, hole in meeting}
         if free > 0:
-            yield False, lengths(_arc(np.array(end), 0.0, begin, free), 0.0, free)
+            yield sum(holes) / len(holes), lengths(_arc(np.array(end), 0.0, begin, free), 0.0, free)
 
 
 def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> np.ndarray:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from idealgas import escape, open_log, parse_scene, simulate
+from idealgas.analysis.core.reach import reach_of
 from idealgas.analysis.escape import BILLIARD
+from idealgas.analysis.theory import hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
@@ -35,11 +37,26 @@ def test_two_discs_that_leave_and_one_that_does_not(tmp_path):
     assert found.left.tolist() == [3 - (t >= 3.45) - (t >= 6.9) for t in found.time.tolist()]
     assert found.mean_time.theory is None  # for discs of one speed only
     assert found.caveats == (BILLIARD,)
-    area = 9.8 * 7.8 - 4 * 0.2 - math.pi * 0.01  # of the centres; both faces of the hole are 8 long
-    assert found.per_path.theory == pytest.approx(8 / (math.pi * area), rel=1e-6)
+    area = 9.8 * 7.8 - 4 * 0.2 - math.pi * 0.01  # of the centres
+    length = 8 + 2 * math.pi * 0.1  # both faces of the hole and its round ends
+    assert found.per_path.theory == pytest.approx(length / (math.pi * area), rel=1e-6)
+    around = 2 * (9.8 + 7.8) + length
+    density = (6.9 + 3.45 + 12) / 12 / 80  # mean in time
+    free = hard_discs.mean_free_path(0.2, density, density * math.pi * 0.01)
+    error = length / around + 2 * 3 * math.pi * 0.01 / 80 + 0.245 * length / free
+    assert found.per_path.theory_error == pytest.approx(error * found.per_path.theory, rel=1e-6)
     assert found.expected[0] == 3
     rates = found.per_path.theory * np.array([1.0, 2.0, 1.0])
     assert found.expected == pytest.approx(np.exp(-np.multiply.outer(found.time, rates)).sum(axis=1), rel=1e-12)
+
+
+def test_a_hole_of_many_mean_free_paths_has_no_theory(tmp_path):
+    discs = "".join(DISC.format(x, y, 1, 0.1) for x in np.arange(0.5, 8.6, 0.5) for y in np.arange(0.5, 7.6, 0.5))
+    found = measured(tmp_path, HOLE.replace("until = 12", "until = 0.5") + discs)
+    assert found.per_path.theory is None
+    (sentence,) = found.caveats
+    assert sentence.startswith("No theory: the holes are ")
+    assert sentence.endswith(" mean free paths long, not small.")
 
 
 def test_a_window_counts_what_happens_in_it(tmp_path):
@@ -58,3 +75,38 @@ def test_discs_that_meet_are_no_billiard(tmp_path):
     assert found.caveats == (
         "No theory of the number left: discs neither keep their speeds nor come to equilibrium before they leave.",
     )
+
+
+R = 0.3
+HIDDEN = math.asin(0.1 / R)  # of an end 0.1 nearer to a side than a disc that touches both beside the wall
+TRAP = "{ from = [4, 4], to = [6, 4], absorbing = true }"
+
+
+@pytest.mark.parametrize(
+    ("walls", "length", "shared"),
+    [
+        (TRAP, 4 + 2 * math.pi * R, 0),
+        ("{ from = [5, 0], to = [5, 3], absorbing = true }", 2 * (3 - R) + math.pi * R, 0),
+        ("{ from = [5, 0.2], to = [5, 3], absorbing = true }", 2 * (3 - R) + math.pi * R, 0),
+        ("{ from = [5, 0.4], to = [5, 3], absorbing = true }", 2 * 2.6 + (math.pi + 2 * HIDDEN) * R, 0),
+        ("{ from = [5, 0], to = [5, 8], absorbing = true }", 2 * (8 - 2 * R), 0),
+        ("{ from = [4, 4], to = [6, 4], via = [5, 5], absorbing = true }", 2 * math.pi + 2 * math.pi * R, 0),
+        ("{ from = [4, 4], to = [4, 4], via = [6, 4], absorbing = true }", 4 * math.pi, 0),
+        (TRAP + ", { from = [6, 4], to = [6, 6], absorbing = true }", 8 - 2 * R + 2.5 * math.pi * R, 0),
+        (TRAP + ", { from = [6, 4], to = [6, 6] }", 4 - R + 1.25 * math.pi * R, math.pi * R / 4),
+        (TRAP + ", { from = [6, 4], to = [8, 4] }", 4 + math.pi * R, 0),
+        (TRAP + ", { from = [6, 2], to = [6, 6] }", 2 * (2 - R) + math.pi * R, 0),
+        (TRAP + ", { from = [6.4, 2], to = [6.4, 6] }", 4 + (math.pi + 2 * HIDDEN) * R, 0),
+    ],
+    ids=[
+        "free", "on a side", "close to a side", "near a side", "across", "half a circle", "circle", "corner",
+        "corner with another wall", "in line", "on a wall", "near a wall",
+    ],
+)  # fmt: skip
+def test_the_length_of_a_hole_is_that_of_all_centres_that_touch_it(tmp_path, walls, length, shared):
+    """Faces on both sides and an arc of the radius around each end, without what other walls hide."""
+    text = f"box.size = [10, 8]\nwall = [{walls}]\nrun.until = 0.01\n" + DISC.format(2, 2, 1, R)
+    simulate(parse_scene(text), tmp_path / "run.h5")
+    with open_log(tmp_path / "run.h5") as log:
+        reach = reach_of(log, R)
+    assert (reach.holes, reach.shared) == pytest.approx((length, shared), rel=1e-7)
