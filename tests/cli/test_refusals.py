@@ -19,6 +19,7 @@ USAGE = [
     ("presure", 'unknown command, did you mean "pressure"? (got presure; allowed …'),
     ("version", 'unknown command, did you mean "--version"? (got version; allowed new, …'),
     ("help rum", "…did you mean…"),
+    ("examples pistn", 'unknown example, did you mean "piston"?…'),
     ("run", "idealgas run: missing argument 'SCENE.toml'…"),
     (f"run {CORNER}", "idealgas run: missing option '-o' / '--output'…"),
     (f"run {CORNER} -o", "idealgas: option '-o' requires an argument…"),

@@ -22,11 +22,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from helpers.log_compare import differences as unequal
 from helpers.log_fuzz.commands import NAME, Form, forms, reading_commands
-from helpers.support import ROOT
-from idealgas_cli.main import main
+from helpers.support import ROOT, called, output_of
 
 import idealgas.log.writer as log_writer
 from idealgas import load_scene, open_log, parse_scene
@@ -90,13 +88,12 @@ def kind_of(log: str) -> str:
     return log.partition("-")[2]
 
 
-def called(form: Form) -> tuple[int, Any]:
-    """Exit code of a command on the log in the current folder, and its result."""
-    done = CliRunner().invoke(main, list(form))
-    assert done.exception is None or isinstance(done.exception, SystemExit), done.output
-    if done.exit_code or "--json" not in form:
-        files = [Path(form[form.index("-o") + 1])] if "-o" in form and not done.exit_code else []
-        return done.exit_code, [file.read_text() for file in files]
+def result_of(form: Form, folder: Path) -> tuple[int, Any]:
+    """Exit code of a command on the log in a folder, and its result."""
+    done = called(*form, folder=folder)
+    if done.returncode or "--json" not in form:
+        files = [folder / form[form.index("-o") + 1]] if "-o" in form and not done.returncode else []
+        return done.returncode, [file.read_text() for file in files]
     return 0, json.loads(done.stdout)
 
 
@@ -133,16 +130,13 @@ def test_every_kind_has_a_fixture():
 
 
 @pytest.mark.parametrize("pair", [log for log in LOGS if not FIXTURES[kind_of(log)].killed], indirect=True)
-def test_every_command_gives_the_same_numbers(pair, monkeypatch):
+def test_every_command_gives_the_same_numbers(pair):
     """A killed run ends earlier than a new one, so its log is compared once it is resumed."""
     _, old, new = pair
     wanted = [form for command in reading_commands() for form in forms(command) if "--json" in form]
     for form in (*wanted, ("export", NAME, "--format", "csv", "--events", "-o", "events.csv")):
-        found = []
-        for folder in (old, new):
-            monkeypatch.chdir(folder)
-            found.append(called(form))
-        assert differences(*map(list, found)) == [], shlex.join(form)
+        found = [list(result_of(form, folder)) for folder in (old, new)]
+        assert differences(*found) == [], shlex.join(form)
 
 
 def test_states_at_any_time(pair):
@@ -163,8 +157,7 @@ def test_resumed_to_the_same_log(pair, tmp_path):
         assert log.unclosed == FIXTURES[name].killed
         assert len(log) > 100
         simulate(with_end(log.scene_text, end), whole)
-    done = CliRunner().invoke(main, ["resume", str(path), *(f"--{end.removeprefix('run.')}",) * bool(end)])
-    assert done.exit_code == 0, done.output
+    output_of("resume", path, *(f"--{end.removeprefix('run.')}",) * bool(end))
     assert unequal(path, whole) == []
     with open_log(path) as log:
         assert log.complete
@@ -173,13 +166,8 @@ def test_resumed_to_the_same_log(pair, tmp_path):
 def test_a_difference_is_found():
     expected = {"a": [1.0, {"b": 2}], "c": "x", "seconds": 1.0}
     assert differences(expected | {"seconds": 2.0}, expected) == []
-    assert differences({"a": [1.0 + 1e-11, {"b": 2}], "c": "x", "seconds": 1.0}, expected) == [
-        ".a[0]: 1.00000000001 instead of 1.0"
-    ]
-    assert differences({"a": [1.0, {"b": 3}], "c": "y", "seconds": 1.0}, expected) == [
-        ".a[1].b: 3 instead of 2",
-        ".c: 'y' instead of 'x'",
-    ]
+    found = differences({"a": [1.0 + 1e-11, {"b": 3}], "c": "y", "seconds": 1.0}, expected)
+    assert found == [".a[0]: 1.00000000001 instead of 1.0", ".a[1].b: 3 instead of 2", ".c: 'y' instead of 'x'"]
     assert len(differences({"a": [1.0], "c": "x"}, expected)) == 1
 
 

@@ -13,12 +13,7 @@ box.size = [10, 10]
 gravity.acceleration = [0, -1]
 restitution.wall = 0.5
 run.until = 120
-[[species]]
-name = "gas"
-count = 5
-radius = 0.5
-temperature = 1
-region = [0, 5, 10, 10]
+species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1, region = [0, 5, 10, 10] }]
 """
 SLOPE = "wall=[{ from = [0, 4], to = [10, 1] }]"
 FLOOR = -3
@@ -42,14 +37,8 @@ def test_five_discs_at_rest_make_few_events(overrides, tmp_path):
 @pytest.mark.slow
 def test_a_disc_at_rest_bounces_as_the_theory_says(wall, tmp_path):
     """In flights of e t to t, t the contact duration, to a height of g t²/8 at most; the energy is then constant."""
-    one = [
-        "species.gas.count=1",
-        f"restitution.wall={wall}",
-        "run.until=200",
-        "box.left=periodic",
-        "box.right=periodic",
-    ]
-    scene, summary = run(tmp_path / "run.h5", *one)
+    one = ["species.gas.count=1", f"restitution.wall={wall}", "run.until=200"]
+    scene, summary = run(tmp_path / "run.h5", *one, "box.left=periodic", "box.right=periodic")
     t, rest = scene.restitution.contact_duration, scene.rest
     with open_log(tmp_path / "run.h5") as log:
         (rows,) = log.chunks()

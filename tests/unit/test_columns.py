@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers.support import logged
 
 from idealgas.columns import (
     EVENT_COLUMNS,
@@ -16,10 +17,8 @@ from idealgas.columns import (
     event_columns,
 )
 from idealgas.initial.build import make_gas
-from idealgas.log import open_log
 from idealgas.run.effects import make_effects
 from idealgas.run.layout import row_columns
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 ALWAYS = ("time", "disc", "partner", "kind", "velocity")
@@ -82,8 +81,7 @@ def test_a_log_has_the_columns_of_its_discs(overrides, has, tmp_path):
     scene = parse_scene(GAS, overrides=overrides)
     columns = event_columns(*has)
     assert row_columns(make_effects(scene, make_gas(scene)), POSITIONS in has) == columns
-    simulate(scene, tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
+    with logged(scene, tmp_path / "run.h5") as log:
         assert set(log.columns) == set(names(columns))
         (block,) = log.chunks()
         assert isinstance(block, EventBatch)

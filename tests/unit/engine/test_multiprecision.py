@@ -47,11 +47,9 @@ def lattice(n):
 
 
 def test_ties_are_settled_as_in_brute_force():
-    stop = Stop(events=600)
-    gas = lattice(6)
-    assert same_rows(
-        record(Simulation(gas, PreciseBruteForce("float64")), stop), record(Simulation(gas, BruteForce()), stop)
-    )
+    stop, gas = Stop(events=600), lattice(6)
+    precise, plain = (record(Simulation(gas, method), stop) for method in (PreciseBruteForce("float64"), BruteForce()))
+    assert same_rows(precise, plain)
 
 
 @pytest.mark.parametrize("precision", PRECISIONS)

@@ -193,6 +193,7 @@ def test_files_that_are_no_logs(tmp_path):
         open_log(tmp_path)
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_steps_of_time_may_carry_discs_beyond_a_side(tmp_path):
     text = """
     box.size = [5, 4]

@@ -307,6 +307,7 @@ def test_summaries_that_contradict_themselves(run, tmp_path, field, value, expec
     assert re.search(expected, refused(craft(shutil.copyfile(run, tmp_path / "run.h5"), edit)))
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_a_scene_without_its_heat_bath(tmp_path):
     path = tmp_path / "run.h5"
     simulate(scene_of("thermostat", "run.events=100"), path)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers.log_compare import differences
 from helpers.rounding import body
 from helpers.support import record, same_rows
 
@@ -10,27 +11,25 @@ from idealgas.engine.event_driven.cells import make_levels, own_cells
 from idealgas.engine.event_driven.method import EventDriven, expected_threads
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.initial.build import make_gas
-from idealgas.log import open_log
-from idealgas.log.digest import digest
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 BOX = "[box]\nsize = [2, 1.5]\n"
 DISCS = """
+[run]
+events = 2000
 [[species]]
 name = "small"
 count = 150
-radius = { uniform = [0.005, 0.01] }
-mass = { density = 1000 }
+radius.uniform = [0.005, 0.01]
+mass.density = 1000
 temperature = 1
 [[species]]
 name = "large"
 count = 3
-radius = { values = [0.2, 0.1, 0.15] }
+radius.values = [0.2, 0.1, 0.15]
 mass = 10
 temperature = 1
-[run]
-events = 2000
 """
 SIDES = "".join(f"{side} = 'periodic'\n" for side in ("left", "right", "bottom", "top"))
 SCENES = {
@@ -80,19 +79,14 @@ def test_the_log_is_that_of_brute_force_whatever_the_cells():
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SCENES]
 )
 def test_the_log_is_that_of_brute_force(name, tmp_path):
-    found = []
     for method in ("event_driven", "brute_force"):
         scene = parse_scene(SCENES[name], overrides=[f"run.method = '{method}'"])
         simulate(scene, tmp_path / f"{method}.h5")
-        with open_log(tmp_path / f"{method}.h5") as log:
-            found.append(digest(log))
-    assert found[0] == found[1]
+    assert set(differences(tmp_path / "event_driven.h5", tmp_path / "brute_force.h5")) <= {"scene"}
     gas = make_gas(scene)
     assert make_levels(gas.radius, gas.box, 0.4)[1] is not None
-    assert expected_threads(gas, 2, piston=False, shear=False)[:2] == (
-        1,
-        "the largest discs reach over many rows of cells",
-    )
+    wide = "the largest discs reach over many rows of cells"
+    assert expected_threads(gas, 2, piston=False, shear=False)[:2] == (1, wide)
     assert expected_threads(gas, 2, piston=True, shear=False)[:2] == (1, "any disc may meet the piston")
     far = "any disc may meet others through sheared sides"
     assert expected_threads(gas, 2, piston=False, shear=True)[:2] == (1, far)

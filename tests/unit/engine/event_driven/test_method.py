@@ -5,6 +5,7 @@ import pytest
 from helpers.effect_samples import make_effects, make_gas
 from helpers.support import batches, joined, record, same_rows
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven import method
 from idealgas.engine.event_driven.method import EventDriven
@@ -21,10 +22,14 @@ several = pytest.mark.parametrize(
 STOP = Stop(events=20_000)  # several epochs
 
 
+def simulation_of(engine, effects):
+    gas = make_gas(3)
+    return Simulation(gas, engine, make_effects(effects, gas) if effects else Effects())
+
+
 def rows_of(engine, effects, each=1000):
     """Rows of a run whose states are looked at on the way."""
-    gas = make_gas(3)
-    simulation = Simulation(gas, engine, make_effects(effects, gas))
+    simulation = simulation_of(engine, effects)
     found = record(simulation, STOP, events=each)
     assert simulation.epoch > 1
     return found
@@ -40,13 +45,10 @@ def test_epochs_in_the_memory_of_those_before_change_nothing(effects, in_any_ord
 
 @several
 def test_diagnostics_on_the_way_changes_nothing(effects):
-    gas = make_gas(3)
-    looked_at = Simulation(gas, EventDriven(), make_effects(effects, gas))
-    rows = []
+    looked_at, quiet, rows = simulation_of(EventDriven(), effects), simulation_of(EventDriven(), effects), []
     for batch in batches(looked_at, STOP, events=1000):
         looked_at.check_invariants_of(looked_at.state()[0])
         rows.append(batch)
-    quiet = Simulation(gas, EventDriven(), make_effects(effects, gas))
     assert same_rows(joined(rows), record(quiet, STOP, events=1000))
     assert looked_at.counters == quiet.counters
     for name in ("position", "velocity"):

@@ -5,6 +5,7 @@ import pytest
 from helpers.effect_samples import log_of, make_effects, make_gas
 from helpers.thread_samples import compare, lattice, tall_scene
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.event_driven.prefetch import FROM, make_pipeline
@@ -42,7 +43,7 @@ def test_the_log_is_that_of_the_oracle(names, events):
     """In cells of two sizes."""
     gas = make_gas(5)
     *found, oracle = (
-        log_of(gas, make_effects(names, gas), method, Stop(events=events), 1000)
+        log_of(gas, make_effects(names, gas) if names else Effects(), method, Stop(events=events), 1000)
         for method in (EventDriven(), EventDriven(1e-9), BruteForce())
     )
     assert all(np.array_equal(a, b) for log in found for a, b in zip(log, oracle, strict=True))
