@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from idealgas.effects.properties import ActiveEffect
 from idealgas.effects.wall import FixedDisc
 
 EXPLICIT = "disc"
@@ -122,7 +123,9 @@ NO_DISCS = discs_of_tables(())
 
 @dataclass(eq=False)
 class Given:
-    """Given discs of a scene; all instances compare equal, because the digest in the table [start] distinguishes them.
+    """Given discs of a scene, and what else follows from its tables.
+
+    All instances compare equal, because the digest in the table [start] distinguishes the discs.
 
     Attributes:
         discs: the discs.
@@ -130,6 +133,8 @@ class Given:
         tables: tables [[disc]] from which the discs were made; None for the discs of a start.
         walls: fixed discs of the tables `walls_of`.
         walls_of: tables [[disc]] from which `walls` were made.
+        effects: active effects of the tables `effects_of`.
+        effects_of: tables from which `effects` were found.
     """
 
     discs: Discs = NO_DISCS
@@ -137,6 +142,8 @@ class Given:
     tables: Sequence[Any] | None = None
     walls: Sequence[FixedDisc] = ()
     walls_of: Sequence[Any] = ()
+    effects: tuple[ActiveEffect, ...] = ()
+    effects_of: Sequence[Any] = ()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Given)

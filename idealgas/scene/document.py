@@ -4,6 +4,7 @@ Units are reduced units (k_B = 1). The tables of the effects follow from the lis
 """
 
 import math
+from operator import is_not
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -61,6 +62,10 @@ if TYPE_CHECKING:
 
 else:
     _DiscsAndEffects = create_model("_DiscsAndEffects", __base__=_Discs, **_fields_of_effects())
+
+
+_TABLES = ("box", "disc", *(effect.key for effect in EFFECTS if effect.key))
+"""Fields on which the effects of a scene depend."""
 
 
 class Document(_DiscsAndEffects):
@@ -150,8 +155,12 @@ class Document(_DiscsAndEffects):
     @property
     def active_effects(self) -> tuple[ActiveEffect, ...]:
         """Effects that the scene has, in the order of EFFECTS."""
-        effects = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
-        return tuple(effect for effect in effects if effect is not None)
+        tables = [getattr(self, name) for name in _TABLES]
+        known = self._given
+        if len(known.effects_of) != len(tables) or any(map(is_not, known.effects_of, tables)):
+            effects = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
+            known.effects, known.effects_of = tuple(effect for effect in effects if effect is not None), tables
+        return known.effects
 
     @property
     def effects(self) -> tuple[str, ...]:

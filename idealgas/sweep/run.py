@@ -104,7 +104,7 @@ def run_sweep(
         scheduler: address of a dask scheduler, instead of local workers; its workers have to see the folder at the
             same path.
         on_progress: function that is called when a point has finished or failed.
-        on_estimate: called before, with the number of combinations of values whose cost is estimated, and that of all.
+        on_estimate: function that is called before with the number of steps of the estimate done, and of all steps.
 
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
