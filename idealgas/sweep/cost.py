@@ -3,14 +3,16 @@
 import math
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from idealgas.analysis.registry import analyse
 from idealgas.analysis.theory.forecast import BYTES_A_ROW, Forecast, forecast
 from idealgas.errors import UserError
+from idealgas.files import beside
 from idealgas.initial.build import make_gas
 from idealgas.jit import compile_seconds
 from idealgas.run.simulate import simulate
@@ -20,8 +22,9 @@ from idealgas.sweep.plan import Sweep
 TRIAL_EVENTS = 20_000  # events of the short runs that measure the speed
 MOST_TRIALS = 32  # short runs of a sweep; combinations between them take the speed of the one before
 TRIAL_SHARE = 0.02  # of the time that they estimate, which short runs take where theory forecasts the events
-START = 3.0  # seconds in which workers start
+START = 3.0  # seconds in which workers start, do short runs, and end
 ROWS_PER_SECOND = 1e6  # event rows that an analysis reads per second
+_imported: set[tuple[str, ...]] = set()  # analyses whose modules this process has imported by a short run
 
 
 class Cost(NamedTuple):
@@ -37,7 +40,7 @@ class Cost(NamedTuple):
     seconds: float
 
 
-class _Trial(NamedTuple):
+class Trial(NamedTuple):
     """Short run of a scene.
 
     rows: per event. per_second, per_time: events per second and per simulated time. seconds: time it took with its
@@ -51,33 +54,44 @@ class _Trial(NamedTuple):
     apart: float
 
 
-def estimate_cost(sweep: Sweep, on_progress: Callable[[int, int], None] = lambda done, total: None) -> tuple[Cost, ...]:
+def estimate_cost(
+    sweep: Sweep,
+    on_progress: Callable[[int, int], None] = lambda done, total: None,
+    *,
+    folder: Path | None = None,
+    execute: Callable[[Callable[[Scene], Trial], Sequence[Scene]], Iterable[Trial]] = map,
+) -> tuple[Cost, ...]:
     """Cost estimate of each point, from short runs of some of them and, where possible, from theory.
 
-    on_progress: called with the number of steps that are done, and that of all: two for each combination of values.
+    Args:
+        sweep: the sweep.
+        on_progress: called with the number of steps that are done, and that of all: forecasts and short runs.
+        folder: folder of the logs of short runs, until these are over; None for a temporary one.
+        execute: does the short runs, as `map` does them in this process.
     """
-    scenes = {point.combination: point.scene for point in sweep.points}
-    forecasts: dict[int, Forecast] = {}
-    for combination, scene in scenes.items():
-        on_progress(len(forecasts), 2 * len(scenes))
-        forecasts[combination] = forecast(scene, make_gas(scene))
+    combinations = {point.combination: point.scene for point in sweep.points}
+    scenes, forecasts = list(combinations.values()), list[Forecast]()
+    for k, scene in enumerate(scenes):
+        on_progress(k, len(scenes))
+        forecasts.append(forecast(scene, make_gas(scene)))
 
-    def cost(combination: int, trial: _Trial) -> Cost:
-        return _cost(scenes[combination], forecasts[combination], trial, len(sweep.analyses))
+    def costs(trials: Sequence[Trial], every: int) -> tuple[Cost, ...]:
+        each = [_cost(scene, forecasts[k], trials[k // every], len(sweep.analyses)) for k, scene in enumerate(scenes)]
+        by_combination = dict(zip(combinations, each, strict=True))
+        return tuple(by_combination[point.combination] for point in sweep.points)
 
-    _try(sweep.points[0].scene, sweep.analyses)  # imports modules
-    trial, trials = _try(sweep.points[0].scene, sweep.analyses), MOST_TRIALS
-    if all(known.events is not None and known.bytes is not None for known in forecasts.values()):
-        seconds = sum(cost(point.combination, trial).seconds for point in sweep.points)
-        trials = min(trials, max(1, int(TRIAL_SHARE * seconds / trial.seconds)))
-    every = math.ceil(len(scenes) / trials)
-    costs: dict[int, Cost] = {}
-    for k, (combination, scene) in enumerate(scenes.items()):
-        on_progress(len(scenes) + k, 2 * len(scenes))
-        if k and k % every == 0:
-            trial = _try(scene, sweep.analyses)
-        costs[combination] = cost(combination, trial)
-    return tuple(costs[point.combination] for point in sweep.points)
+    with tempfile.TemporaryDirectory(prefix="idealgas-sweep-") as temporary:
+        run = partial(_try, analyses=sweep.analyses, folder=folder or Path(temporary))
+        trials, number = list(execute(run, scenes[:1])), MOST_TRIALS
+        if all(known.events is not None and known.bytes is not None for known in forecasts):
+            seconds = sum(cost.seconds for cost in costs(trials, len(scenes)))
+            number = min(number, max(1, int(TRIAL_SHARE * seconds / trials[0].seconds)))
+        every = math.ceil(len(scenes) / number)
+        chosen = scenes[every::every]
+        for k, trial in enumerate(execute(run, chosen)):
+            on_progress(k, len(chosen))
+            trials.append(trial)
+    return costs(trials, every)
 
 
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:
@@ -86,7 +100,7 @@ def total_seconds(costs: Sequence[Cost], workers: int) -> float:
     return START + max(sum(seconds) / workers, max(seconds, default=0.0))
 
 
-def _cost(scene: Scene, expected: Forecast, trial: _Trial, analyses: int) -> Cost:
+def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost:
     events, size = expected.events, expected.bytes
     if events is None:
         until = scene.run.until or math.inf
@@ -98,18 +112,23 @@ def _cost(scene: Scene, expected: Forecast, trial: _Trial, analyses: int) -> Cos
     return Cost(expected.number, expected.packing_fraction, events, size, seconds)
 
 
-def _try(scene: Scene, analyses: Sequence[str]) -> _Trial:
+def _try(scene: Scene, analyses: tuple[str, ...], folder: Path) -> Trial:
+    """Run a scene for a short time; the first time in a process it runs twice, as modules are imported then."""
+    if analyses not in _imported:
+        _imported.add(analyses)
+        _try(scene, analyses, folder)
     run = scene.run.model_copy(update={"events": min(TRIAL_EVENTS, scene.run.events or TRIAL_EVENTS)})
-    started = _clock()
-    with tempfile.TemporaryDirectory(prefix="idealgas-sweep-") as folder:
-        path = Path(folder) / "trial.h5"
+    path, started = beside(folder / "trial.h5"), _clock()
+    try:
         summary = simulate(scene.model_copy(update={"run": run}), path)
         for name in analyses:
             with suppress(UserError):
                 analyse(path, name)
+    finally:
+        path.unlink(missing_ok=True)
     seconds, events = _clock() - started, max(summary.events, 1)
     per_second, per_time = events / summary.seconds, events / max(summary.end_time, 1e-300)
-    return _Trial(summary.rows / events, per_second, per_time, seconds, max(seconds - summary.seconds, 0.0))
+    return Trial(summary.rows / events, per_second, per_time, seconds, max(seconds - summary.seconds, 0.0))
 
 
 def _clock() -> float:

@@ -8,7 +8,7 @@ import asyncio
 import logging
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from idealgas.errors import OutputError, UserError, install
-from idealgas.sweep.cost import estimate_cost, total_seconds
+from idealgas.scene import Scene
+from idealgas.sweep.cost import Trial, estimate_cost, total_seconds
 from idealgas.sweep.folder import check_folder, hold_folder, resume_numbering
 from idealgas.sweep.plan import Point, Sweep
 from idealgas.sweep.point import result_path, run_point
@@ -118,11 +119,13 @@ def run_sweep(
         remaining = replace(sweep, points=tuple(open_points))
         failures: dict[int, str] = {}
         workers = min(workers or os.cpu_count() or 1, max(len(open_points), 1))
-        estimated = None if scheduler or not open_points else _estimate(remaining, workers, on_estimate)
-        started = time.monotonic()
+        estimated, started = None, time.monotonic()
         on_progress(Progress(before, 0, len(sweep.points)))
         if open_points:
             with _client(workers, scheduler) as client:
+                if not scheduler:
+                    estimated = _estimate(client, remaining, folder, workers, on_estimate)
+                    on_progress(Progress(before, 0, len(sweep.points)))  # the estimate is over
                 for k, (index, failure) in enumerate(_run(client, remaining, folder)):
                     if failure is not None:
                         check_folder(folder)
@@ -136,10 +139,18 @@ def run_sweep(
     return Outcome(done - before, before, dict(sorted(failures.items())), seconds, estimated, files, tuple(notices))
 
 
-def _estimate(sweep: Sweep, workers: int, on_estimate: Callable[[int, int], None]) -> float | None:
+def _estimate(
+    client: "Client", sweep: Sweep, folder: Path, workers: int, on_estimate: Callable[[int, int], None]
+) -> float | None:
     """Estimated time of a sweep on a number of workers, seconds; None if one of its points cannot be run."""
-    with suppress(UserError):
-        return total_seconds(estimate_cost(sweep, on_estimate), workers)
+    from distributed.scheduler import KilledWorker
+
+    def execute(run: Callable[[Scene], Trial], scenes: Sequence[Scene]) -> Iterator[Trial]:
+        for future in client.map(run, scenes, pure=False):
+            yield future.result()
+
+    with suppress(UserError, KilledWorker, CancelledError):
+        return total_seconds(estimate_cost(sweep, on_estimate, folder=folder, execute=execute), workers)
     return None
 
 

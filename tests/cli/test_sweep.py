@@ -135,6 +135,8 @@ def test_all_that_people_want_of_a_sweep(plan, tmp_path):
     assert timing.startswith("time: ")
     assert " (estimate " in timing
     assert picture == f"{tmp_path / 'z.png'}: written"
+    expected = {".lock", "points", "results.csv", "results.parquet", "sweep.toml"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == expected  # logs of short runs are gone
     assert (tmp_path / "z.png").stat().st_size > 5000
     with (tmp_path / "out" / "results.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

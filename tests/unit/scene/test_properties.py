@@ -212,3 +212,15 @@ def test_sides_by_their_numbers(side):
     start, end = side_ends((20.0, 10.0))[side]
     assert start[axis] == end[axis] == ((20.0, 10.0)[axis] if is_upper(side) else 0.0)
     assert (start[1 - axis], end[1 - axis]) == (0.0, (20.0, 10.0)[1 - axis])
+
+
+def test_a_changed_copy_of_a_scene_has_other_effects():
+    """Effects are found once for the same tables; a copy with another end of its run has the same tables."""
+    plain, fallen = scene(), scene(*TABLES["gravity"])
+    longer = plain.model_copy(update={"run": fallen.run})
+    assert longer.active_effects is plain.active_effects
+    falling = plain.model_copy(update={"gravity": fallen.gravity})
+    assert (falling.effects, falling.properties.acceleration) == (("gravity",), (0.0, -0.5))
+    periodic = plain.model_copy(update={"box": scene(*TABLES["periodic sides"]).box})
+    assert (periodic.properties.periodic, periodic.properties.acceleration) == ((True, False), (0.0, 0.0))
+    assert (plain.properties.periodic, plain.effects) == ((False, False), ())
