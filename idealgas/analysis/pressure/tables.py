@@ -23,6 +23,9 @@ from idealgas.analysis.pressure.routes import PAIRS
 CLEAR = 5.0
 """Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
 
+MOST_WALLS = 4
+"""Largest number of pressures in the headline; of more it quotes the lowest and the highest."""
+
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
     "than the pressure by the virial, and each has its own theory."
@@ -123,14 +126,39 @@ def _of_states(result: EquationOfState) -> list[Table]:
 
 
 def _unlike(walls: Sequence[WallPressure]) -> list[WallPressure]:
-    """Return the first wall, and each further wall whose pressure clearly differs from those before it."""
+    """Return the first wall that was hit, and each further wall whose pressure clearly differs from those before it."""
     unlike: list[WallPressure] = []
-    for wall in walls:
+    for wall in (wall for wall in walls if not math.isnan(wall.pressure.standard_error)):
         p = wall.pressure
         before = [previous.pressure for previous in unlike]
         if all(abs(p.value - q.value) > CLEAR * math.hypot(p.standard_error, q.standard_error) for q in before):
             unlike.append(wall)
     return unlike
+
+
+def _place(name: str) -> str:
+    """Return the name of a side of the box, or of a face of another wall, as part of a sentence."""
+    wall, _, direction = name.rpartition(", ")
+    if direction in ("inside", "outside"):
+        return f"the {direction} of {wall}"
+    return f"the face of {wall} that looks {direction}" if wall else f"the {name}"
+
+
+def _on_walls(walls: Sequence[WallPressure], shown: Sequence[WallPressure]) -> str:
+    """Return the pressures on the shown walls as part of a sentence; of many, the lowest and the highest.
+
+    Walls that stand for other faces inside the box are followed by the number of these faces.
+    """
+    many = len(shown) > MOST_WALLS
+    by_pressure = sorted(shown, key=lambda wall: wall.pressure.value)
+    named = (by_pressure[0], by_pressure[-1]) if many else shown
+    places = (f"{format_estimate(wall.pressure)} on {_place(wall.name)}" for wall in named)
+    pressures = " to ".join(places) if many else ", ".join(places)
+    others = sum(not math.isnan(wall.pressure.standard_error) for wall in walls) - len(shown)
+    stand_for_others = all(", " in wall.name and wall.pressure.theory is None for wall in shown)
+    if many or not others or not stand_for_others:
+        return pressures
+    return f"{pressures}, and within {CLEAR:g} standard errors of this on {others} other face{'s' * (others > 1)}"
 
 
 def pressure_summary(result: Pressure | EquationOfState) -> str:
@@ -146,7 +174,7 @@ def pressure_summary(result: Pressure | EquationOfState) -> str:
         shown = [wall for wall in walls if wall.pressure.theory is not None] or _unlike(walls)
         beside = f"N T/A of an ideal gas is {ideal:.4g}; "
         verdict = agreement([(wall.name, wall.pressure) for wall in shown], "the external pressure", result.no_theory)
-        pressures = ", ".join(f"{format_estimate(wall.pressure)} on the {wall.name}" for wall in shown)
+        pressures = _on_walls(walls, shown)
         return f"P = {pressures or 'unknown without walls'}; {beside}{verdict}."
     (z,) = (route.compressibility_factor for route in result.routes if route.name == PAIRS)
     more = z.value - 1

@@ -5,10 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.pressure.tables import pressure_tables
+from idealgas.analysis.pressure.mechanical import WallPressure
+from idealgas.analysis.pressure.tables import _on_walls, _unlike, pressure_tables
 from idealgas.errors import NotApplicableError, UserError
 
 GAS = """
@@ -140,3 +142,32 @@ def test_no_equation_of_state_of_such_gases(make):
         combine_pressure([found, found])
     with pytest.raises(UserError, match="point 3: no equation of state holds under gravity"):
         restore_pressure(found.as_dict(), "point 3")
+
+
+def walls_at(*pressures):
+    """Walls inside the box by name, with pressures and standard errors."""
+    return [WallPressure(name, Estimate(p, error, 10.0), None) for name, p, error in pressures]
+
+
+@pytest.mark.parametrize(
+    ("walls", "sentence"),
+    [
+        ([("left wall", 2.0, 0.1), ("wall 4, up", 2.1, 0.1)], "2.00(10) on the left wall"),
+        (
+            [("wall 4, up", 0.0, np.nan), ("wall 5, down", 2.0, 0.1), ("wall 6, left", 2.1, 0.1)],
+            "2.00(10) on the face of wall 5 that looks down, and within 5 standard errors of this on 1 other face",
+        ),
+        (
+            [("drum, inside", 2.0, 0.1), ("lid, a, left", 4.0, 0.1)],
+            "2.00(10) on the inside of drum, 4.00(10) on the face of lid, a that looks left",
+        ),
+        (
+            [(f"wall {k}, up", float(k), 0.1) for k in (7, 4, 6, 9, 5)],
+            "4.00(10) on the face of wall 4 that looks up to 9.00(10) on the face of wall 9 that looks up",
+        ),
+    ],
+)
+def test_the_headline_names_few_of_many_walls(walls, sentence):
+    """Each face that clearly differs; a face that was never hit stands for no other."""
+    walls = walls_at(*walls)
+    assert _on_walls(walls, _unlike(walls)) == sentence
