@@ -91,13 +91,18 @@ def test_a_piston_is_held_in_a_gas_that_cools_too(make):
 
 
 def test_a_heat_bath_carries_no_weight_on_average(make):
-    found = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }")).mechanical
-    alone = pressure(make("gravity.acceleration=[0, -0.3]")).mechanical
-    assert found.forces[-1].y.theory == alone.forces[-1].y.theory == pytest.approx(-9.0)
-    assert (
-        found.forces[-1].y.standard_error > 3 * alone.forces[-1].y.standard_error
-    )  # its impulses are no bounded store
-    assert abs(found.forces[-1].y.deviation) < 4
+    """Its impulses are no bounded store: hits of bottom and top are independent, as it changes velocities in between.
+
+    The variance of the force in a time t is then Σ(2mv)²/t², 8 √m T^1.5/√(2π) times their barometric densities, over t.
+    """
+    found = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }"))
+    alone = pressure(make("gravity.acceleration=[0, -0.3]")).mechanical.forces[-1].y
+    force, x = found.mechanical.forces[-1].y, 0.3 * 5.8 / 1.5
+    assert force.theory == alone.theory == pytest.approx(-9.0)
+    hits = 30 / 5.8 * x / np.tanh(x / 2) * 8 * 1.5**1.5 / np.sqrt(2 * np.pi)
+    assert force.standard_error == pytest.approx(np.sqrt(hits / (40 - found.window.start)), rel=0.2)
+    assert alone.standard_error < force.standard_error / 3
+    assert abs(force.deviation) < 4
 
 
 @pytest.mark.usefixtures("uncompiled")
