@@ -7,6 +7,7 @@ import pytest
 
 from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.profile.flow import LAW, expected_flow
+from idealgas.analysis.profile.strips import collect
 from idealgas.analysis.theory import hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
@@ -46,6 +47,29 @@ def test_a_parabola_with_slip(log_of):
     assert found.relaxation == pytest.approx(1600 / math.pi**2 * 3 * density / viscosity, rel=1e-12)
     assert {one.source for one in found.velocity} == {LAW}
     assert 0.02 < found.velocity[2050].error / velocity[2050] < 0.1
+
+
+def test_energy_and_stress_of_strips_are_relative_to_their_flow(log_of):
+    with log_of() as log:
+        times = np.array([0.0, log.end_time])
+        sums, carried, _ = collect(log, 1, 0, times, np.linspace(0, 41, 5), None)
+        states = list(log.frames(times))
+    for k in range(4):
+        velocity = np.concatenate([state.velocity[state.position[:, 1] // 10.25 == k] for state in states])
+        x, y = (velocity - [velocity[:, 0].mean(), 0]).T
+        assert abs(velocity[:, 0].mean()) > 0.01
+        assert sums[:, 0, k, 1].sum() == pytest.approx(1.5 * (x @ x + y @ y), rel=1e-12)
+        assert carried[:, k].sum(axis=0) == pytest.approx([3 * x @ x, 3 * y @ y, 3 * x @ y], rel=1e-10)
+    sheared = "box={ size=[20, 41], left='periodic', right='periodic', bottom={ shear=0.1 }, top={ shear=0.1 } }"
+    with log_of(sheared, "gravity=") as log:
+        sums, _, _ = collect(log, 1, None, np.zeros(1), np.linspace(0, 41, 5), None)
+        height, velocity = (
+            log.discs.position[:, 1],
+            log.discs.velocity - [[0.1, 0]] * (log.discs.position[:, 1:] - 20.5),
+        )
+    velocity -= velocity.mean(axis=0)
+    expected = [1.5 * (velocity[height // 10.25 == k] ** 2).sum() for k in range(4)]
+    assert sums[0, 0, :, 1] == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
