@@ -74,6 +74,9 @@ def test_the_mean_of_all_paths(log_of):
         assert found.hits == 10
         assert found.path.value == pytest.approx(9.5)
         assert found.path.theory == pytest.approx(math.pi * 9.5 / 4)
+        time = found.window.edges[1:]
+        hits = np.floor((time + log.discs.position[0, 0] - 0.25) / 9.5)
+        assert found.series == pytest.approx(time / np.maximum(hits, 1))
 
 
 def test_where_theory_is_silent(log_of):
