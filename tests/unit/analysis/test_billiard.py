@@ -77,6 +77,10 @@ def test_the_mean_of_all_paths(log_of):
         time = found.window.edges[1:]
         hits = np.floor((time + log.discs.position[0, 0] - 0.25) / 9.5)
         assert found.series == pytest.approx(time / np.maximum(hits, 1))
+    discs = ", ".join(f"{{ position = [{x}, {x}], velocity = [1, 0], radius = 0.25 }}" for x in (2, 8))
+    with log_of("sinai", "wall=", f"disc=[{discs}]", "run.until=20") as log:
+        found = analyse(log, "billiard", start=0.0)
+        assert found.path.theory_error == pytest.approx(math.pi * 9.5 / 4 * 2 * (2 * math.pi / 16 / 100))
 
 
 def test_where_theory_is_silent(log_of):
