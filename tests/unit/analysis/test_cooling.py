@@ -98,7 +98,7 @@ def test_moments_of_few_discs():
     """Of masses 1 at ±(3, 0) and ±(0, 1): Σ v²/D = 20/6, a₂ = (8/6) ⟨v⁴⟩/2⟨v²⟩² - 1 with 41 and 5; spins of I = 0.5."""
     velocity = np.array([[3.0, 0], [-3, 0], [0, 1], [0, -1]])
     gas = SimpleNamespace(mass=np.ones(4), velocity=velocity)
-    kept = SimpleNamespace(conserves_momentum=(True, True))
+    kept = SimpleNamespace(conserves_momentum=(True, True), shear=0.0)
     scene = SimpleNamespace(properties=kept, run=SimpleNamespace(method="event_driven"))
     log = SimpleNamespace(discs=gas, scene=scene, inertia=np.full(4, 0.5))
     state = SimpleNamespace(velocity=velocity, angular_velocity=np.array([2.0, 0, 0, -2]))
