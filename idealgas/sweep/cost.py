@@ -1,4 +1,4 @@
-"""Cost estimate of a sweep before it is run."""
+"""Estimate the cost of a sweep before it is run."""
 
 import math
 import tempfile
@@ -19,18 +19,23 @@ from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep
 
-TRIAL_EVENTS = 20_000  # events of the short runs that measure the speed
-MOST_TRIALS = 32  # short runs of a sweep; combinations between them take the speed of the one before
-TRIAL_SHARE = 0.02  # of the time that they estimate, which short runs take where theory forecasts the events
-START = 3.0  # seconds in which workers start, do short runs, and end
-ROWS_PER_SECOND = 1e6  # event rows that an analysis reads per second
-_imported: set[tuple[str, ...]] = set()  # analyses whose modules this process has imported by a short run
+TRIAL_EVENTS = 20_000  # number of events of a short run, which measures the speed
+MOST_TRIALS = 32  # largest number of short runs; combinations without a short run are given the speed of the last one
+TRIAL_SHARE = 0.02  # time of short runs relative to the sweep, at most, if theory predicts the number of events
+START = 3.0  # time in which workers start, execute short runs and end, s
+ROWS_PER_SECOND = 1e6  # number of event rows that an analysis reads per second
+_imported: set[tuple[str, ...]] = set()  # analyses whose modules this process has imported in a short run
 
 
 class Cost(NamedTuple):
-    """Cost estimate of one point of a sweep.
+    """Estimated cost of a point of a sweep.
 
-    number: of discs. packing_fraction: no unit. events: number of events. bytes: size of the log. seconds: run time.
+    Attributes:
+        number: number of discs.
+        packing_fraction: packing fraction, no unit.
+        events: number of events.
+        bytes: size of the log, bytes.
+        seconds: time of the run and its analyses, s.
     """
 
     number: int
@@ -41,10 +46,14 @@ class Cost(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """Short run of a scene.
+    """Results of a short run of a scene.
 
-    rows: per event. per_second, per_time: events per second and per simulated time. seconds: time it took with its
-    analyses. apart: the part of this time in which no events are simulated.
+    Attributes:
+        rows: number of event rows per event.
+        per_second: number of events per second.
+        per_time: number of events per simulated time.
+        seconds: time of the run and its analyses, s.
+        apart: part of this time in which no events are simulated, s.
     """
 
     rows: float
@@ -61,13 +70,14 @@ def estimate_cost(
     folder: Path | None = None,
     execute: Callable[[Callable[[Scene], Trial], Sequence[Scene]], Iterable[Trial]] = map,
 ) -> tuple[Cost, ...]:
-    """Cost estimate of each point, from short runs of some of them and, where possible, from theory.
+    """Return the estimated cost of each point, from short runs of some points and, where possible, from theory.
 
     Args:
         sweep: the sweep.
-        on_progress: called with the number of steps that are done, and that of all: forecasts and short runs.
-        folder: folder of the logs of short runs, until these are over; None for a temporary one.
-        execute: does the short runs, as `map` does them in this process.
+        on_progress: function that is called with the number of finished steps, which are forecasts and then short runs,
+            and the number of all steps.
+        folder: folder for the logs of the short runs, which are removed afterwards; None for a temporary folder.
+        execute: function like `map` that executes the short runs; `map` executes them in this process.
     """
     combinations = {point.combination: point.scene for point in sweep.points}
     scenes, forecasts = list(combinations.values()), list[Forecast]()
@@ -83,7 +93,7 @@ def estimate_cost(
     with tempfile.TemporaryDirectory(prefix="idealgas-sweep-") as temporary:
         run = partial(_try, analyses=sweep.analyses, folder=folder or Path(temporary))
         trials, number = list(execute(run, scenes[:1])), MOST_TRIALS
-        if all(known.events is not None and known.bytes is not None for known in forecasts):
+        if all(expected.events is not None and expected.bytes is not None for expected in forecasts):
             seconds = sum(cost.seconds for cost in costs(trials, len(scenes)))
             number = min(number, max(1, int(TRIAL_SHARE * seconds / trials[0].seconds)))
         every = math.ceil(len(scenes) / number)
@@ -95,7 +105,7 @@ def estimate_cost(
 
 
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:
-    """Time of a sweep with the costs of its points on a number of workers of this machine, seconds."""
+    """Return the time of a sweep on a number of workers of this machine, given the costs of its points, s."""
     seconds = [cost.seconds for cost in costs]
     return START + max(sum(seconds) / workers, max(seconds, default=0.0))
 
@@ -104,7 +114,7 @@ def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost
     events, size = expected.events, expected.bytes
     if events is None:
         until = scene.run.until or math.inf
-        collisions = (scene.run.collisions_per_disc or math.inf) * expected.number / 2  # events, if walls are far
+        collisions = (scene.run.collisions_per_disc or math.inf) * expected.number / 2  # number of events if wall hits are rare
         events = min(scene.run.events or math.inf, collisions, trial.per_time * until)
     if size is None:
         size = events * trial.rows * BYTES_A_ROW[scene.log.compression]
@@ -113,7 +123,7 @@ def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost
 
 
 def _try(scene: Scene, analyses: tuple[str, ...], folder: Path) -> Trial:
-    """Run a scene for a short time; the first time in a process it runs twice, as modules are imported then."""
+    """Run a scene for a short time; the first time in a process it is run twice, as the first run imports modules."""
     if analyses not in _imported:
         _imported.add(analyses)
         _try(scene, analyses, folder)
@@ -132,5 +142,5 @@ def _try(scene: Scene, analyses: tuple[str, ...], folder: Path) -> Trial:
 
 
 def _clock() -> float:
-    """Time without that of compilation, seconds."""
+    """Return the time excluding the time spent on compilation, s."""
     return time.monotonic() - compile_seconds()

@@ -105,7 +105,8 @@ def run_sweep(
         scheduler: address of a dask scheduler, instead of local workers; its workers have to see the folder at the
             same path.
         on_progress: function that is called when a point has finished or failed.
-        on_estimate: function that is called before with the number of steps of the estimate done, and of all steps.
+        on_estimate: function that is called before the points are run, with the number of finished steps of the
+            estimate and the number of all steps.
 
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
@@ -142,7 +143,7 @@ def run_sweep(
 def _estimate(
     client: "Client", sweep: Sweep, folder: Path, workers: int, on_estimate: Callable[[int, int], None]
 ) -> float | None:
-    """Estimated time of a sweep on a number of workers, seconds; None if one of its points cannot be run."""
+    """Return the estimated time of a sweep on a number of workers, s; None if a point cannot be run."""
     from distributed.scheduler import KilledWorker
 
     def execute(run: Callable[[Scene], Trial], scenes: Sequence[Scene]) -> Iterator[Trial]:
