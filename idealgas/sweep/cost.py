@@ -21,7 +21,7 @@ from idealgas.sweep.plan import Sweep
 
 TRIAL_EVENTS = 20_000  # number of events of a short run, which measures the speed
 MOST_TRIALS = 32  # largest number of short runs; combinations without a short run are given the speed of the last one
-TRIAL_SHARE = 0.02  # time of short runs relative to the sweep, at most, if theory predicts the number of events
+TRIAL_SHARE = 0.02  # largest time of short runs relative to the sweep, if theory predicts the number of events
 START = 3.0  # time in which workers start, execute short runs and end, s
 ROWS_PER_SECOND = 1e6  # number of event rows that an analysis reads per second
 _imported: set[tuple[str, ...]] = set()  # analyses whose modules this process has imported in a short run
@@ -114,7 +114,9 @@ def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost
     events, size = expected.events, expected.bytes
     if events is None:
         until = scene.run.until or math.inf
-        collisions = (scene.run.collisions_per_disc or math.inf) * expected.number / 2  # number of events if wall hits are rare
+        collisions = (
+            (scene.run.collisions_per_disc or math.inf) * expected.number / 2
+        )  # all events, if wall hits are rare
         events = min(scene.run.events or math.inf, collisions, trial.per_time * until)
     if size is None:
         size = events * trial.rows * BYTES_A_ROW[scene.log.compression]
