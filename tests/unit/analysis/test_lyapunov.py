@@ -43,6 +43,9 @@ def test_pairs_and_zeros(overrides, zeros, made):
         found = idealgas.lyapunov(log, start=0.0, exponents=24)
         values = np.array([one.value for one in found.exponents])
         assert found.zeros == zeros
+        assert 1 / 6 < found.localisation.value < 1
+        assert found.mean_free_time == pytest.approx(log.end_time / 400, rel=0.1)
+        assert math.exp(found.lifetime(7) * values[0]) == pytest.approx(1e7)
         assert found.pairing < 1e-6 * values[0]
         assert found.largest_zero < 3 * math.log(log.end_time) / log.end_time
         assert values[12 - zeros // 2 - 1] > 5 * found.largest_zero

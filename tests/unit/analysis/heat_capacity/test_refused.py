@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from helpers.support import ROOT
 
-from idealgas import heat_capacity, load_scene, open_log, simulate
+from idealgas import heat_capacity, load_scene, open_log, parse_scene, simulate
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
-from idealgas.analysis.heat_capacity.fluctuations import energy_series
+from idealgas.analysis.heat_capacity.fluctuations import EnergySeries, energy_series, expected_capacity
 from idealgas.errors import UserError
 
 
@@ -24,6 +24,27 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston(tmp_path):
     assert refused["Var(E)/T²"].startswith("it requires thermal walls")
     rows = [label.get_text() for label in HeatCapacityAnalysis.figure(result).axes[0].get_yticklabels()]
     assert rows == ["no dE/dT", "no E/T", "no Var(E)/T²", "no fluctuations", "no γ"]
+
+
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize(
+    ("effect", "position", "potential"),
+    [
+        (f"gravity.acceleration=[0, {-1 / 4.98!r}]", None, 1 - 1 / (2 * math.sinh(0.5)) ** 2),
+        ("piston=[{ side='right', mass=50, pressure=4 }]", 10.0, 1.0),
+    ],
+    ids=["column", "piston"],
+)
+def test_capacity_of_positions_by_theory(tmp_path, effect, position, potential):
+    """For x = mgh/T = 1, x² eˣ/(eˣ - 1)² is 1/(2 sinh ½)². In a dilute gas Z² and d(φZ)/dφ are 1 + 4φ, to order φ²."""
+    gas = "box.size=[10, 5]\nrun.events=1\nspecies=[{name='gas', count=40, radius=0.01, temperature=1}]\n"
+    simulate(parse_scene(gas + effect), tmp_path / "run.h5")
+    kinetic = np.full(2, 40.0)
+    with open_log(tmp_path / "run.h5") as log:
+        series = EnergySeries(kinetic, kinetic, position and np.full(2, position), 0.0)
+        theory, of_piston = expected_capacity(log, series)
+    assert theory.value == pytest.approx(1 + potential, abs=1e-6)
+    assert of_piston == (position and pytest.approx(1.0, abs=1e-6))
 
 
 def test_few_samples_of_the_energy_name_the_key_that_stores_more(tmp_path):
