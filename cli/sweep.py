@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 EXAMPLE = """\b
-A sweep of scene gas.toml, temperatures.toml:
+A sweep of the scene gas.toml, in the file temperatures.toml:
   [sweep]
   scene = "gas.toml"
   analyses = ["pressure"]

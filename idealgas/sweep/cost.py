@@ -114,9 +114,8 @@ def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost
     events, size = expected.events, expected.bytes
     if events is None:
         until = scene.run.until or math.inf
-        collisions = (
-            (scene.run.collisions_per_disc or math.inf) * expected.number / 2
-        )  # all events, if wall hits are rare
+        # wall hits are neglected
+        collisions = (scene.run.collisions_per_disc or math.inf) * expected.number / 2
         events = min(scene.run.events or math.inf, collisions, trial.per_time * until)
     if size is None:
         size = events * trial.rows * BYTES_A_ROW[scene.log.compression]
