@@ -68,7 +68,10 @@ def test_a_lattice_at_rest_has_full_positional_order():
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(8), np.arange(6)))
     sites, box = np.column_stack((column + row % 2 / 2, row * math.sqrt(3) / 2)), (8, 3 * math.sqrt(3))
     waves = WaveVectors(box, 48)
-    found = waves.structure(np.array([waves.structure_factor(sites)] * 4), 48)
+    lattice = waves.structure_factor(sites)
+    found = waves.structure(np.array([lattice, 0.25 * lattice] * 2), 48)
+    assert found.positional.value == pytest.approx(0.25)  # of every second frame; the others choose the wave vector
+    found = waves.structure(np.array([lattice] * 4), 48)
     assert found.positional.value == pytest.approx(1.0)
     angle = math.degrees(math.atan2(found.peak[1], found.peak[0])) % 60  # rows along x have peaks at 30° and so on
     assert angle == pytest.approx(30.0)
