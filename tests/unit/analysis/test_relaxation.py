@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from helpers.crafted import craft, put
 
-from idealgas import relaxation
+from idealgas import open_run, relaxation
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation.acceptance import acceptance
@@ -104,6 +104,7 @@ def test_reduced_energies_of_both_species_have_mean_one(make_log):
     with make_log(text) as log:
         state = log.state_at(log.end_time)
         found = reduced_energy(log, state.velocity, ensemble(log))
+        assert speed_distributions(log, 1.0, end=1.0).expected.sum() == pytest.approx(100)
     assert found.mean() == pytest.approx(1)
     energy = log.discs.mass * (state.velocity**2).sum(axis=1) / 2
     assert found == pytest.approx(energy / energy.mean())
@@ -173,10 +174,12 @@ def test_gases_that_do_not_tend_to_the_law(make_log, extra, message):
 
 def test_development_counts_every_disc_at_every_instant(make_log):
     with make_log(SCENE) as log:
-        found = speed_distributions(log, 1.0, end=5.0)
+        found, whole = speed_distributions(log, 1.0, end=5.0), speed_distributions(log, 0.5).counts
         at_two = np.hypot(*log.state_at(2.0).velocity.T)
     assert found.time.tolist() == [0, 1, 2, 3, 4, 5]
-    assert found.counts.sum(axis=1).tolist() == [80] * 6
+    assert found.counts.shape == (6, 9)
+    assert (whole.sum(axis=1) == 80).all()
+    assert whole[:, -1].any()  # also far beyond the last edge
     assert found.counts[0].tolist() == [0, 0, 0, 80, 0, 0, 0, 0, 0]
     assert found.rms == pytest.approx(2)
     assert found.counts[2].tolist() == np.histogram(at_two, [*found.edges, np.inf])[0].tolist()
@@ -195,6 +198,17 @@ def test_development_by_trials(make_log):
     assert found.collisions[1] * 80 == (rows.trial <= 1000).sum()
     assert found.time[1] == rows.time[rows.trial <= 1000][-1]
     assert (made.number, made.collisions, made.published) == (2500, len(rows.time) // 2, None)
+
+
+def test_development_by_trials_of_a_run_that_was_left_early(tmp_path):
+    text = SCENE.replace("run.collisions_per_disc = 60", "run.trials = 2500\nrun.method = 'monte_carlo'")
+    with open_run(parse_scene(text), tmp_path / "run.h5") as run:
+        run.advance(events=200)
+    with open_log(tmp_path / "run.h5") as log:
+        (rows,) = log.chunks(("trial",))
+        last = int(rows.trial[-1])
+        assert 100 < last < 2400
+        assert speed_distributions(log, 50).trials.tolist() == list(range(0, last + 1, 50))
 
 
 def test_a_table_without_end_is_refused(make_log):
