@@ -181,7 +181,7 @@ def _theory(log: Log, number: float) -> Theory:
     """Return the number of escapes per length of path, ℓ/(π A), 1/length.
 
     The relative error is the sum of ℓ/P, where P is the whole perimeter that discs touch, as a hole depletes the gas in
-    front of it; 2φ for the density at the wall; the error of a slit of the width ℓ in `effusion`, as discs stream out
+    front of it; 2φ for the density at the wall; the error for a slit of width ℓ in `effusion`, as discs stream out
     together; and the uncertain part of ℓ around corners of absorbing and other walls.
 
     Args:

@@ -38,8 +38,8 @@ class Reach(NamedTuple):
         area: area of all their positions, length².
         perimeter: perimeter of this area, along which discs touch walls, length; a wall with gas on both sides counts
             twice, with a half circle around a free end.
-        holes: part of the perimeter along walls that absorb discs, length, with half of the arcs around ends that these
-            walls have in common with other walls.
+        holes: part of the perimeter along walls that absorb discs, length, with half of the arcs around ends that they
+            share with other walls.
         shared: the other half of these arcs, length; the order of the walls and rounding decide which of them a disc
             hits there.
     """
@@ -63,9 +63,9 @@ def reach_of(log: Log, radius: float) -> Reach:
 
 
 def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
-    """Yield for each face and end of a wall how far it is a hole, and the lengths of the line of touching centres.
+    """Yield the fraction of each face and end of a wall that is a hole, and the lengths of the line of touching centres.
 
-    It is one (1), or none (0), or an end of both kinds of walls (½).
+    The fraction is 1 for absorbing walls, 0 for other walls, and ½ for an end at which both kinds meet.
 
     The lengths are those for discs of the radius and of half of it. As they are linear in the radius, the second one is
     their mean over all smaller radii, which gives the area.

@@ -24,7 +24,7 @@ CLEAR = 5.0
 """Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
 
 MOST_WALLS = 4
-"""Largest number of pressures in the headline; of more it quotes the lowest and the highest."""
+"""Largest number of pressures in the headline; if there are more, it quotes only the lowest and the highest."""
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
@@ -145,7 +145,7 @@ def _place(name: str) -> str:
 
 
 def _on_walls(walls: Sequence[WallPressure], shown: Sequence[WallPressure]) -> str:
-    """Return the pressures on the shown walls as part of a sentence; of many, the lowest and the highest.
+    """Return the pressures on the shown walls as part of a sentence; if there are many, the lowest and the highest.
 
     Walls that stand for other faces inside the box are followed by the number of these faces.
     """
