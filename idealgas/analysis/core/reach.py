@@ -63,7 +63,7 @@ def reach_of(log: Log, radius: float) -> Reach:
 
 
 def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
-    """Yield the fraction of each face and end of a wall that is a hole, and the lengths of the line of touching centres.
+    """Yield which fraction of each face or end of a wall is a hole, and the lengths of its line of touching centres.
 
     The fraction is 1 for absorbing walls, 0 for other walls, and ½ for an end at which both kinds meet.
 
