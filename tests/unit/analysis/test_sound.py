@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from idealgas import sound
-from idealgas.analysis.sound import correlations
+from idealgas.analysis.sound import _amplitudes, _wave, correlations
 from idealgas.analysis.theory.waves import Decay, Fluid, correlation, fit, sound_of_discs
 from idealgas.errors import UserError
 from idealgas.log import open_log
@@ -104,3 +104,19 @@ def test_a_speed_that_is_hardly_known_is_said_to_be(tmp_path, monkeypatch):
         for rough, said in ((0.99, True), (1.01, False)):
             monkeypatch.setattr("idealgas.analysis.sound.ROUGH", rough * part)
             assert any("is known to" in sentence for sentence in sound(log, start=0.0).caveats) == said
+
+
+def test_amplitudes_are_sums_over_discs_and_errors_those_of_a_jackknife(tmp_path, monkeypatch):
+    """The jackknife error of a mean of parts is their standard deviation over √n."""
+    with log_of(tmp_path) as log:
+        times = np.array([0.0, 0.3 * log.end_time, log.end_time])
+        places = np.array([state.position for state in log.frames(times)])
+        expected = np.exp(-2j * np.pi * places / log.box).sum(axis=1).T
+        assert _amplitudes(log, times, (0, 1), None) == pytest.approx(expected, abs=1e-9)
+        linear = lambda lag, found, guess, thermal: Decay(1.0, guess.k, Fluid(*found[:4]))  # noqa: E731
+        monkeypatch.setattr("idealgas.analysis.sound.fit", linear)
+        draw = np.random.default_rng(1).normal(size=(2, 1, 200))
+        wave = _wave(log, (0,), (Decay(1.0, 1.0, FLUID), None), np.arange(4.0), draw[0] + 1j * draw[1])
+    estimates = (wave.speed, wave.damping, wave.spreading, wave.exponent)
+    assert [estimate.value for estimate in estimates] == pytest.approx(wave.correlation)
+    assert [estimate.standard_error for estimate in estimates] == pytest.approx(wave.error, rel=1e-9)
