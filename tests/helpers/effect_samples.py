@@ -115,7 +115,7 @@ def from_benchmark(effect: Effect[Any], gas: Gas, seed: int) -> Any:
     scene = effect_scene(effect.name, 1)
     rest = np.zeros(len(gas))
     tables = scene.tables_of(effect)._replace(size=BOX)
-    return effect.make(tables, Start(gas, seed, scene.properties.acceleration, rest, rest))
+    return effect.state_at_start(tables, Start(gas, seed, scene.properties.acceleration, rest, rest))
 
 
 def make_thermostat(n: int, seed: int) -> Thermostat:
