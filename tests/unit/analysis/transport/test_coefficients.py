@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.core.currents import APART_X, CARRIED, PASSED_ON, XX, YY, Currents
+from idealgas.analysis.core.currents import APART_X, CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
 from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
-from idealgas.analysis.transport.coefficients import flow_in_samples
+from idealgas.analysis.transport.coefficients import _coefficients, flow_in_samples
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import WALLS, transport_tables
@@ -139,6 +139,22 @@ def test_growth_of_a_current_that_is_known():
     assert (np.abs(found.running[10:] - expected) < 4 * found.error[10:]).all()
     assert (found.error[10:] < 0.05 * expected).all()
     assert found.running[0] < 0.7 * expected  # it has not forgotten yet
+
+
+def test_coefficients_are_growth_over_area_and_temperature(log):
+    """Viscosities are K/(A T), the conductivity is K/(A T²); xy, (xx - yy)/2 and heat have one current here."""
+    one, trace = np.random.default_rng(4).normal(size=(2, 101))
+    flow = np.zeros((101, 2, 7))
+    flow[:, CARRIED, [XX, XY, HEAT_X, HEAT_Y]] = np.column_stack((trace + one, one, one, one))
+    flow[:, PASSED_ON, YY] = trace - one
+    known, unit = growth(np.array([one, trace]), Lags(0.5, 3, 7)).series.mean(axis=1), 30 * 4.0
+    found = _coefficients(flow, Lags(0.5, 3, 7), log.discs, 4.0, True, None)
+    for name, value, routes in (
+        ("viscosity", known[0] / unit, 2),
+        ("thermal_conductivity", known[0] / unit / 4, 2),
+        ("bulk_viscosity", known[1] / unit, 1),
+    ):
+        assert [route.value for route in found[name].routes.values()] == pytest.approx([value] * routes)
 
 
 @pytest.mark.parametrize(("width", "longest"), [(1.0, 20.0), (1.0, 1.0), (30.0, 20.0), (0.2, 3.0)])
