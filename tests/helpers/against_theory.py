@@ -1,9 +1,13 @@
 """Runs of the shipped scenes held against theory."""
 
+from typing import Any
+
 import h5py
 import numpy as np
 from scipy import stats
+from tools.calibration_estimates import estimates, of
 
+from idealgas import Log
 from idealgas.analysis.core.statistics import Estimate
 
 STANDARD_ERRORS = 4
@@ -14,6 +18,15 @@ def agrees(found: Estimate, resolution: float) -> None:
     """Within STANDARD_ERRORS of theory, with an error below `resolution` times it."""
     assert found.standard_error < resolution * abs(found.theory)
     assert abs(found.deviation) < STANDARD_ERRORS, found
+
+
+def all_agree(log: Log, resolution: float, analysis: str, *quantities: str, **options: Any) -> None:
+    """Estimates of an analysis agree with theory. quantities: patterns of their names in CSV, without the analysis."""
+    found = list(estimates(log, of(analysis, *quantities, **options)))
+    assert found
+    for name, one, _ in found:
+        print(name, one)
+        agrees(one, resolution)
 
 
 def of_runs(values, expected) -> Estimate:

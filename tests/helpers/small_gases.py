@@ -1,10 +1,11 @@
 """Small gases that meet the conditions of analyses or not, as overrides of one scene, and tests of caveats."""
 
-GAS = """
-box.size = [8, 8]
-species = [{name = "gas", count = 40, radius = 0.1, temperature = 1.0}]
-run.collisions_per_disc = 30
-"""
+import zlib
+
+from helpers.logs import gas, log_of
+from idealgas.analysis import registry
+
+GAS = gas(40, 0.1, (8, 8), "collisions_per_disc = 30")
 PERIODIC = 'box = {size=[8, 8], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
 TWO = "species = [{name='gas', count=2, radius=0.5, temperature=1.0}]"
 LANES = """
@@ -25,6 +26,17 @@ SLIT = (
     "run.until=20",
 )
 WHOLE = ("species.gas.region=[0, 0, 4, 8]", "wall=[{from=[4, 0], to=[4, 8], opens_at=1.0}]", *SLIT[3:])
+
+
+def made(*overrides):
+    """The log of GAS with overrides, from which the seed follows unless they have one."""
+    seed = zlib.crc32("\n".join(overrides).encode())
+    return log_of(GAS, f"scene.seed={seed}", *overrides)
+
+
+def analysed(name, *overrides, **options):
+    """The result of an analysis of this log."""
+    return registry.analyse(made(*overrides), name, **options)
 
 
 def only(found, words):

@@ -1,37 +1,17 @@
-"""Arcs: the same by all methods and resumed; stadium and round box against exact results."""
+"""Arcs: stadium and round box against exact results."""
 
 import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT
+from helpers.logs import log_of, streamed
 
-from idealgas import evolution, load_scene, open_log, parse_scene, simulate
-from idealgas.analysis.core.stream import stream
+from idealgas import evolution
 from idealgas.analysis.core.walls import WallImpulses
 from idealgas.columns import Kind
 
-GOLDEN = ROOT / "tests" / "cases" / "golden" / "arcs.toml"
-STADIUM = ROOT / "configs" / "stadium.toml"
 
-
-FALLING = ("gravity.acceleration=[0.1,-0.5]", "restitution.wall=0.9", "rotation={}")
-
-
-@pytest.mark.parametrize("others", [(), pytest.param(FALLING, marks=pytest.mark.slow)], ids=["straight", "falling"])
-def test_the_same_by_brute_force_and_resumed(tmp_path, others):
-    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, others, "run.events=1500")
-    with open_log(tmp_path / "whole.h5") as log:
-        partner, kind = (np.concatenate([getattr(b, name) for b in log.chunks()]) for name in ("partner", "kind"))
-        assert min((partner == -5 - k).sum() for k in range(5)) > 10
-        assert (kind[np.isin(partner, (-6, -7, -9))] == Kind.WALL_END).sum() > 10
-        end = log.state_at(log.end_time).position
-        assert (np.hypot(*(end - (6.5, 6.5)).T) <= 6 - log.discs.radius + 1e-13).all()
-    assert summary.deepest_overlap < 16 * 2.0**-53 * 14 / 0.4  # roundings of a coordinate over the sum of the radii
-
-
-def test_chords_of_a_round_box(tmp_path):
+def test_chords_of_a_round_box():
     """A disc keeps its angular momentum L: all chords take 2 √(S² v² - L²)/v², S the radius less its own."""
     text = """
         box.size = [10, 10]
@@ -39,27 +19,22 @@ def test_chords_of_a_round_box(tmp_path):
         disc = [{ position = [5, 3], velocity = [0.8, 0.6], radius = 0.5 }]
         run.events = 2000
     """
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        momentum = (rows.position - 5)[:, 0] * rows.velocity[:, 1] - (rows.position - 5)[:, 1] * rows.velocity[:, 0]
-        assert momentum == pytest.approx(1.6, abs=1e-12)
-        assert np.diff(rows.time) == pytest.approx(2 * math.sqrt(4.5**2 - 1.6**2), abs=1e-11)
-        assert (rows.kind == Kind.WALL).all()
-        assert (rows.partner == -5).all()
-        impulses = WallImpulses(log)
-        stream(log, np.array([rows.time[0], rows.time[-1]]), [impulses])
-        push = impulses.faces[0, 4] / (rows.time[-1] - rows.time[0])
-        normal = 1 / 4.5  # v² less L²/S², over S: twice the normal velocity in the time of a chord
-        assert push == pytest.approx(np.array([[normal, 0], [0, 0]]), abs=1e-12)
+    log = log_of(text)
+    (rows,) = log.chunks()
+    momentum = (rows.position - 5)[:, 0] * rows.velocity[:, 1] - (rows.position - 5)[:, 1] * rows.velocity[:, 0]
+    assert momentum == pytest.approx(1.6, abs=1e-12)
+    assert np.diff(rows.time) == pytest.approx(2 * math.sqrt(4.5**2 - 1.6**2), abs=1e-11)
+    assert (rows.kind == Kind.WALL).all()
+    assert (rows.partner == -5).all()
+    impulses = streamed(log, np.array([rows.time[0], rows.time[-1]]), WallImpulses(log))
+    push = impulses.faces[0, 4] / (rows.time[-1] - rows.time[0])
+    normal = 1 / 4.5  # v² less L²/S², over S: twice the normal velocity in the time of a chord
+    assert push == pytest.approx(np.array([[normal, 0], [0, 0]]), abs=1e-12)
 
 
 @pytest.fixture(scope="module")
-def stadium(tmp_path_factory):
-    path = tmp_path_factory.mktemp("stadium") / "run.h5"
-    simulate(load_scene(STADIUM), path)
-    with open_log(path) as log:
-        yield log
+def stadium():
+    return log_of("stadium")
 
 
 def test_the_mean_time_between_hits_of_the_stadium(stadium):

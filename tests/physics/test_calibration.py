@@ -1,15 +1,15 @@
 """Error bars are as large as deviations from the truth: `calibration` has the method and the gases.
 
-`tests/helpers/calibration.csv` is from 2000 seeds, or as many as it says:
+`tests/tools/calibration.csv` is from 2000 seeds, or as many as it says:
 
-    PYTHONPATH=tests python -m helpers.calibration --seeds 2000 --folder FOLDER
+    PYTHONPATH=tests python -m tools.calibration --seeds 2000 --folder FOLDER
 """
 
 import math
 
 import numpy as np
 import pytest
-from helpers.calibration import CASES, collect, kept, rows_of, table
+from tools.calibration import CASES, collect, kept, rows_of, table
 
 LEAST_KEPT = 0.9
 """Share of a steady log that at least half of all logs keep."""

@@ -7,16 +7,11 @@ analysis; of the seeds of two discs this one stays in a part of its states.
 import math
 
 import pytest
+from helpers.logs import gas, log_of
 
 from idealgas.analysis import registry
-from idealgas.scene import parse_scene
 
-GAS = """
-scene.seed = 3
-box.size = [1, 1]
-species = [{name = "gas", count = 2, radius = 0.1, temperature = 1}]
-run.events = 200_000
-"""
+GAS = gas(2, 0.1, (1, 1), "events = 200_000", seed=3)
 OWN = "[[1.1, 0.2], [-0.3, 1.6]]"
 
 
@@ -29,8 +24,8 @@ OWN = "[[1.1, 0.2], [-0.3, 1.6]]"
     ],
     ids=["two", "three", "two with momentum"],
 )
-def test_both_directions_have_one_pressure(run, overrides, reached):
-    log = run(parse_scene(GAS, overrides=overrides))
+def test_both_directions_have_one_pressure(overrides, reached):
+    log = log_of(GAS, *overrides)
     found = registry.analyse(log, "pressure", start=1.0)
     z = {route.name: route.compressibility_factor for route in found.routes}
     left, bottom = z["left wall"], z["bottom wall"]

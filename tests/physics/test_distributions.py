@@ -1,18 +1,19 @@
-"""P-values of right laws are uniform, and bars of bins as large as deviations: `helpers.p_values` has the gases.
+"""P-values of right laws are uniform, and bars of bins as large as deviations: `tools.p_values` has the gases.
 
-`tests/helpers/p_values.csv` is from 200 other seeds:
+`tests/tools/p_values.csv` is from 200 other seeds:
 
-    PYTHONPATH=tests python -m helpers.p_values --first 1000 --seeds 200
+    PYTHONPATH=tests python -m tools.p_values --first 1000 --seeds 200
 """
 
 import math
 
 import numpy as np
 import pytest
-from helpers.p_values import GASES, RUN, rows_of
+from helpers.logs import log_of
 from scipy import stats
+from tools.p_values import GASES, RUN, rows_of
 
-from idealgas import histogram, parse_scene
+from idealgas import histogram
 
 LEAST_KS_P = 0.01
 SEEDS = 12
@@ -29,16 +30,14 @@ def test_p_values_are_uniform(gas):
 
 
 @pytest.mark.parametrize("quantity", ["speed", "vx", "energy"])
-def test_bars_of_bins(quantity, run):
+def test_bars_of_bins(quantity):
     """Deviations of some 1000 bins in their bars: the rms is 1 within 10 %, and 95 % hold.
 
     A disc keeps its speed for some three mean free times, longer than a block.
     """
     deviations = []
     for seed in range(SEEDS):
-        (found,) = histogram(
-            run(parse_scene(f"[scene]\nseed = {seed}\n{GASES['closed']}{RUN}")), quantity
-        ).distributions
+        (found,) = histogram(log_of(f"[scene]\nseed = {seed}\n{GASES['closed']}{RUN}"), quantity).distributions
         law = np.diff(found.tests[-1].law.cdf(found.edges)) / np.diff(found.edges)
         known = found.error > 0
         assert known.sum() > 40
@@ -50,12 +49,12 @@ def test_bars_of_bins(quantity, run):
 
 
 @pytest.mark.parametrize("quantity", ["free-path", "free-time"])
-def test_error_of_the_law_of_free_flights(quantity, run):
+def test_error_of_the_law_of_free_flights(quantity):
     """10⁴ free flights of 64 discs: at most 3 of 12 runs have p < 0.05, chance exceeds it in 0.2 %; else 7 and 8."""
     p, without = [], 0
     for seed in range(SEEDS):
         gas = GASES["periodic"].replace("count = 40", "count = 64").replace("radius = 0.04", "radius = 0.0315")
-        (found,) = histogram(run(parse_scene(f"[scene]\nseed = {seed}\n{gas}{RUN}")), quantity).distributions
+        (found,) = histogram(log_of(f"[scene]\nseed = {seed}\n{gas}{RUN}"), quantity).distributions
         assert found.samples > 8_000
         p.append(found.tests[0].p_value)
         without += stats.kstwo.sf(found.tests[0].distance, found.samples) < 0.05

@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, kinetic_at_even_times, of_runs
+from helpers.logs import log_of
 from scipy import stats
 
 from idealgas import evolution, profile
@@ -17,9 +18,9 @@ from idealgas.analysis.theory import hard_discs
 pytestmark = pytest.mark.slow
 
 
-def test_heat_bath(run):
+def test_heat_bath():
     """Canonical: E/T has a Gamma law of N, so that its mean is N and its variance, the heat capacity, N."""
-    log = run("heat-bath", "run.until=20000", "log.events=false", "log.snapshot_every=5")
+    log = log_of("heat-bath", "run.until=20000", "log.events=false", "log.snapshot_every=5")
     energy = kinetic_at_even_times(log)[10:]
     n = len(log.discs)
     agrees(mean(energy, n), 0.005)
@@ -30,7 +31,7 @@ def test_heat_bath(run):
 
 
 @pytest.mark.parametrize("rate", [pytest.param(0.1, marks=pytest.mark.long), 0.6, 4.0])
-def test_thermostat(run, rate):
+def test_thermostat(rate):
     """Andersen, J. Chem. Phys. 72, 2384 (1980): canonical at any rate, here a tenth to four times that of collisions.
 
     E/T has a Gamma law of N = D/2; discs are independent of each other, with Maxwell's speeds and T for each direction;
@@ -38,7 +39,7 @@ def test_thermostat(run, rate):
     errors.
     """
     times = f"log.snapshot_every={1.5 / rate}", f"run.until={3000 / rate}"
-    log = run("thermostat", *times, f"thermostat.rate={rate}", f"scene.seed={30 + int(rate)}", "log.events=false")
+    log = log_of("thermostat", *times, f"thermostat.rate={rate}", f"scene.seed={30 + int(rate)}", "log.events=false")
     n = len(log.discs)
     energy = kinetic_at_even_times(log)[6:]
     agrees(mean(energy, n), 0.005)
@@ -63,7 +64,7 @@ def conductivity_factor(phi):
     return 1 / chi + 1.5 * y + 0.8718 * chi * y * y
 
 
-def test_conduction(run):
+def test_conduction():
     """What the left side gives the right one takes; the flux is Enskog's conductivity times the slope of T.
 
     κ = 1.029 (2/σ) √(T/πm) in the dilute gas, Gass, J. Chem. Phys. 54, 1898 (1971), so that T^(3/2) is straight. The
@@ -72,7 +73,7 @@ def test_conduction(run):
     """
     fluxes, slopes, ends, pressures = [], [], [], []
     for seed in range(1, 7):
-        found = profile(run("conduction", "run.until=800", f"scene.seed={seed}"), bins=10, start=100)
+        found = profile(log_of("conduction", "run.until=800", f"scene.seed={seed}"), bins=10, start=100)
         entry = found.species[0]
         n, t = (np.array([e.value for e in column]) for column in (entry.density, entry.temperature))
         slope, middle = np.polyfit(found.middles - 10, t**1.5, 1)
@@ -93,7 +94,7 @@ def test_conduction(run):
 
 
 @pytest.mark.long
-def test_compression(run):
+def test_compression():
     """d ln T = -Z (1 + ε) dL/(L - 2R): the adiabat, which for points is T A = const, with the gas's viscosity.
 
     At the piston's speed u the gas is compressed along x at the rate u/L, against which viscosity adds ε = η u/(L P)
@@ -101,7 +102,7 @@ def test_compression(run):
     """
     found = []
     for seed in range(1, 13):
-        log = run("compression", f"scene.seed={seed}")
+        log = log_of("compression", f"scene.seed={seed}")
         course = evolution(log)
         assert np.abs(course.balance).max() < 1e-10
         assert course.given["piston"][-1] == pytest.approx(course.parts["motion"][-1] - 400, rel=1e-10)
@@ -130,13 +131,13 @@ def piston_at(log, times):
     return place[k] + np.diff(place)[k] * since / whole - pull * since * (whole - since) / 2
 
 
-def test_piston(run):
+def test_piston():
     """At fixed energy x = F (X - 2R)/E has a Beta law of (N + 1, N + 1/2) for points: mean and variance of the area.
 
     All of phase space at an energy is as likely; F = P L is the force from outside, and the momenta of discs and piston
     leave (E - F X)^(N + 1/2 - 1). Discs of a size push Z times as hard: N Z for N. Balance of energy to 1e-10.
     """
-    log = run("piston", "run.until=6000")
+    log = log_of("piston", "run.until=6000")
     course = evolution(log)
     assert np.abs(course.balance).max() < 1e-10
     n, force, diameter = 200, 20.0, 0.04

@@ -9,11 +9,11 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas, log_of, raised
 from helpers.support import ROOT
 
-from idealgas import escape, load_scene, open_log, parse_scene, simulate
+from idealgas import escape
 from idealgas.analysis.escape import BILLIARD
-from idealgas.errors import NotApplicableError, UserError
 
 ROUND = """
 scene.seed = 2
@@ -28,10 +28,8 @@ species = [{{ name = "gas", count = {count}, radius = {radius}, temperature = 2,
 """
 
 
-def escape_of(tmp_path, scene, **window):
-    simulate(scene, tmp_path / "run.h5", force=True)
-    with open_log(tmp_path / "run.h5") as log:
-        return escape(log, **window)
+def escape_of(scene, *overrides):
+    return escape(log_of(scene, *overrides))
 
 
 def assert_number_left(found):
@@ -40,9 +38,9 @@ def assert_number_left(found):
     assert np.abs(deviations).max() < 4
 
 
-def test_the_shipped_box_has_the_exact_rate(tmp_path):
+def test_the_shipped_box_has_the_exact_rate():
     """All at the speed 1: 1.5 mean escape times of 1 500 discs, of which 1 165 leave; 3 % of the rate."""
-    found = escape_of(tmp_path, load_scene(ROOT / "configs" / "escape.toml", ["species.count=1500", "run.until=660"]))
+    found = escape_of("escape", "species.count=1500", "run.until=660")
     assert found.per_path.theory == pytest.approx(0.3 / (math.pi * 42.1984), rel=1e-5)
     assert found.mean_time.theory == pytest.approx(1 / found.per_path.theory, rel=1e-12)
     assert abs(found.per_path.deviation) < 4
@@ -52,9 +50,9 @@ def test_the_shipped_box_has_the_exact_rate(tmp_path):
     assert found.caveats == (BILLIARD,)
 
 
-def test_a_gas_that_cools_as_it_escapes(tmp_path):
+def test_a_gas_that_cools_as_it_escapes():
     """The fast ones leave first: T ∝ √N, and N ∝ (1 + t/4τ)⁻⁴, which is 8 standard deviations from an exponential."""
-    found = escape_of(tmp_path, parse_scene(ROUND.format(until=1500, count=400, radius=0.02)))
+    found = escape_of(ROUND.format(until=1500, count=400, radius=0.02))
     assert abs(found.per_path.deviation) < 4
     assert_number_left(found)
     tau = 1 / (found.per_path.theory * math.sqrt(math.pi * 2 / (2 * 3)))
@@ -64,49 +62,38 @@ def test_a_gas_that_cools_as_it_escapes(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_lengths_and_areas_are_those_of_the_centres(tmp_path):
+def test_lengths_and_areas_are_those_of_the_centres():
     """In a circle of radius 5: π (5 - R)² and (5 - R) of the angle of the hole, whose chord is 1."""
-    found = escape_of(tmp_path, parse_scene(ROUND.format(until=50, count=30, radius=0.25)))
+    found = escape_of(ROUND.format(until=50, count=30, radius=0.25))
     angle, reach = 2 * math.asin(0.5 / 5), 5 - 0.25
     assert found.per_path.theory == pytest.approx(angle * reach / (math.pi * math.pi * reach**2), rel=1e-3)
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_trap_in_a_box(tmp_path):
-    """Round, from outside: its circumference for the centres is 2π (1 + R), the area that of box less trap."""
-    text = """
-        box.size = [10, 10]
-        run.until = 5
-        wall = [{ from = [4, 5], to = [4, 5], via = [6, 5], absorbing = true, solid = "inside" }]
-        species = [{ name = "gas", count = 30, radius = 0.2, temperature = 1 }]
+@pytest.mark.parametrize(
+    ("until", "wall", "length", "area"),
+    [
+        (5, "from = [4, 5], to = [4, 5], via = [6, 5], solid = 'inside'", 2 * math.pi * 1.2,
+         (10 - 0.4) ** 2 - math.pi * 1.2**2 - 4 * 0.2**2),
+        (20, "from = [4, 0.001], to = [6, 0.001]", 2 + 2 * 0.2 * math.acos(0.199 / 0.2), 9.6**2),
+    ],
+    ids=["a round trap", "just inside a side"],
+)  # fmt: skip
+def test_a_hole_in_a_box(until, wall, length, area):
+    """A trap has the circumference 2π (1 + R) for the centres, and the area is that of box less trap.
+
+    Discs reach the other hole from above only, and do not reach the side behind it: A = (10 - 2R)². On the way along
+    the side a disc touches an end of the hole R sin α before it is above it, cos α = (R - 0.001)/R.
     """
-    found = escape_of(tmp_path, parse_scene(text))
-    area = (10 - 0.4) ** 2 - math.pi * 1.2**2 - 4 * 0.2**2
-    assert found.per_path.theory == pytest.approx(2 * math.pi * 1.2 / (math.pi * area), rel=2e-3)
+    found = escape_of(gas(30, 0.2, (10, 10), f"until = {until}"), f"wall=[{{ {wall}, absorbing = true }}]")
+    assert found.per_path.theory == pytest.approx(length / (math.pi * area), rel=2e-3)
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_hole_just_inside_a_side(tmp_path):
-    """Discs reach it from above only, and do not reach the side behind it: A = (10 - 2R)².
-
-    On the way along the side a disc touches an end of the hole R sin α before it is above it, cos α = (R - 0.001)/R.
-    """
-    text = """
-        box.size = [10, 10]
-        run.until = 20
-        wall = [{ from = [4, 0.001], to = [6, 0.001], absorbing = true }]
-        species = [{ name = "gas", count = 30, radius = 0.2, temperature = 1 }]
-    """
-    found = escape_of(tmp_path, parse_scene(text))
-    length = 2 + 2 * 0.2 * math.acos(0.199 / 0.2)
-    assert found.per_path.theory == pytest.approx(length / (math.pi * 9.6**2), rel=2e-3)
-
-
-@pytest.mark.usefixtures("uncompiled")
-def test_speeds_that_walls_or_a_heat_bath_change(tmp_path):
+def test_speeds_that_walls_or_a_heat_bath_change():
     """Discs that hardly meet: the rate per path is known, but neither the number left nor the mean time."""
     scene = ROUND.format(until=200, count=10, radius=1e-6).replace("temperature = 2", "speed = 1")
-    found = escape_of(tmp_path, parse_scene(scene + "[thermostat]\ntemperature = 2\nrate = 0.1"))
+    found = escape_of(scene + "[thermostat]\ntemperature = 2\nrate = 0.1")
     assert found.per_path.theory is not None
     assert found.expected is None
     assert found.mean_time.theory is None
@@ -115,39 +102,31 @@ def test_speeds_that_walls_or_a_heat_bath_change(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_what_has_no_theory(tmp_path):
+def test_what_has_no_theory():
     scene = ROUND.format(until=12, count=25, radius=0.2)
     gate = scene.replace('solid = "outside", ', "").replace("absorbing = true", "absorbing = true, opens_at = 11")
-    gate = escape_of(tmp_path, parse_scene(gate))
-    assert gate.per_path.theory is None
-    assert gate.caveats == ("No theory: a hole opens or closes, or lets discs pass.",)
-    both = parse_scene(scene.replace("radius = 0.2", "radius = { values = [0.1, 0.2] }"))
-    assert escape_of(tmp_path, both).caveats == ("No theory: discs have several radii.",)
-    with pytest.raises(UserError, match=r"no disc leaves the gas between t = 0 and 0\.001"):
-        escape(tmp_path / "run.h5", end=0.001)
-    simulate(
-        parse_scene("box.size = [9, 9]\nrun.until = 1\ndisc = [{ position = [5, 5] , radius = 1 }]"), tmp_path / "b.h5"
-    )
-    with pytest.raises(NotApplicableError, match="no wall absorbs discs"):
-        escape(tmp_path / "b.h5")
+    found = escape_of(gate)
+    assert found.per_path.theory is None
+    assert found.caveats == ("No theory: a hole opens or closes, or lets discs pass.",)
+    both = log_of(scene, "species.gas.radius={ values = [0.1, 0.2] }")
+    assert escape(both).caveats == ("No theory: discs have several radii.",)
+    raised(r"no disc leaves the gas between t = 0 and 0\.001", escape, both, end=0.001)
 
 
 @pytest.mark.slow
-def test_falling_discs_have_no_path(tmp_path):
-    scene = ROUND.format(until=20, count=40, radius=0.2) + "[gravity]\nacceleration = [0, -0.1]"
-    found = escape_of(tmp_path, parse_scene(scene))
+def test_falling_discs_have_no_path():
+    found = escape_of(ROUND.format(until=20, count=40, radius=0.2), "gravity.acceleration=[0, -0.1]")
     assert found.per_path is None
     assert found.mean_time.value > 0
     assert found.caveats == ("No theory: discs fall, or walls move.",)
 
 
 @pytest.mark.slow
-def test_a_free_wall_also_catches_discs_at_its_ends(tmp_path):
+def test_a_free_wall_also_catches_discs_at_its_ends():
     """In a chaotic box ℓ = 2L + 2πR of a wall of length L, here 1.73 · 2L."""
     walls = (ROOT / "configs" / "escape.toml").read_text().replace("absorbing = true, ", "")
     trap = "    { from = [5.3, 4.9], to = [5.35, 4.9], absorbing = true },\n]\n\n[scene]"
-    scene = parse_scene(walls.replace("]\n\n[scene]", trap), overrides=["species.radius=0.0116", "run.until=1200"])
-    found = escape_of(tmp_path, scene)
+    found = escape_of(walls.replace("]\n\n[scene]", trap), "species.radius=0.0116", "run.until=1200")
     length = 0.1 + 2 * math.pi * 0.0116
     assert found.per_path.theory == pytest.approx(length / (math.pi * 41.85), rel=2e-3)
     assert found.per_path.standard_error < 0.04 * found.per_path.value

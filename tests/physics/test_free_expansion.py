@@ -3,15 +3,16 @@
 import math
 
 import pytest
+from helpers.logs import log_of
 
 from idealgas import evolution, pressure
 from idealgas.analysis.core.tables import as_text
 from idealgas.analysis.pressure.routes import PAIRS, WALLS
 
 
-@pytest.fixture
-def log(run):
-    return run("free-expansion")
+@pytest.fixture(scope="module")
+def log():
+    return log_of("free-expansion")
 
 
 def test_after_the_gate_is_open_the_theory_of_hard_discs_holds(log):

@@ -7,14 +7,13 @@ import math
 
 import numpy as np
 import pytest
-from helpers.against_theory import LEAST_P, STANDARD_ERRORS
+from helpers.against_theory import LEAST_P, STANDARD_ERRORS, agrees, all_agree
 from helpers.log_compare import differences
+from helpers.logs import gas, log_of, raised, species
 
 from idealgas import histogram, relaxation
 from idealgas.analysis.info import info
 from idealgas.analysis.relaxation.acceptance import acceptance
-from idealgas.analysis.temperature import temperature
-from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -22,25 +21,14 @@ from idealgas.scene import parse_scene
 
 
 def equal_speeds(method, number, seed, collisions_per_disc, packing_fraction=0.01, keys=""):
-    radius = math.sqrt(packing_fraction * 100 / (math.pi * number))
-    return parse_scene(f"""
-        scene.seed = {seed}
-        box.size = [10, 10]
-        species = [{{name = "gas", count = {number}, radius = {radius!r}, speed = 1.0}}]
-        run.method = "{method}"
-        run.collisions_per_disc = {collisions_per_disc}
-        {keys}
-    """)
+    radius, run = math.sqrt(packing_fraction * 100 / (math.pi * number)), f"collisions_per_disc = {collisions_per_disc}"
+    return gas(number, radius, (10, 10), run, speed=1.0, seed=seed, then=f"run.method = '{method}'\n{keys}")
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log():
     """Half a million collisions of 500 discs."""
-    path = tmp_path_factory.mktemp("homogeneous") / "run.h5"
-    simulate(equal_speeds("monte_carlo", 500, 4, 2000, keys="run.v_ref = 9.0"), path)
-    with open_log(path) as log:
-        yield log
-    path.unlink()
+    return log_of(equal_speeds("monte_carlo", 500, 4, 2000, keys="run.v_ref = 9.0"))
 
 
 def test_energy_and_momentum_are_conserved(log):
@@ -79,8 +67,7 @@ def test_time_is_that_of_kinetic_theory(log, quantity):
     assert found.samples > 4_000
     assert found.tests[0].p_value > LEAST_P
     if quantity != "waiting-time":
-        assert abs(found.mean.deviation) < STANDARD_ERRORS
-        assert found.mean.standard_error < 3e-3 * found.mean.value
+        agrees(found.mean, 3e-3)
     for name, one in found.cumulants.items():  # a Poisson process has 1
         assert abs(one.deviation) < STANDARD_ERRORS, name
         assert one.theory > 1 + 4 * one.standard_error
@@ -89,46 +76,22 @@ def test_time_is_that_of_kinetic_theory(log, quantity):
 def test_acceptance(log):
     found = acceptance(log)
     assert found.collisions == 500_000
-    assert abs(found.acceptance.deviation) < STANDARD_ERRORS
-    assert found.acceptance.standard_error < 3e-3 * found.acceptance.value
+    agrees(found.acceptance, 3e-3)
 
 
-def test_equipartition_in_a_mixture(run):
-    text = """
-        scene.seed = 3
-        box.size = [10, 10]
-        [run]
-        method = "monte_carlo"
-        collisions_per_disc = 1500
-        v_ref = 25.0
-        [[species]]
-        name = "light"
-        count = 300
-        radius = 0.02
-        temperature = 1.5
-        [[species]]
-        name = "heavy"
-        count = 100
-        radius = 0.05
-        mass = 4.0
-        temperature = 0.2
-    """
-    log = run(parse_scene(text))
-    found, free_times = temperature(log), histogram(log, "free-time")
-    for entry in found.species[:-1]:
-        for estimate in (entry.x, entry.y, entry.both):
-            assert abs(estimate.deviation) < STANDARD_ERRORS, entry.species
-            assert estimate.standard_error < 0.01 * estimate.value
-    for entry in free_times.distributions:
-        assert abs(entry.mean.deviation) < STANDARD_ERRORS, entry.name
-        assert entry.mean.standard_error < 0.01 * entry.mean.value
+def test_equipartition_in_a_mixture():
+    run = "run.method = 'monte_carlo'\nrun.v_ref = 25.0"
+    light = gas(300, 0.02, (10, 10), "collisions_per_disc = 1500", name="light", temperature=1.5, seed=3, then=run)
+    log = log_of(light + species("heavy", 100, 0.05, mass=4.0, temperature=0.2))
+    all_agree(log, 0.01, "temperature", "species.light.*", "species.heavy.*")
+    all_agree(log, 0.01, "histogram", "distributions.*.mean", quantity="free-time")
 
 
-def test_relaxation_agrees_with_the_event_driven_gas(run):
+def test_relaxation_agrees_with_the_event_driven_gas():
     """The fourth moment at φ = 0.01, against collisions and against time."""
     found = {}
     for method, keys in (("event_driven", ""), ("monte_carlo", "run.v_ref = 9.0")):
-        found[method] = relaxation(run(equal_speeds(method, 4000, 12, 20, keys=keys)))
+        found[method] = relaxation(log_of(equal_speeds(method, 4000, 12, 20, keys=keys)))
     exact, random = found["event_driven"], found["monte_carlo"]
     for name in ("in_collisions", "in_time"):
         a, b = getattr(exact, name), getattr(random, name)
@@ -142,9 +105,9 @@ def test_relaxation_agrees_with_the_event_driven_gas(run):
     assert curves[0][0] < 1.2 < 1.5 < curves[0][3]
 
 
-def test_the_classic_run(run):
+def test_the_classic_run():
     """28 000 trials of 200 equal speeds: about 7 020 collisions, and speeds that nobody can tell from Maxwell's."""
-    log = run("novak-bortz")
+    log = log_of("novak-bortz")
     tried, found = acceptance(log), relaxation(log)
     assert tried.number == 28_000
     assert tried.published == 6_552
@@ -157,18 +120,17 @@ def test_the_classic_run(run):
 
 def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
     path = tmp_path / "run.h5"
-    with pytest.raises(UserError, match=r"run\.v_ref: too small"):
-        simulate(equal_speeds("monte_carlo", 100, 1, 5000, keys="run.v_ref = 3.5"), path)
+    scene = parse_scene(equal_speeds("monte_carlo", 100, 1, 5000, keys="run.v_ref = 3.5"))
+    raised(r"run\.v_ref: too small", simulate, scene, path)
     with open_log(path) as log:
         assert not log.complete
 
 
-def test_a_default_reference_speed_is_enough_for_every_run(run, tmp_path):
+def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
     """It rises in all of these runs; the shares accepted are right together, and any break leaves the log as it is."""
     deviations = []
     for seed in range(40):
-        path, part = tmp_path / "run.h5", tmp_path / "part.h5"
-        log = run(equal_speeds("monte_carlo", 300, seed, 60))
+        log, part = log_of(equal_speeds("monte_carlo", 300, seed, 60)), tmp_path / "part.h5"
         found = acceptance(log)
         values = log.observables["v_ref"][1]
         told = info(log)["run"]["v_ref"]
@@ -179,24 +141,23 @@ def test_a_default_reference_speed_is_enough_for_every_run(run, tmp_path):
         assert [v_ref for _, v_ref in found.raises] == sorted(set(values.tolist()))
         assert len(found.raises) > 1
         if seed < 4:
-            simulate(equal_speeds("monte_carlo", 300, seed, 20), part, force=True)
+            simulate(parse_scene(equal_speeds("monte_carlo", 300, seed, 20)), part, force=True)
             resume(part, ["run.collisions_per_disc=60"])
-            assert differences(part, path) == []
+            assert differences(part, log.path) == []
     assert abs(np.mean(deviations)) < STANDARD_ERRORS / math.sqrt(len(deviations))
 
 
 @pytest.mark.slow
-def test_a_large_gas_of_equal_speeds(tmp_path):
+def test_a_large_gas_of_equal_speeds():
     """20 000 discs have pairs faster than 5 times their speed at any time; each of six seeds comes to its end."""
     for seed in range(6):
-        summary = simulate(equal_speeds("monte_carlo", 20_000, seed, 20), tmp_path / "run.h5", force=True)
-        assert summary.completed
+        assert log_of(equal_speeds("monte_carlo", 20_000, seed, 20)).complete
 
 
 @pytest.mark.parametrize(("number", "settled"), [(500, 5.0), (100, 25.0)])
-def test_the_time_to_settle_goes_with_the_density(number, settled, run):
+def test_the_time_to_settle_goes_with_the_density(number, settled):
     """About 5 units for 500 discs, about 25 for a fifth of them, within three standard errors of a single run."""
-    found = relaxation(run(f"relaxation-{number}"))
+    found = relaxation(log_of(f"relaxation-{number}"))
     assert found.number == number
     assert abs(3 * found.in_time.value - settled) < 3 * 3 * found.in_time.standard_error
     assert found.in_time.standard_error < (0.2 if number == 500 else 0.4) * found.in_time.value

@@ -1,43 +1,21 @@
-"""A piston between two gases: exact hits, the same by all methods; equilibrium and relaxation against theory."""
+"""A piston between two gases: exact hits; equilibrium and relaxation against theory."""
 
 import math
 
 import numpy as np
 import pytest
 from helpers.against_theory import agrees, of_runs
-from helpers.log_compare import same_by_brute_force_and_resumed
+from helpers.logs import log_of, raised
 from helpers.support import ROOT
 from scipy import integrate
 
-from idealgas import UserError, evolution, load_scene, open_log, parse_scene, pressure, simulate
+from idealgas import evolution, pressure
 from idealgas.analysis import registry
 from idealgas.analysis.core.statistics import estimate, mean
 from idealgas.analysis.theory.adiabatic_piston import heat_flow, relaxation
 from idealgas.columns import Kind
 
-GOLDEN = ROOT / "tests" / "cases" / "golden" / "piston-inner.toml"
 ADIABATIC = ROOT / "configs" / "adiabatic-piston.toml"
-FEW = ["species.hot.count=12", "species.cold.count=8", "piston.mass=3"]
-
-
-@pytest.mark.parametrize(
-    ("path", "overrides"),
-    [
-        pytest.param(ADIABATIC, FEW, id="alone"),
-        pytest.param(GOLDEN, ["run.events="], id="between a hot floor and losses", marks=pytest.mark.slow),
-    ],
-)
-def test_the_same_by_brute_force_and_resumed(tmp_path, path, overrides):
-    summary = same_by_brute_force_and_resumed(tmp_path, path, [*overrides, "run.until=60"], "run.until=25")
-    with open_log(tmp_path / "whole.h5") as log:
-        kind, partner = (np.concatenate([getattr(b, name) for b in log.chunks()]) for name in ("kind", "partner"))
-        assert (kind == Kind.PISTON).sum() > 50
-        assert ((partner == -5) == (kind == Kind.PISTON)).all()
-        found = evolution(log)
-    assert np.abs(found.balance).max() < 1e-12
-    assert summary.deepest_overlap < 1e-14
-
-
 HANDS = """
 box.size = [10, 2]
 piston = [{{ inner = "x", position = 4, mass = {mass} {velocity} }}]
@@ -51,53 +29,47 @@ log.pressure = true
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_hits_by_hand(tmp_path):
+def test_hits_by_hand():
     """Of equal masses, velocities are exchanged: the piston takes on 2 at t = 3/4, meets the other disc at t = 5/3."""
-    simulate(parse_scene(HANDS.format(mass=1, velocity="")), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        assert rows.time.tolist() == pytest.approx([0.75, 0.75 + (7.5 - 0.75 - 4) / 3], rel=1e-14)
-        assert rows.position[:, 0].tolist() == pytest.approx([3.5, 8 - 0.75 - 2.75 / 3], rel=1e-14)
-        assert rows.velocity.tolist() == [[0, 0], [2, 0]]
-        assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.PISTON] * 2, [-5, -5])
-        assert (log.walls[4].name, log.walls[4].start, log.walls[4].end) == ("piston", (4, 0), (4, 2))
-        observed = {name: values[-1] for name, (_, values) in log.observables.items()}
-        assert observed["face_hits"].tolist() == [0, 0, 0, 0, 1, 1]
-        assert observed["face_normal_impulse"].tolist() == pytest.approx([0, 0, 0, 0, 2, 3], abs=1e-14)
-        assert observed["wall_energy"].tolist() == pytest.approx([0, 0, 0, 0, -2 + 1.5], abs=1e-14)
-        assert observed["piston_velocity"] == -1
+    log = log_of(HANDS.format(mass=1, velocity=""))
+    (rows,) = log.chunks()
+    assert rows.time.tolist() == pytest.approx([0.75, 0.75 + (7.5 - 0.75 - 4) / 3], rel=1e-14)
+    assert rows.position[:, 0].tolist() == pytest.approx([3.5, 8 - 0.75 - 2.75 / 3], rel=1e-14)
+    assert rows.velocity.tolist() == [[0, 0], [2, 0]]
+    assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.PISTON] * 2, [-5, -5])
+    assert (log.walls[4].name, log.walls[4].start, log.walls[4].end) == ("piston", (4, 0), (4, 2))
+    observed = {name: values[-1] for name, (_, values) in log.observables.items()}
+    assert observed["face_hits"].tolist() == [0, 0, 0, 0, 1, 1]
+    assert observed["face_normal_impulse"].tolist() == pytest.approx([0, 0, 0, 0, 2, 3], abs=1e-14)
+    assert observed["wall_energy"].tolist() == pytest.approx([0, 0, 0, 0, -2 + 1.5], abs=1e-14)
+    assert observed["piston_velocity"] == -1
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_it_is_reflected_at_a_side(tmp_path):
+def test_it_is_reflected_at_a_side():
     """In an empty part of the box the piston goes on to its end and comes back."""
     alone = HANDS.format(mass=1e6, velocity=", velocity = -1").replace("events = 2", "until = 7").splitlines()
-    simulate(parse_scene("\n".join(line for line in alone if "[2, 1]" not in line)), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        assert log.observables["piston_position"][1][-1] == pytest.approx(3, abs=1e-4)
-        assert log.observables["piston_velocity"][1][-1] == pytest.approx(1, abs=1e-4)
+    log = log_of("\n".join(line for line in alone if "[2, 1]" not in line))
+    assert log.observables["piston_position"][1][-1] == pytest.approx(3, abs=1e-4)
+    assert log.observables["piston_velocity"][1][-1] == pytest.approx(1, abs=1e-4)
 
 
-def test_what_an_analysis_tells(tmp_path):
+def test_what_an_analysis_tells():
     """Pressure on both faces, over the area of both gases; temperatures of each; no heat capacity."""
-    simulate(load_scene(ADIABATIC, ["run.until=60"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found, mechanical = evolution(log, 20.0), pressure(log, 20.0).mechanical
-        assert {"piston, left", "piston, right"} <= {wall.name for wall in mechanical.walls}
-        assert found.pressure.shown == ("piston, left", "piston, right")
-        assert (mechanical.area, found.pressure.area[0]) == (200, 200)
-        left, right = (wall.pressure for wall in mechanical.walls if wall.name.startswith("piston"))
-        assert left.value - right.value == pytest.approx(
-            0, abs=4 * math.hypot(left.standard_error, right.standard_error)
-        )
-        assert found.chambers.keys() == {"left", "right"}
-        assert found.temperature == pytest.approx((found.chambers["left"] + 2 * found.chambers["right"]) / 3)
-        assert evolution(log).chambers["left"][0] == pytest.approx(3)
-        assert evolution(log).law.chambers == {}  # the pressures differ at the start
-        assert found.law.chambers["left"][0] == found.chambers["left"][0]
-        assert found.law.piston == pytest.approx(0.1 + 19.8 * 101 / 302)
-        with pytest.raises(UserError, match="no heat capacity of several pistons, or of one between two gases"):
-            registry.analyse(log, "heat_capacity")
+    log = log_of(ADIABATIC, "run.until=60")
+    found, mechanical = evolution(log, 20.0), pressure(log, 20.0).mechanical
+    assert {"piston, left", "piston, right"} <= {wall.name for wall in mechanical.walls}
+    assert found.pressure.shown == ("piston, left", "piston, right")
+    assert (mechanical.area, found.pressure.area[0]) == (200, 200)
+    left, right = (wall.pressure for wall in mechanical.walls if wall.name.startswith("piston"))
+    assert left.value - right.value == pytest.approx(0, abs=4 * math.hypot(left.standard_error, right.standard_error))
+    assert found.chambers.keys() == {"left", "right"}
+    assert found.temperature == pytest.approx((found.chambers["left"] + 2 * found.chambers["right"]) / 3)
+    assert evolution(log).chambers["left"][0] == pytest.approx(3)
+    assert evolution(log).law.chambers == {}  # the pressures differ at the start
+    assert found.law.chambers["left"][0] == found.chambers["left"][0]
+    assert found.law.piston == pytest.approx(0.1 + 19.8 * 101 / 302)
+    raised("no heat capacity of several pistons, or of one between two gases", registry.analyse, log, "heat_capacity")
 
 
 def test_the_heat_flow_is_that_of_single_hits():
@@ -144,16 +116,14 @@ run.until = {until}
 
 
 @pytest.mark.slow
-def test_equilibrium(run):
+def test_equilibrium():
     """At fixed energy the place has the weight X^a (L - X)^b, the piston's energy a Beta law of 1/2 and N.
 
     L is what is left to centres: 20 - 4 R. For Beta(1/2, N) the mean is 1/(2N + 1).
     """
-    log = run(
-        parse_scene(
-            GASES.format(
-                seed=2, mass=1.5, position="", a=3, b=5, radius=0.02, hot=1, cold=1, place=10, every=20, until=60_000
-            )
+    log = log_of(
+        GASES.format(
+            seed=2, mass=1.5, position="", a=3, b=5, radius=0.02, hot=1, cold=1, place=10, every=20, until=60_000
         )
     )
     place = (log.observables["piston_position"][1][5:, 0] - 0.04) / (20 - 0.08)
@@ -166,7 +136,7 @@ def test_equilibrium(run):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("mass", [8, pytest.param(30, marks=pytest.mark.long)])
-def test_relaxation(run, mass):
+def test_relaxation(mass):
     """Temperatures of two gases of equal pressure against the law of single hits, in the mean of runs.
 
     200 and 400 discs at temperatures 2 and 1, so that the piston begins in the middle. Difference of the temperatures
@@ -179,7 +149,7 @@ def test_relaxation(run, mass):
             seed=seed, mass=mass, position="", a=200, b=400, radius=0.04, hot=2, cold=1, place=10, every=tau / 2,
             until=1.01 * tau,
         )  # fmt: skip
-        found = evolution(run(parse_scene(text.replace("log.events = false", ""))))
+        found = evolution(log_of(text.replace("log.events = false", "")))
         runs.append(np.interp(times, found.time, found.chambers["left"] - found.chambers["right"]))
     law = found.law.chambers["left"] - found.law.chambers["right"]
     for k, time in enumerate(times):
@@ -187,12 +157,12 @@ def test_relaxation(run, mass):
 
 
 @pytest.mark.slow
-def test_szilard(run):
+def test_szilard():
     """The work of a slow expansion is T ln (L - 2R)/(L/2 - 2R), in the mean of runs; their spread is 0.04."""
     works = []
     for seed in range(100, 124):
         faster = "piston.velocity=0.000244140625", "run.until=4096", "log.events=false"
-        log = run("szilard", f"scene.seed={seed}", *faster)
+        log = log_of("szilard", f"scene.seed={seed}", *faster)
         assert abs(log.summary["energy_drift"]) < 1e-12
         works.append(-log.observables["wall_energy"][1][-1][4])
     agrees(of_runs(works, math.log((2 - 0.002) / (1 - 0.002))), 0.02)

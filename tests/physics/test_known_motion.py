@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import log_of
 
 CORNER = [
     (1.0, 0, -1), (1.0, 0, -3), (1.25, 3, 4), (1.25, 4, 3), (1.5, 1, 2), (1.5, 2, 1),
@@ -19,9 +20,9 @@ def motion(log):
 
 
 @pytest.mark.parametrize("method", ["event_driven", "brute_force"])
-def test_corner(method, run):
+def test_corner(method):
     """Sums of powers of two throughout: exact to the last bit."""
-    rows, end = motion(run("corner", f"run.method={method}"))
+    rows, end = motion(log_of("corner", f"run.method={method}"))
     assert rows == CORNER
     assert end.time == 10
     assert end.position.tolist() == [[5.5, 5.5], [1, 5], [1, 1.5], [1.875, 1], [3.625, 1]]
@@ -29,10 +30,10 @@ def test_corner(method, run):
 
 
 @pytest.mark.parametrize("method", ["event_driven", "brute_force"])
-def test_three_discs_return_after_a_period(method, run):
+def test_three_discs_return_after_a_period(method):
     """A period multiplies a deviation by 2500, the one of rounding at the start (4 ulp of the box, 7e-15) too."""
     period = 12.4 - 2 * math.sqrt(2)
-    rows, end = motion(run("three-discs", f"run.method={method}", f"run.until={period!r}"))
+    rows, end = motion(log_of("three-discs", f"run.method={method}", f"run.until={period!r}"))
     meetings = [(time, disc, partner) for time, disc, partner in rows if partner > disc]
     assert [row[1:] for row in meetings] == [(1, 2), (1, 2), (0, 1), (0, 1)]
     turn = 5.2 - math.sqrt(2)

@@ -1,34 +1,20 @@
-"""Fixed discs: exact reflections, the same by all methods; the periodic Lorentz gas against exact results."""
+"""Fixed discs: exact reflections; the periodic Lorentz gas against exact results."""
 
 import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import same_by_brute_force_and_resumed
+from helpers.logs import log_of
 from helpers.support import ROOT
 
-from idealgas import load_scene, open_log, parse_scene, simulate, transport
+from idealgas import transport
 from idealgas.columns import Kind
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "fixed-discs.toml"
-LORENTZ = ROOT / "configs" / "lorentz.toml"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "gravity",
-    [pytest.param((), id="falling"), pytest.param(("gravity=", "restitution="), id="straight")],
-)
-def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
-    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, gravity, "run.until=12")
-    with open_log(tmp_path / "whole.h5") as log:
-        partner = np.concatenate([block.partner for block in log.chunks()])
-        assert min((partner == -6).sum(), (partner == -7).sum()) > 15
-    assert summary.deepest_overlap < 1e-14
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_reflection_at_45_degrees(tmp_path):
+def test_a_reflection_at_45_degrees():
     """The centres are 2.5 apart along (1, 1): a disc that comes along x leaves along y."""
     place = 5 - 2.5 / math.sqrt(2)
     discs = f"""
@@ -37,25 +23,22 @@ def test_a_reflection_at_45_degrees(tmp_path):
             {{ position = [{place - 1!r}, {10 - place!r}], velocity = [1, 0], radius = 0.5 }},
         ]
     """
-    simulate(parse_scene(f"box.size = [10, 10]\n{discs}\nrun.events = 1"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.FIXED_DISC], [-5])
-        assert rows.time[0] == pytest.approx(1, rel=1e-14)
-        assert rows.velocity[0].tolist() == pytest.approx([0, 1], abs=1e-14)
-        assert log.walls[4].name == "fixed disc 0"
+    log = log_of(f"box.size = [10, 10]\n{discs}\nrun.events = 1")
+    (rows,) = log.chunks()
+    assert (rows.kind.tolist(), rows.partner.tolist()) == ([Kind.FIXED_DISC], [-5])
+    assert rows.time[0] == pytest.approx(1, rel=1e-14)
+    assert rows.velocity[0].tolist() == pytest.approx([0, 1], abs=1e-14)
+    assert log.walls[4].name == "fixed disc 0"
 
 
-def test_fixed_discs_are_none_of_the_gas(tmp_path):
+def test_fixed_discs_are_none_of_the_gas():
     """They count neither in N nor in T, and discs at random keep clear of them, also across periodic sides."""
-    scene = load_scene(GOLDEN, ["gravity=", "restitution="])
-    assert (scene.number_of_discs, len(scene.given)) == (31, 1)
-    simulate(scene, tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        assert len(log.discs) == 31
-        for x, y, radius in ((0, 4, 1.5), (10, 4, 1.5), (5, 5, 0.75)):
-            assert (np.hypot(*(log.discs.position - (x, y)).T) >= radius + log.discs.radius).all()
-        assert log.observables["kinetic_energy"][1][-1] == pytest.approx(30 * 1 + 0.5, rel=1e-12)
+    log = log_of(GOLDEN, "gravity=", "restitution=")
+    assert (log.scene.number_of_discs, len(log.scene.given)) == (31, 1)
+    assert len(log.discs) == 31
+    for x, y, radius in ((0, 4, 1.5), (10, 4, 1.5), (5, 5, 0.75)):
+        assert (np.hypot(*(log.discs.position - (x, y)).T) >= radius + log.discs.radius).all()
+    assert log.observables["kinetic_energy"][1][-1] == pytest.approx(30 * 1 + 0.5, rel=1e-12)
 
 
 def billiard_diffusion(gap, points=4000, times=(20.0, 120.0)):
@@ -91,11 +74,8 @@ def billiard_diffusion(gap, points=4000, times=(20.0, 120.0)):
 
 
 @pytest.fixture(scope="module")
-def lorentz(tmp_path_factory):
-    path = tmp_path_factory.mktemp("lorentz") / "run.h5"
-    simulate(load_scene(LORENTZ), path)
-    with open_log(path) as log:
-        yield log
+def lorentz():
+    return log_of("lorentz")
 
 
 def test_the_mean_free_path_is_exact(lorentz):
@@ -123,13 +103,12 @@ def test_diffusion_by_both_routes(lorentz):
 
 
 @pytest.mark.slow
-def test_diffusion_through_narrow_gaps(tmp_path):
+def test_diffusion_through_narrow_gaps():
     """That of a billiard within 3 s.e., also where discs stay long in each pocket."""
     height = 2.1 * math.sqrt(3)
     changes = [f"box.size=[2.1, {height!r}]", f"disc.1.position=[1.05, {height / 2!r}]"]
-    simulate(load_scene(LORENTZ, changes), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (entry,) = transport(log, start=0).diffusion
+    log = log_of("lorentz", *changes)
+    (entry,) = transport(log, start=0).diffusion
     billiard, error = billiard_diffusion(0.1)
     assert abs(entry.coefficient.value - billiard) < 3 * math.hypot(error, entry.coefficient.standard_error)
 

@@ -9,19 +9,17 @@ import math
 import numpy as np
 import pytest
 from helpers.against_theory import LEAST_P, STANDARD_ERRORS
+from helpers.logs import log_of
 
 from idealgas import evolution, histogram
 from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.scene import parse_scene
 
 SCENE = "scene.seed = 11\nbox.size = [10, 10]\nrun.until = 1"
 
 
-@pytest.fixture
-def run_with(run):
-    """The log of a scene with these overrides."""
-    return lambda *overrides: run(parse_scene(SCENE, overrides=overrides))
+def run_with(*overrides):
+    return log_of(SCENE, *overrides)
 
 
 def species(count, radius, more=""):
@@ -38,7 +36,7 @@ def agrees(found, expected, resolution):
     return abs(found.value - expected) < STANDARD_ERRORS * found.standard_error
 
 
-def test_between_walls_of_one_temperature(run_with):
+def test_between_walls_of_one_temperature():
     """P on each wall is N T Z/A with A the area that centres reach, within 4 s.e. of 3 %."""
     sides = "box={ size = [10, 10], " + ", ".join(
         f"{s} = {{ thermal = 1.5 }}" for s in ("left", "right", "bottom", "top")
@@ -51,7 +49,7 @@ def test_between_walls_of_one_temperature(run_with):
         assert agrees(route.pressure, 100 * 1.5 * z / (10 * 9.96), 0.03), route.name
 
 
-def test_the_floor_carries_the_column(run_with):
+def test_the_floor_carries_the_column():
     """P_bottom - P_top = N m g/L, and left and right are alike: momentum balance, whatever the density profile."""
     log = run_with("box.size=[10, 15]", species(200, 0.1), "gravity.acceleration=[0, -0.3]", "run.until=1500")
     result = pressure(log)
@@ -67,7 +65,7 @@ def test_the_floor_carries_the_column(run_with):
     assert agrees(found["left wall"], found["right wall"].value, 0.03)
 
 
-def test_a_piston_is_held_by_the_gas(run_with):
+def test_a_piston_is_held_by_the_gas():
     """Its mean force is P L, and in a dilute gas the walls beside it have N/(N + 1) of its pressure.
 
     The force on them is N T/L, whatever the area, and the mean area at the pressure P is (N + 1) T/P.
@@ -83,7 +81,7 @@ def test_a_piston_is_held_by_the_gas(run_with):
     assert agrees(found["left wall"], 1.0, 0.003)  # it takes what the piston does not, and both are held together
 
 
-def test_a_gas_of_unknown_temperature_forgets_its_start(run_with):
+def test_a_gas_of_unknown_temperature_forgets_its_start():
     """It cools from 1 to what the floor gives and losses take; the force on all walls is its weight from then on."""
     log = run_with(
         "box={ size = [10, 10], bottom = { thermal = 1 } }",
@@ -98,7 +96,7 @@ def test_a_gas_of_unknown_temperature_forgets_its_start(run_with):
     assert agrees(force, -18, 0.01)
 
 
-def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run_with):
+def test_a_plate_in_a_gas_has_its_pressure_on_both_faces():
     """A plate in an ideal gas: N T/A on each face, with A the area that centres reach; no net force."""
     log = run_with("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=1000")
     result = pressure(log)
@@ -112,7 +110,7 @@ def test_a_plate_in_a_gas_has_its_pressure_on_both_faces(run_with):
         assert abs(component.value) < STANDARD_ERRORS * component.standard_error
 
 
-def test_a_gate_counts_while_it_is_there(run_with):
+def test_a_gate_counts_while_it_is_there():
     """Gas on the left alone: the gate has N T/A of that side while it is there, and nothing on its right."""
     gate = "wall=[{ from = [5, 0], to = [5, 10], opens_at = 200, name = 'gate' }]"
     log = run_with(gate, species(200, 0.002, ", region = [0, 0, 5, 10]"), "run.until=260")
@@ -122,7 +120,7 @@ def test_a_gate_counts_while_it_is_there(run_with):
 
 
 @pytest.mark.slow
-def test_heat_flows_but_forces_balance(run_with):
+def test_heat_flows_but_forces_balance():
     """Between walls of two temperatures the steady gas presses alike on both."""
     sides = "left = { thermal = 2 }, right = { thermal = 1 }, top = 'periodic', bottom = 'periodic'"
     log = run_with(f"box={{ size = [10, 10], {sides} }}", species(200, 0.05), "run.until=1500")
@@ -133,7 +131,7 @@ def test_heat_flows_but_forces_balance(run_with):
     assert abs(result.mechanical.forces[-1].x.deviation) < STANDARD_ERRORS
 
 
-def test_a_slow_compression_follows_the_adiabat(run_with):
+def test_a_slow_compression_follows_the_adiabat():
     """P(A) of 200 nearly pointlike discs: N T₀ A₀/A² within 4 s.e. in 95 % of 64 bins, and chi² within its 4 s.d.
 
     The error of a bin has some five degrees of freedom; Student's t is then beyond 4 in 1 % of all bins, and 5 % are
@@ -162,7 +160,7 @@ def test_a_slow_compression_follows_the_adiabat(run_with):
     ],
     ids=["box", "piston"],
 )
-def test_error_bars_of_bins(overrides, wall, run_with):
+def test_error_bars_of_bins(overrides, wall):
     """Bins of a stationary gas scatter about their mean by their error bars: rms 0.8 to 1.2 of 64 bins.
 
     By chance alone the rms of 64 bins is within 1 ± 0.09 (one s.d.). On a piston bins are anticorrelated, as its
@@ -177,7 +175,7 @@ def test_error_bars_of_bins(overrides, wall, run_with):
 
 
 @pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
-def test_maxwell_holds_at_all_heights(quantity, run_with):
+def test_maxwell_holds_at_all_heights(quantity):
     """Under gravity velocities follow Maxwell and Boltzmann's law: Kolmogorov-Smirnov, p > 0.001."""
     log = run_with("box.size=[10, 30]", species(400, 0.05), "gravity.acceleration=[0, -0.2]", "run.until=150")
     (gas,) = histogram(log, quantity, start=30.0).distributions
@@ -186,7 +184,7 @@ def test_maxwell_holds_at_all_heights(quantity, run_with):
 
 
 @pytest.mark.slow
-def test_a_cooling_gas_has_no_law_and_would_fail_one(run_with):
+def test_a_cooling_gas_has_no_law_and_would_fail_one():
     """What would be tested: speeds of the whole cooling are not Maxwell's at any one temperature."""
     log = run_with(species(200, 0.1), "restitution.normal=0.9", "run.until=60")
     found = histogram(log)

@@ -1,64 +1,43 @@
-"""Walls that let discs pass: the same by all methods; a demon's door, and the osmotic pressure of hard discs."""
+"""Walls that let discs pass: a demon's door, and the osmotic pressure of hard discs."""
 
 import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT
+from helpers.logs import log_of
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from idealgas import evolution, load_scene, open_log, parse_scene, pressure, simulate
+from idealgas import evolution, pressure
 from idealgas.analysis.theory.hard_discs import compressibility_factor, fluid_contact_value
 from idealgas.columns import Kind
 
-GOLDEN = ROOT / "tests" / "cases" / "golden" / "permeable.toml"
-OSMOSIS = ROOT / "configs" / "osmosis.toml"
 
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "gravity",
-    [
-        pytest.param((), id="falling"),
-        pytest.param(("gravity=", "box.bottom=reflecting"), id="straight"),
-    ],
-)
-def test_the_same_by_brute_force_and_resumed(tmp_path, gravity):
-    same_by_brute_force_and_resumed(tmp_path, GOLDEN, gravity, "run.until=11")
-    with open_log(tmp_path / "whole.h5") as log:
-        partner = np.concatenate([block.partner for block in log.chunks()])
-        assert min((partner == -1 - k).sum() for k in (4, 5, 6)) > 3
-
-
-def rows_of(tmp_path, text):
-    simulate(parse_scene(text), tmp_path / "run.h5", force=True)
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        return rows
+def rows_of(text):
+    (rows,) = log_of(text).chunks()
+    return rows
 
 
 DOOR = "wall = [{ from = [5, 0], to = [5, 10], permeable_from = 'left' }]"
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_disc_passes_once(tmp_path):
+def test_a_disc_passes_once():
     """From x = 2 at speed 1 with radius 0.5: to the right side, and back and forth between it and the door."""
     disc = "disc = [{ position = [2, 5], velocity = [1, 0], radius = 0.5 }]"
-    rows = rows_of(tmp_path, f"box.size = [10, 10]\n{DOOR}\n{disc}\nrun.events = 4")
+    rows = rows_of(f"box.size = [10, 10]\n{DOOR}\n{disc}\nrun.events = 4")
     assert rows.time.tolist() == [7.5, 11.5, 15.5, 19.5]
     assert rows.position[:, 0].tolist() == [9.5, 5.5, 9.5, 5.5]
     assert rows.partner.tolist() == [-2, -5, -2, -5]
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_disc_that_is_hit_back_in_the_middle_stays(tmp_path):
+def test_a_disc_that_is_hit_back_in_the_middle_stays():
     """It starts in the wall, its centre 0.25 beyond, is hit by a disc from the right, and bounces at x = 5."""
     discs = (
         """disc = [{ position = [5.25, 5], radius = 0.5 }, { position = [6.5, 5], velocity = [-1, 0], radius = 0.5 }]"""
     )
-    rows = rows_of(tmp_path, f"box.size = [10, 10]\n{DOOR}\n{discs}\nrun.events = 2")
+    rows = rows_of(f"box.size = [10, 10]\n{DOOR}\n{discs}\nrun.events = 2")
     assert rows.kind.tolist() == [Kind.DISC, Kind.DISC, Kind.WALL]
     assert rows.time.tolist() == [0.25, 0.25, 0.5]
     assert rows.position[-1].tolist() == [5.0, 5.0]
@@ -66,27 +45,26 @@ def test_a_disc_that_is_hit_back_in_the_middle_stays(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_gap_narrower_than_a_disc_keeps_it(tmp_path):
+def test_a_gap_narrower_than_a_disc_keeps_it():
     """The door is 0.75 from the right side: the centre of the disc goes between them, from 9.25 to 9.5."""
     text = f"box.size = [10, 10]\n{DOOR.replace('[5,', '[9.25,')}\nrun.events = 5\n"
-    rows = rows_of(tmp_path, text + "disc = [{ position = [2, 5], velocity = [1, 0], radius = 0.5 }]")
+    rows = rows_of(text + "disc = [{ position = [2, 5], velocity = [1, 0], radius = 0.5 }]")
     assert rows.position[:, 0].tolist() == [9.5, 9.25, 9.5, 9.25, 9.5]
     assert np.diff(rows.time).tolist() == [0.25] * 4
 
 
-def test_a_door_lets_discs_pass_at_the_rate_of_effusion(tmp_path):
+def test_a_door_lets_discs_pass_at_the_rate_of_effusion():
     """Each disc on the left passes at the rate k = (w - 2R)⟨v⟩/πA; the door is a tenth of the mean free path wide.
 
     A disc that passes takes 3T/2 with it, where T is the mean: T ~ √N on the left, so dN/dt = -k N (N/N₀)^¼.
     """
     settings = ["species.gas.count=2000", "species.gas.radius=0.005", "run.until=400", "species.gas.region=[0,0,10,10]"]
     door = ["wall.0.to=[10,4.9]", "wall.door.from=[10,4.9]", "wall.door.to=[10,5.1]", "wall.2.from=[10,5.1]"]
-    simulate(load_scene(ROOT / "configs" / "demon.toml", settings + door), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        beyond = evolution(log).beyond["gas"]
-        passed = 1 - (1 + 0.19 * math.sqrt(math.pi / 2) / (math.pi * 9.99 * 9.99) * 400 / 4) ** -4
-        assert (np.diff(beyond) >= 0).all()
-        assert abs(beyond[-1] - passed) < 3 * math.sqrt(passed * (1 - passed) / 2000)
+    log = log_of("demon", *settings + door)
+    beyond = evolution(log).beyond["gas"]
+    passed = 1 - (1 + 0.19 * math.sqrt(math.pi / 2) / (math.pi * 9.99 * 9.99) * 400 / 4) ** -4
+    assert (np.diff(beyond) >= 0).all()
+    assert abs(beyond[-1] - passed) < 3 * math.sqrt(passed * (1 - passed) / 2000)
 
 
 def osmotic_pressure(area, solvent, solute, radius):
@@ -113,11 +91,8 @@ def of_wall(found, name):
 
 
 @pytest.fixture(scope="module")
-def osmosis(tmp_path_factory):
-    path = tmp_path_factory.mktemp("osmosis") / "run.h5"
-    simulate(load_scene(OSMOSIS), path)
-    with open_log(path) as log:
-        yield log
+def osmosis():
+    return log_of("osmosis")
 
 
 def test_the_solute_presses_on_the_membrane_as_if_it_were_alone(osmosis):
@@ -161,13 +136,12 @@ def test_fractions_by_chamber(osmosis):
 
 
 @pytest.mark.slow
-def test_osmotic_pressure_has_the_correction_of_hard_discs(tmp_path):
+def test_osmotic_pressure_has_the_correction_of_hard_discs():
     """Equal discs at φ = 0.07 on the right, 0.025 on the left: the equation of state within 3 standard errors."""
     settings = ["species.solvent.count=160", "species.solute.count=160", "species.solute.mass=1", "run.until=5000"]
     settings += ["species.solvent.radius=0.1", "species.solute.radius=0.1", "log.events=false", "log.pressure=true"]
-    simulate(load_scene(OSMOSIS, settings), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        membrane = of_wall(pressure(log), "membrane, right")
+    log = log_of("osmosis", *settings)
+    membrane = of_wall(pressure(log), "membrane, right")
     expected, _ = osmotic_pressure((9.8 * 9.9, 9.8 * 9.8), 160, 160, 0.1)
     assert abs(membrane.value - 0.98 * expected) < 3 * membrane.standard_error
     assert abs(membrane.value - 160 / (9.8 * 10)) > 5 * membrane.standard_error

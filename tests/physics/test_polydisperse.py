@@ -4,53 +4,41 @@ import math
 
 import pytest
 from helpers.against_theory import LEAST_P
+from helpers.logs import gas, log_of
 
 from idealgas import histogram
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.measure import transport
-from idealgas.scene import parse_scene
 
 SPREAD = 0.2 * math.sqrt(3)
 """Half the width of a uniform distribution of standard deviation 0.2."""
 
 
-def scene(fraction, number=1000, radius="{{ uniform = [{low!r}, {high!r}] }}", *, run, log=""):
-    side = math.sqrt(number * math.pi * 1.04 / fraction)
-    sides = "".join(f"{name} = 'periodic'\n" for name in ("left", "right", "bottom", "top"))
-    return parse_scene(f"""
-        [box]
-        size = [{side!r}, {side!r}]
-        {sides}
-        [[species]]
-        name = "gas"
-        count = {number}
-        radius = {radius.format(low=1 - SPREAD, high=1 + SPREAD)}
-        mass = {{ density = 0.3 }}
-        temperature = 1
-        [run]
-        {run}
-        [log]
-        {log}
-    """)
+def scene(phi, number=1000, spread=SPREAD, *, run, log=""):
+    """A periodic gas of radii from 1 - spread to 1 + spread, alike; with spread None all of them are 1."""
+    side = math.sqrt(number * math.pi * 1.04 / phi)
+    text = gas(number, 1.0, (side, side), run, periodic="xy", then=log)
+    radius = "radius = 1.0" if spread is None else f"radius = {{ uniform = [{1 - spread!r}, {1 + spread!r}] }}"
+    return text.replace("radius = 1.0", f"{radius}\nmass = {{ density = 0.3 }}")
 
 
-@pytest.mark.parametrize("fraction", [0.1, 0.3, 0.5])
-def test_pressure_is_that_of_the_mixture(fraction, run):
+@pytest.mark.parametrize("phi", [0.1, 0.3, 0.5])
+def test_pressure_is_that_of_the_mixture(phi):
     """Z of Santos, Yuste & López de Haro (1999) within three standard errors, which are below 0.3 %."""
-    sums = "events = false\npressure = true\nsnapshot_every = 2"
-    found = pressure(run(scene(fraction, run="events = 600_000", log=sums)))
-    assert found.packing_fraction == pytest.approx(fraction, rel=1e-6)
+    sums = "log = { events = false, pressure = true, snapshot_every = 2 }"
+    found = pressure(log_of(scene(phi, run="events = 600_000", log=sums)))
+    assert found.packing_fraction == pytest.approx(phi, rel=1e-6)
     z = found.routes[-1].compressibility_factor
     assert z.standard_error < 0.003 * z.value
     assert abs(z.value - z.theory) < 3 * z.standard_error
-    equal = float(hard_discs.compressibility_factor(fraction, 1000))
+    equal = float(hard_discs.compressibility_factor(phi, 1000))
     assert equal - z.value > 3 * z.standard_error  # equal discs of this packing fraction have more
 
 
-def test_rates_and_distributions_are_those_of_the_mixture(run):
+def test_rates_and_distributions_are_those_of_the_mixture():
     """Rates and free paths within three standard errors, KS of speeds and free flights at 0.001."""
-    log = run("polydisperse", "run.collisions_per_disc=150")
+    log = log_of("polydisperse", "run.collisions_per_disc=150")
     found = transport(log)
     (rate,), (paths,), (contact,) = found.collision_rates, found.free_paths, found.contacts
     for one in (rate.rate, paths.path, paths.time, paths.speed, contact.value):
@@ -64,9 +52,9 @@ def test_rates_and_distributions_are_those_of_the_mixture(run):
     assert g.contact == pytest.approx(2 * log.discs.radius.mean())
 
 
-def test_a_distribution_of_no_width_is_a_gas_of_equal_discs(run):
-    scenes = [scene(0.3, 100, radius, run="events = 20_000") for radius in ("1.0", "{{ uniform = [1, 1] }}")]
-    one, other = (pressure(run(each)).as_dict() for each in scenes)
+def test_a_distribution_of_no_width_is_a_gas_of_equal_discs():
+    scenes = [scene(0.3, 100, spread, run="events = 20_000") for spread in (None, 0)]
+    one, other = (pressure(log_of(each)).as_dict() for each in scenes)
     for found in (one, other):
         found.pop("origin", None)
     assert one == other

@@ -1,13 +1,13 @@
-"""Sheared sides: exact crossings and contacts, the same by all methods and wherever the sides are."""
+"""Sheared sides: exact crossings and contacts, the same wherever the sides are."""
 
 import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import same_by_brute_force_and_resumed
+from helpers.logs import gas, log_of, raised
 from helpers.support import ROOT, gas_of, record, same_rows, within
 
-from idealgas import load_scene, open_log, parse_scene, shear, simulate, transport
+from idealgas import load_scene, shear, transport
 from idealgas.analysis import registry
 from idealgas.analysis.theory.values import enskog_error
 from idealgas.columns import SIDES, Kind
@@ -15,7 +15,7 @@ from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.errors import NotApplicableError, UserError
+from idealgas.errors import NotApplicableError
 from idealgas.initial.build import make_gas
 from idealgas.log.start import continued_scene
 from idealgas.physics.exact_sum import make_sums
@@ -25,35 +25,21 @@ from idealgas.physics.shear import flow_at, make_shear
 from idealgas.run.effects import make_effects
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
-OTHERS = ("restitution.normal=0.9", "rotation.roughness=0.3", "thermostat.temperature=1", "thermostat.rate=0.1")
 
 
-def simulated(scene, tmp_path):
-    simulate(scene, tmp_path / "run.h5", force=True)
-    return tmp_path / "run.h5"
-
-
-@pytest.mark.parametrize("others", [(), OTHERS], ids=["elastic", "rough in a heat bath"])
-@pytest.mark.slow
-def test_the_same_by_brute_force_and_resumed(tmp_path, others):
-    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, others, "run.events=1500")
-    with open_log(tmp_path / "whole.h5") as log:
-        partner = np.concatenate([block.partner for block in log.chunks()])
-    assert all((partner == -1 - SIDES.index(side)).sum() > 30 for side in ("bottom", "top"))
-    assert summary.deepest_overlap < 16 * 2.0**-53 * 9 / 0.4  # roundings of a coordinate over the sum of the radii
-    assert (summary.threads, summary.epochs > 3) == (1, True)
+def shear_of(*overrides):
+    """Analysis of the small shipped gas, from the start."""
+    return shear(log_of("shear", "species.gas.count=30", "box.size=[8.9, 8.9]", *overrides), start=0)
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_what_a_heat_bath_does_to_the_theory(tmp_path):
+def test_what_a_heat_bath_does_to_the_theory():
     """At x times the collision rate it takes a part of about x of the viscosity, and the rate a part of 2a²."""
-    small = ("species.gas.count=30", "box.size=[8.9, 8.9]")
-    found = shear(simulated(load_scene(ROOT / "configs" / "shear.toml", [*small, "run.until=6"]), tmp_path), start=0)
+    found = shear_of("run.until=6")
     a, phi = found.reduced_rate, 30 * math.pi / 4 / 8.9**2
     error = enskog_error("viscosity", phi) + a * 0.02 / 0.06 + 2 * a**2
     assert found.viscosity.theory_error == pytest.approx(error * found.viscosity.theory)
-    strong = (*small, "run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
-    found = shear(simulated(load_scene(ROOT / "configs" / "shear.toml", strong), tmp_path), start=0)
+    found = shear_of("run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
     assert found.viscosity.theory is None
     assert found.pressure.theory is not None
     (fast,) = (sentence for sentence in found.caveats if sentence.startswith("The shear rate"))
@@ -61,10 +47,10 @@ def test_what_a_heat_bath_does_to_the_theory(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_temperature_that_changes(tmp_path):
+def test_a_temperature_that_changes():
     """Inelastic discs cool from a hot start, though the shear heats them."""
-    path = simulated(load_scene(GOLDEN, ["run.events=300", "restitution.normal=0.5"]), tmp_path)
-    assert "in the window: the viscosity is that of one state only if" in " ".join(shear(path, start=0).caveats)
+    log = log_of(GOLDEN, "run.events=300", "restitution.normal=0.5")
+    assert "in the window: the viscosity is that of one state only if" in " ".join(shear(log, start=0).caveats)
 
 
 @pytest.mark.parametrize(
@@ -134,16 +120,14 @@ def test_a_contact_through_the_top_is_that_with_the_moving_image(start):
     assert work.tolist() == pytest.approx([0, 0, 0, after - before], abs=1e-13)
 
 
-def test_sides_may_be_anywhere(tmp_path):
+def test_sides_may_be_anywhere():
     """Moved up by h and faster by rate h, a gas has the same collisions at the same times, in another frame."""
-    scene = parse_scene(GOLDEN.read_text())
-    simulate(scene, tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        first, gas, rate, (width, height) = log.state_at(0.0), log.discs, 0.4, log.box
-        (rows,) = log.chunks()
-        met = np.flatnonzero(rows.kind == Kind.DISC)[:400]
-        pairs = np.column_stack((rows.disc, rows.partner))[met]
-        times, turned = rows.time[met], rows.velocity[met, 1]
+    log = log_of(GOLDEN)
+    first, gas, rate, (width, height) = log.state_at(0.0), log.discs, 0.4, log.box
+    (rows,) = log.chunks()
+    met = np.flatnonzero(rows.kind == Kind.DISC)[:400]
+    pairs = np.column_stack((rows.disc, rows.partner))[met]
+    times, turned = rows.time[met], rows.velocity[met, 1]
     y = first.position[:, 1] + 2.5
     up = np.floor(y / height)
     position = np.column_stack((first.position[:, 0], y - up * height))
@@ -157,58 +141,46 @@ def test_sides_may_be_anywhere(tmp_path):
     assert np.abs(moved.velocity[again, 1] - turned)[:60].max() < 1e-7
 
 
-def test_the_stress_heats_the_gas(tmp_path):
+def test_the_stress_heats_the_gas():
     """Energy relative to the flow grows by -rate A ∫ P_xy dt exactly, by flights and collisions, also through sides."""
-    simulate(load_scene(GOLDEN), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = shear(log, start=0.0)
-        width, height = log.box
-        energy = []
-        for time in (0.0, log.end_time):
-            state = log.state_at(time)
-            vx = state.velocity[:, 0] - flow_at(state.position[:, 1], found.rate, height)
-            energy.append(float(log.discs.mass @ (vx**2 + state.velocity[:, 1] ** 2)) / 2)
-        work = found.rate**2 * width * height * found.viscosities.mean() * log.end_time
-        assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
-        assert found.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
-        with pytest.raises(UserError, match=r"no start between sheared sides from t = 1 \(allowed multiples of 3.21"):
-            continued_scene(log, 1.0, "run.h5")
-        assert "run.h5" in continued_scene(log, 9 / 2.8, "run.h5")
-        for analysis in registry.analyses():
-            if not analysis.takes_shear:
-                with pytest.raises(NotApplicableError, match=r"sheared sides, where|of one species that differ"):
-                    analysis.analyse(log)
+    log = log_of(GOLDEN)
+    found = shear(log, start=0.0)
+    width, height = log.box
+    energy = []
+    for time in (0.0, log.end_time):
+        state = log.state_at(time)
+        vx = state.velocity[:, 0] - flow_at(state.position[:, 1], found.rate, height)
+        energy.append(float(log.discs.mass @ (vx**2 + state.velocity[:, 1] ** 2)) / 2)
+    work = found.rate**2 * width * height * found.viscosities.mean() * log.end_time
+    assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
+    assert found.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
+    raised(
+        r"no start between sheared sides from t = 1 \(allowed multiples of 3.21", continued_scene, log, 1.0, "run.h5"
+    )
+    assert "run.h5" in continued_scene(log, 9 / 2.8, "run.h5")
+    for analysis in registry.analyses():
+        if not analysis.takes_shear:
+            raised(r"sheared sides, where|of one species that differ", analysis.analyse, log, error=NotApplicableError)
 
 
-FLUID = """
-[box]
-size = [{side}, {side}]
-left = "periodic"
-right = "periodic"
-bottom = {below}
-top = {below}
-[[species]]
-name = "gas"
-count = 400
-radius = 0.5
-temperature = 1
-[run]
-collisions_per_disc = 3000
-"""
+FLUID = gas(400, 0.5, (1, 1), "collisions_per_disc = 3000", periodic="x")
+
+
+def fluid(phi, side, *overrides):
+    """The log of a gas of this packing fraction between two such sides."""
+    length = math.sqrt(400 * math.pi / 4 / phi)
+    return log_of(FLUID, f"box.size=[{length!r}, {length!r}]", f"box.bottom={side}", f"box.top={side}", *overrides)
 
 
 @pytest.mark.parametrize(("phi", "rate"), [(0.1, 0.03), (0.3, 0.08)])
 @pytest.mark.slow
-def test_the_viscosity_is_that_of_the_same_gas_at_rest(tmp_path, phi, rate):
+def test_the_viscosity_is_that_of_the_same_gas_at_rest(phi, rate):
     """By Helfand's moments of its equilibrium (transport), within 3 standard errors; pressure and slope by theory.
 
     The flow is slow: 0.06 of the collision rate at first, and less as the gas becomes hotter.
     """
-    side = math.sqrt(400 * math.pi / 4 / phi)
-    for name, below in (("rest", '"periodic"'), ("flow", f"{{ shear = {rate} }}")):
-        simulate(parse_scene(FLUID.format(side=side, below=below)), tmp_path / f"{name}.h5")
-    at_rest = transport(tmp_path / "rest.h5").collective.coefficients["viscosity"].value
-    found = shear(tmp_path / "flow.h5")
+    at_rest = transport(fluid(phi, "'periodic'")).collective.coefficients["viscosity"].value
+    found = shear(fluid(phi, f"{{ shear = {rate} }}"))
     flowing = found.viscosity.times(found.temperature.value**-0.5)
     error = math.hypot(at_rest.standard_error, flowing.standard_error)
     within("viscosity in units of √(mT)/σ, σ", abs(flowing.value - at_rest.value) / error, 3)
@@ -222,23 +194,14 @@ def test_the_viscosity_is_that_of_the_same_gas_at_rest(tmp_path, phi, rate):
 
 
 @pytest.mark.slow
-def test_normal_stress_of_a_dilute_granular_gas(tmp_path):
+def test_normal_stress_of_a_dilute_granular_gas():
     """(P_xx - P_yy)/P = 2ζ/(β + ζ) where collisions take what shear brings: ζ = (1 - e²)/2, β = (1 + e)(3 + e)/8.
 
     Moments of Boltzmann's equation, for two dimensions: Santos, Garzó & Dufty, Phys. Rev. E 69, 061303 (2004).
     """
-    side = math.sqrt(400 * math.pi / 4 / 0.01)
-    scene = FLUID.format(side=side, below="{ shear = 0.0148 }")
-    simulate(
-        parse_scene(scene, overrides=["restitution.normal=0.9", "run.collisions_per_disc=300"]), tmp_path / "run.h5"
-    )
-    found = shear(tmp_path / "run.h5")
+    found = shear(fluid(0.01, "{ shear = 0.0148 }", "restitution.normal=0.9", "run.collisions_per_disc=300"))
     decay, exchange = (1 - 0.9**2) / 2, 1.9 * 3.9 / 8
-    expected = 2 * decay / (exchange + decay)
+    expected, stress = 2 * decay / (exchange + decay), found.normal_stress
     assert found.window.state == "steady state"
-    assert found.normal_stress.standard_error < 0.06 * expected
-    within(
-        "normal stress of a granular gas, σ",
-        abs(found.normal_stress.value - expected) / found.normal_stress.standard_error,
-        3,
-    )
+    assert stress.standard_error < 0.06 * expected
+    within("normal stress of a granular gas, σ", abs(stress.value - expected) / stress.standard_error, 3)

@@ -1,4 +1,4 @@
-"""Viscosity and thermal conductivity of periodic gases against Enskog's theory, from the events of several runs.
+"""Transport coefficients of periodic gases against Enskog's theory, and sound against them, from several runs.
 
 Minutes for each state; run by hand.
 """
@@ -8,34 +8,24 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.logs import gas, log_of, species
 
+from idealgas import sound
 from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.transport.measure import Transport, transport
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
 STANDARD_ERRORS = 3
 """Largest difference between two directions, in its standard errors."""
 
+PLAIN = "log.compression = 'none'"
 RESOLVED = 0.015
 """Largest standard error of a coefficient, relative."""
 
 
-def measure(path, number: int, phi: float, seed: int, collisions_per_disc: int) -> Transport:
-    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
-    radius = math.sqrt(phi / (number * math.pi))
-    gas = f'name = "gas", count = {number}, radius = {radius!r}, temperature = 1, placement = "lattice"'
-    scene = f"""
-        scene.seed = {seed}
-        box = {{size = [1, 1], {sides}}}
-        species = [{{{gas}}}]
-        log.compression = "none"
-        run.collisions_per_disc = {collisions_per_disc}
-    """
-    simulate(parse_scene(scene), path, force=True)
-    with open_log(path) as log:
-        return transport(log, start=100 * log.end_time / collisions_per_disc)
+def measure(number: int, phi: float, seed: int, collisions_per_disc: int) -> Transport:
+    radius, run = math.sqrt(phi / (number * math.pi)), f"collisions_per_disc = {collisions_per_disc}"
+    log = log_of(gas(number, radius, (1, 1), run, periodic="xy", placement="lattice", seed=seed, then=PLAIN))
+    return transport(log, start=100 * log.end_time / collisions_per_disc)
 
 
 def over_theory(found: list[Estimate]) -> Estimate:
@@ -57,8 +47,8 @@ freedom, by D²/(D + 2)(D + 4).
     + [(phi, 250, range(1000, 1008), 0.05) for phi in (0.05, 0.1, 0.2)]
     + [(phi, 250, range(1000, 1008), 0.08) for phi in (0.3, 0.4)],
 )
-def test_enskog(tmp_path, phi, number, seeds, within):
-    found = [measure(tmp_path / "run.h5", number, phi, seed, 20_000).collective for seed in seeds]
+def test_enskog(phi, number, seeds, within):
+    found = [measure(number, phi, seed, 20_000).collective for seed in seeds]
     for name, part in FIXED.items():
         ones = [one.coefficients[name] for one in found]
         ratio = over_theory([one.value for one in ones])
@@ -73,27 +63,15 @@ def test_enskog(tmp_path, phi, number, seeds, within):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("mass", "radius"), [(1.0, 0.2), (4.0, 0.2), (10.0, 0.4)])
-def test_two_species_in_each_other(run, mass, radius):
+def test_two_species_in_each_other(mass, radius):
     """Two halves of 200 discs diffuse in each other as Enskog has it, at φ = 0.02 to 0.05; three standard errors."""
-    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
-    found = []
+    heavy, found = species("heavy", 100, radius, mass=mass), []
     for seed in range(1, 9):
-        scene = f"""
-            scene.seed = {seed}
-            box = {{size = [35, 35], {sides}}}
-            species = [
-                {{name = "light", count = 100, radius = 0.2, temperature = 1}},
-                {{name = "heavy", count = 100, radius = {radius}, mass = {mass}, temperature = 1}},
-            ]
-            log.compression = "none"
-            run.collisions_per_disc = 10_000
-        """
-        log = run(parse_scene(scene))
+        light = gas(100, 0.2, (35, 35), "collisions_per_disc = 10_000", periodic="xy", seed=seed, then=PLAIN)
+        log = log_of(light + heavy)
         found.append(transport(log).collective.coefficients["mutual_diffusion"])
     ratio = over_theory([one.value for one in found])
-    print(
-        f"masses 1 : {mass:g}, radii 0.2 : {radius}: D₁₂ over Enskog's {ratio.value:.4f} ± {ratio.standard_error:.4f}"
-    )
+    print(f"masses 1 : {mass:g}, radii 0.2 : {radius}: D₁₂ over Enskog's {ratio}")
     assert ratio.standard_error < 2 * RESOLVED
     error = found[0].value.theory_error / found[0].value.theory
     assert abs(ratio.value - 1) < STANDARD_ERRORS * math.hypot(ratio.standard_error, error)
@@ -101,32 +79,21 @@ def test_two_species_in_each_other(run, mass, radius):
     assert abs(apart.value) < STANDARD_ERRORS * apart.standard_error
 
 
-def test_a_heavy_disc_among_few_light_ones(run):
+def test_a_heavy_disc_among_few_light_ones():
     """A disc that has half of the mass, in a dilute periodic gas, where Enskog's friction γ is right.
 
     m⟨v²⟩/2 is T(1 - m/M), and as the others recoil, the velocity decays at γ/(1 - m/M): twice as fast as among many.
     Twelve windows of one run; three standard errors.
     """
-    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
-    log = run(
-        parse_scene(f"""
-            scene.seed = 1
-            box = {{size = [40, 40], {sides}}}
-            species = [
-                {{name = "heavy", count = 1, radius = 0.5, mass = 20, temperature = 1}},
-                {{name = "light", count = 20, radius = 0.5, temperature = 1}},
-            ]
-            log.compression = "none"
-            run.collisions_per_disc = 40_000
-        """)
-    )
+    light = gas(20, 0.5, (40, 40), "collisions_per_disc = 40_000", periodic="xy", seed=1, then=PLAIN)
+    heavy = species("heavy", 1, 0.5, mass=20)
+    log = log_of(light.replace("[[species]]", f"{heavy}[[species]]"))
     edges = np.linspace(0, log.end_time, 13)
     found = [transport(log, *window).diffusion[0] for window in pairwise(edges)]
     temperature, light = 2 * log.discs.kinetic_energy / 40, 20 / 1600
     reduced = 20 / 21
-    rate = (
-        2 * light * 1.0163 * math.sqrt(math.pi * temperature / (2 * reduced))
-    )  # χ = (1 - 7φ/16)/(1 - φ)² at φ = .0103
+    chi = 1.0163  # (1 - 7φ/16)/(1 - φ)² at φ = .0103
+    rate = 2 * light * chi * math.sqrt(math.pi * temperature / (2 * reduced))
     time = 0.5 / (2 * reduced / 20 * rate)
     for estimates, theory in (
         ([one.velocity_correlation_time for one in found], time),
@@ -138,3 +105,27 @@ def test_a_heavy_disc_among_few_light_ones(run):
         assert measured.standard_error < 0.15 * theory
         assert abs(measured.value - theory) < STANDARD_ERRORS * measured.standard_error
         print(measured, theory)
+
+
+SIDE, NUMBER, SEEDS = 80.0, 2400, range(1, 7)
+SOUND = gas(NUMBER, 0.5, (SIDE, SIDE), "until = 6400", periodic="xy", then=PLAIN)
+
+
+@pytest.mark.long
+def test_the_chain_agrees_with_itself():
+    """Speed within 2 % of the equation of state's, damping within 10 % of what the coefficients give, and 4 s.e."""
+    waves, chain = [], []
+    density = NUMBER / SIDE**2
+    for seed in SEEDS:
+        log = log_of(SOUND, f"scene.seed={seed}")
+        waves.append(sound(log).waves[0])
+        currents = transport(log, end=1500.0).collective.coefficients
+        found = {name: current.value.value for name, current in currents.items()}
+        gamma = waves[-1].exponent.theory
+        heat = found["thermal_conductivity"] / (density * gamma)
+        chain.append(((found["viscosity"] + found["bulk_viscosity"]) / density + (gamma - 1) * heat) / 2)
+    speed, damping = (mean_of_replicates([getattr(wave, name) for wave in waves]) for name in ("speed", "damping"))
+    assert speed.standard_error < 0.005 * speed.value
+    assert abs(speed.value / speed.theory - 1) < 0.02
+    assert damping.standard_error < 0.05 * damping.value
+    assert abs(damping.value / np.mean(chain) - 1) < 0.1 + 2 * damping.standard_error / damping.value

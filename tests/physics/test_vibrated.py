@@ -1,31 +1,17 @@
-"""Gases between vibrating sides: the same by all methods, and the balances of a granular gas on a vibrating floor."""
+"""The balances of a granular gas on a vibrating floor."""
 
 import math
 
 import numpy as np
 import pytest
-from helpers.log_compare import same_by_brute_force_and_resumed
-from helpers.support import ROOT
+from helpers.logs import log_of
 
-from idealgas import load_scene, open_log, simulate, temperature
-
-GOLDEN = ROOT / "tests" / "cases" / "golden" / "vibrating.toml"
-
-
-@pytest.mark.slow
-def test_the_same_by_brute_force_and_resumed(tmp_path):
-    summary = same_by_brute_force_and_resumed(tmp_path, GOLDEN, (), "run.until=2.7")
-    with open_log(tmp_path / "whole.h5") as log:
-        assert len(log) > 800
-    assert summary.deepest_overlap < 1e-14
+from idealgas import temperature
 
 
 @pytest.fixture(scope="module")
-def vibrated(tmp_path_factory):
-    path = tmp_path_factory.mktemp("vibrated") / "run.h5"
-    simulate(load_scene(ROOT / "configs" / "vibrated-granular.toml", ["log.pressure=true"]), path)
-    with open_log(path) as log:
-        yield log
+def vibrated():
+    return log_of("vibrated-granular", "log.pressure=true")
 
 
 def rate(log, name, entry, start):

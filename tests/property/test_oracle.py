@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from helpers.logs import log_of
 from helpers.support import gas_of, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
@@ -12,9 +13,6 @@ from hypothesis import strategies as st
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 from idealgas.state import Gas
 
 
@@ -106,7 +104,7 @@ def test_many_simultaneous_events():
 
 @pytest.mark.parametrize("pull", [(0, -1e4), (1e4, 0), (-1e4, 3e3)], ids=["down", "right", "both"])
 @pytest.mark.usefixtures("uncompiled")
-def test_the_same_log_of_discs_that_turn_round_between_periodic_sides(pull, tmp_path):
+def test_the_same_log_of_discs_that_turn_round_between_periodic_sides(pull):
     """At the speed 50 they turn back after v²/2g = 0.125, in a box of 6: often at a side that they never cross."""
     text = f"""
         scene.seed = 5
@@ -117,8 +115,7 @@ def test_the_same_log_of_discs_that_turn_round_between_periodic_sides(pull, tmp_
     """
     logs = []
     for method in ("event_driven", "brute_force"):
-        simulate(parse_scene(text, overrides=[f"run.method={method}"]), tmp_path / method)
-        with open_log(tmp_path / method) as log:
-            logs.append(list(log.chunks()))
+        log = log_of(text, f"run.method={method}")
+        logs.append(list(log.chunks()))
     for one, other in zip(*logs, strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True) if a is not None)

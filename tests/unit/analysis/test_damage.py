@@ -3,25 +3,18 @@
 from types import SimpleNamespace
 
 import pytest
-from helpers.log_compare import scene_of
+from helpers.logs import gas
 
 from idealgas.analysis import status as module
 from idealgas.analysis.status import status
-from idealgas.log import DamageError, open_log
+from idealgas.log import DamageError
 from idealgas.report import sections
-from idealgas.run.simulate import simulate
+
+GAS = gas(9, 0.1, (8, 8), "events = 50")
 
 
 def damaged(log, *_, **__):
     raise DamageError(log.path, "events/kind: a checksum does not match")
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory):
-    path = tmp_path_factory.mktemp("damage") / "run.h5"
-    simulate(scene_of("mixture", "run.events=50"), path)
-    with open_log(path) as log:
-        yield log
 
 
 def test_in_a_status(log, monkeypatch):

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import log_of
 
-from idealgas import escape, open_log, parse_scene, simulate
+from idealgas import escape
 from idealgas.analysis.core.reach import reach_of
 from idealgas.analysis.escape import BILLIARD
 from idealgas.analysis.theory import hard_discs
@@ -20,15 +21,13 @@ run.until = 12
 DISC = "[[disc]]\nposition = [{}, {}]\nvelocity = [{}, 0]\nradius = {}\n"
 
 
-def measured(tmp_path, text, **window):
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        return escape(log, **window)
+def measured(text, **window):
+    return escape(log_of(text), **window)
 
 
-def test_two_discs_that_leave_and_one_that_does_not(tmp_path):
+def test_two_discs_that_leave_and_one_that_does_not():
     """At 1 and 2 to the hole at x = 9 - R from x = 2: at t = 6.9 and 3.45; the third flies below the hole, 12 long."""
-    found = measured(tmp_path, HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1) + DISC.format(5, 1, 1, 0.1))
+    found = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1) + DISC.format(5, 1, 1, 0.1))
     assert (found.discs, found.escaped) == (3, 2)
     assert found.per_path.value == pytest.approx(2 / (6.9 + 6.9 + 12), rel=1e-12)
     assert found.per_path.standard_error == pytest.approx(found.per_path.value / math.sqrt(2), rel=1e-12)
@@ -50,27 +49,27 @@ def test_two_discs_that_leave_and_one_that_does_not(tmp_path):
     assert found.expected == pytest.approx(np.exp(-np.multiply.outer(found.time, rates)).sum(axis=1), rel=1e-12)
 
 
-def test_a_hole_of_many_mean_free_paths_has_no_theory(tmp_path):
+def test_a_hole_of_many_mean_free_paths_has_no_theory():
     discs = "".join(DISC.format(x, y, 1, 0.1) for x in np.arange(0.5, 8.6, 0.5) for y in np.arange(0.5, 7.6, 0.5))
-    found = measured(tmp_path, HOLE.replace("until = 12", "until = 0.5") + discs)
+    found = measured(HOLE.replace("until = 12", "until = 0.5") + discs)
     assert found.per_path.theory is None
     (sentence,) = found.caveats
     assert sentence.startswith("No theory: the holes are ")
     assert sentence.endswith(" mean free paths long, not small.")
 
 
-def test_a_window_counts_what_happens_in_it(tmp_path):
-    found = measured(tmp_path, HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1), start=4.0)
+def test_a_window_counts_what_happens_in_it():
+    found = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1), start=4.0)
     assert (found.discs, found.escaped, found.left[0], found.left[-1]) == (1, 1, 1, 0)
     assert found.mean_time.value == pytest.approx(2.9, rel=1e-12)
     theory = 1 / found.per_path.theory
     assert found.mean_time.theory == pytest.approx(theory, rel=1e-12)  # at the speed 1
 
 
-def test_discs_that_meet_are_no_billiard(tmp_path):
+def test_discs_that_meet_are_no_billiard():
     """Two that exchange their velocities at x = 4 ± R, t = 1.8: 2 collisions of discs for one escape, at 6.9."""
     text = HOLE + DISC.format(2, 4, 1, 0.1) + DISC.format(6, 4, -1, 0.1)
-    found = measured(tmp_path, text.replace("until = 12", "until = 7.5"))
+    found = measured(text.replace("until = 12", "until = 7.5"))
     assert found.escaped == 1
     assert found.caveats == (
         "No theory of the number left: discs neither keep their speeds nor come to equilibrium before they leave.",
@@ -103,10 +102,8 @@ TRAP = "{ from = [4, 4], to = [6, 4], absorbing = true }"
         "corner with another wall", "in line", "on a wall", "near a wall",
     ],
 )  # fmt: skip
-def test_the_length_of_a_hole_is_that_of_all_centres_that_touch_it(tmp_path, walls, length, shared):
+def test_the_length_of_a_hole_is_that_of_all_centres_that_touch_it(walls, length, shared):
     """Faces on both sides and an arc of the radius around each end, without what other walls hide."""
     text = f"box.size = [10, 8]\nwall = [{walls}]\nrun.until = 0.01\n" + DISC.format(2, 2, 1, R)
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        reach = reach_of(log, R)
+    reach = reach_of(log_of(text), R)
     assert (reach.holes, reach.shared) == pytest.approx((length, shared), rel=1e-7)

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from helpers.logs import PERIODIC
 
 from idealgas import histogram
 from idealgas.analysis.pressure.measure import pressure
@@ -19,10 +20,9 @@ disc = [
 species = [{ name = "light", count = 20, radius = 0.2, temperature = 1 }]
 run.collisions_per_disc = 300
 """
-PERIODIC = 'box = {size=[12, 12], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
 
 
-@pytest.mark.parametrize("sides", [(), (PERIODIC,)], ids=["walls", "periodic"])
+@pytest.mark.parametrize("sides", [(), PERIODIC], ids=["walls", "periodic"])
 def test_light_discs_among_fixed_ones(make, sides):
     """Elastic scatterers conserve the energy of the light discs, E/N = 1; four standard errors."""
     log = make(*sides)

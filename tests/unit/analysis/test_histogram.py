@@ -5,18 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers.logs import gas, raised
 
 from idealgas import histogram
 from idealgas.analysis.core.collisions import expected_rates, theory_of
 from idealgas.analysis.core.ensemble import known_ensemble
-from idealgas.errors import UserError
 
-GAS = """
-scene.seed = 3
-box.size = [8, 6]
-run.until = 30
-species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
-"""
+GAS = gas(40, 0.1, (8, 6), "until = 30", temperature=1.5, seed=3)
 
 WITHOUT = {
     "restitution.normal=0.9": "the gas loses energy (restitution)",
@@ -73,8 +68,7 @@ def test_maxwell_at_the_temperature_of_the_walls(make):
 def test_discs_that_start_at_rest_fall(make):
     log = make("species.temperature=", "species.speed=0", "gravity.acceleration=[0, -0.3]")
     assert histogram(log, start=10.0).distributions[0].mean.value > 0.2
-    with pytest.raises(UserError, match="no disc moves"):
-        histogram(make("species.temperature=", "species.speed=0", "species.count=1"), start=0.0)
+    raised("no disc moves", histogram, make("species.temperature=", "species.speed=0", "species.count=1"), start=0.0)
 
 
 def test_free_flights_in_a_gas_that_is_not_uniform(make):
@@ -82,8 +76,9 @@ def test_free_flights_in_a_gas_that_is_not_uniform(make):
     assert found.no_law == "the gas is not the same everywhere (gravity)"
     assert found.distributions[0].tests == ()
     assert 0.5 < found.distributions[0].mean.value < 10
-    with pytest.raises(UserError, match="too few collisions of discs"):
-        histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path")
+    raised(
+        "too few collisions of discs", histogram, make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path"
+    )
 
 
 @pytest.mark.usefixtures("uncompiled")

@@ -4,29 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, gas, log_of
 
 import idealgas
 from idealgas import open_log, simulate
-from idealgas.errors import NotApplicableError, UserError
-from idealgas.scene import parse_scene
-
-SIDES = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
-GAS = """
-scene.seed = 1
-box.size = [{side}, {side}]
-species = [{{ name = "gas", count = {number}, radius = 0.5, temperature = 1 }}]
-run.collisions_per_disc = {collisions}
-"""
-PERIODIC = tuple(f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top"))
+from idealgas.columns import SIDES
 
 
-@pytest.fixture
-def made(tmp_path):
-    def run(number, side, collisions, *overrides):
-        simulate(parse_scene(GAS.format(**locals()), overrides=overrides), tmp_path / "run.h5", force=True)
-        return open_log(tmp_path / "run.h5")
-
-    return run
+def log_of_discs(number, side, collisions, *overrides):
+    return log_of(gas(number, 0.5, (side, side), f"collisions_per_disc = {collisions}", seed=1), *overrides)
 
 
 @pytest.mark.parametrize(
@@ -34,71 +20,55 @@ def made(tmp_path):
     [(PERIODIC, 6), (PERIODIC[:2], 4), ((), 2), (("gravity.acceleration=[0, -0.5]",), 2)],
     ids=["periodic", "channel", "walls", "gravity"],
 )
-def test_pairs_and_zeros(overrides, zeros, made):
+def test_pairs_and_zeros(overrides, zeros):
     """Conservative motion has pairs λ, -λ; of the whole spectrum as many are 0 as conservation laws ask for.
 
     Zeros fall with time: a deviation in them grows like t, so the bound is 3 ln(t)/t.
     """
-    with made(6, 6.0, 400, *overrides) as log:
-        found = idealgas.lyapunov(log, start=0.0, exponents=24)
-        values = np.array([one.value for one in found.exponents])
-        assert found.zeros == zeros
-        assert 1 / 6 < found.localisation.value < 1
-        assert found.mean_free_time == pytest.approx(log.end_time / 400, rel=0.1)
-        assert math.exp(found.lifetime(7) * values[0]) == pytest.approx(1e7)
-        assert found.pairing < 1e-6 * values[0]
-        assert found.largest_zero < 3 * math.log(log.end_time) / log.end_time
-        assert values[12 - zeros // 2 - 1] > 5 * found.largest_zero
-        assert (np.diff(values) < 0.02 * values[0]).all()
-        one = idealgas.lyapunov(log, start=0.0)
-        assert abs(one.exponents[0].value - values[0]) < 4 * found.exponents[0].standard_error
-        assert found.entropy.value == pytest.approx(values[values > 0].sum(), rel=1e-12)
+    log = log_of_discs(6, 6.0, 400, *overrides)
+    found = idealgas.lyapunov(log, start=0.0, exponents=24)
+    values = np.array([one.value for one in found.exponents])
+    assert found.zeros == zeros
+    assert 1 / 6 < found.localisation.value < 1
+    assert found.mean_free_time == pytest.approx(log.end_time / 400, rel=0.1)
+    assert math.exp(found.lifetime(7) * values[0]) == pytest.approx(1e7)
+    assert found.pairing < 1e-6 * values[0]
+    assert found.largest_zero < 3 * math.log(log.end_time) / log.end_time
+    assert values[12 - zeros // 2 - 1] > 5 * found.largest_zero
+    assert (np.diff(values) < 0.02 * values[0]).all()
+    one = idealgas.lyapunov(log, start=0.0)
+    assert abs(one.exponents[0].value - values[0]) < 4 * found.exponents[0].standard_error
+    assert found.entropy.value == pytest.approx(values[values > 0].sum(), rel=1e-12)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("density", [0.01, 0.001])
-def test_entropy_of_dilute_gases(density, made):
+def test_entropy_of_dilute_gases(density):
     """h/N = 0.499(1) ν (-ln nσ² + 1.366(5)): van Beijeren et al., Phys. Rev. E 56, 5272 (1997); k = 4."""
-    with made(64, math.sqrt(64 / density), 500, *PERIODIC) as log:
-        found = idealgas.lyapunov(log, start=0.0, exponents=256)
+    log = log_of_discs(64, math.sqrt(64 / density), 500, *PERIODIC)
+    found = idealgas.lyapunov(log, start=0.0, exponents=256)
     per_collision = found.mean_free_time / 64
     published = 0.499 * (-math.log(density) + 1.366)
     assert abs(found.entropy.value * per_collision - published) < 4 * found.entropy.standard_error * per_collision
 
 
-def test_two_runs_separate_at_this_rate(made, tmp_path):
+def test_two_runs_separate_at_this_rate(tmp_path):
     """Runs that start 1e-9 apart are e^(λt) times as far apart later: rates of ten pairs, k = 4."""
-    with made(30, 9.0, 400, *PERIODIC) as log:
-        found = idealgas.lyapunov(log, start=0.0).exponents[0]
-        half, rates = 3 * math.log(10) / found.value, []
-        for begin in np.linspace(20.0, log.end_time - 1.0, 10):
-            state, ends = log.state_at(begin), []
-            for shift in (0.0, 1e-9):
-                position = (state.position + [shift, 0.0] * (np.arange(30) == 0)[:, None]) % 9.0
-                discs = {"position": position, "velocity": state.velocity, "radius": 0.5, "mass": 1.0}
-                scene = idealgas.Scene(box={"size": [9.0, 9.0], **SIDES}, discs=discs, run={"until": 2 * half})
-                simulate(scene, tmp_path / "pair.h5", force=True)
-                with open_log(tmp_path / "pair.h5") as pair:
-                    ends.append([np.hstack([one.position, one.velocity]) for one in pair.frames([half, 2 * half])])
-            apart = np.abs(np.subtract(*ends))
-            apart[..., :2] = np.minimum(apart[..., :2], 9.0 - apart[..., :2])
-            rates.append(math.log(np.linalg.norm(apart[1]) / np.linalg.norm(apart[0])) / half)
+    log, sides = log_of_discs(30, 9.0, 400, *PERIODIC), dict.fromkeys(SIDES, "periodic")
+    found = idealgas.lyapunov(log, start=0.0).exponents[0]
+    half, rates = 3 * math.log(10) / found.value, []
+    for begin in np.linspace(20.0, log.end_time - 1.0, 10):
+        state, ends = log.state_at(begin), []
+        for shift in (0.0, 1e-9):
+            position = (state.position + [shift, 0.0] * (np.arange(30) == 0)[:, None]) % 9.0
+            discs = {"position": position, "velocity": state.velocity, "radius": 0.5, "mass": 1.0}
+            scene = idealgas.Scene(box={"size": [9.0, 9.0], **sides}, discs=discs, run={"until": 2 * half})
+            simulate(scene, tmp_path / "pair.h5", force=True)
+            with open_log(tmp_path / "pair.h5") as pair:
+                ends.append([np.hstack([one.position, one.velocity]) for one in pair.frames([half, 2 * half])])
+        apart = np.abs(np.subtract(*ends))
+        apart[..., :2] = np.minimum(apart[..., :2], 9.0 - apart[..., :2])
+        rates.append(math.log(np.linalg.norm(apart[1]) / np.linalg.norm(apart[0])) / half)
     error = math.hypot(np.std(rates, ddof=1) / math.sqrt(10), found.standard_error)
     assert abs(np.mean(rates) - found.value) < 4 * error
     assert error < 0.2 * found.value
-
-
-@pytest.mark.parametrize(
-    "overrides", [("restitution.normal=0.9",), ("thermostat={temperature=1, rate=1}",), ("rotation.roughness=1",)]
-)
-def test_other_gases_are_refused(overrides, made):
-    with made(6, 6.0, 100, *overrides) as log, pytest.raises(NotApplicableError, match="smooth elastic discs"):
-        idealgas.lyapunov(log)
-
-
-def test_too_many_and_too_short(made):
-    with made(6, 6.0, 20) as log:
-        with pytest.raises(UserError, match=r"exponents: 6 discs have 24 \(got 25\)"):
-            idealgas.lyapunov(log, exponents=25)
-        with pytest.raises(UserError, match="too short for Lyapunov exponents, which take 52 events per disc"):
-            idealgas.lyapunov(log, start=0.0)

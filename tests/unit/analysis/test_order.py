@@ -5,29 +5,16 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas, raised
 
 from idealgas import order
 from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.order import FEWEST_FRAMES, FRAMES, WaveVectors
-from idealgas.errors import UserError
+from idealgas.columns import SIDES
 
-GAS = """
-scene.seed = 3
-run.collisions_per_disc = 60
-[box]
-size = [1, 1.2]
-left = "periodic"
-right = "periodic"
-bottom = "periodic"
-top = "periodic"
-[[species]]
-name = "gas"
-count = 60
-radius = 0.04
-temperature = 1
-"""
+GAS = gas(60, 0.04, (1, 1.2), "collisions_per_disc = 60", periodic="xy", seed=3)
 
-WALLS = tuple(f"box.{side}=reflecting" for side in ("left", "right", "bottom", "top"))
+WALLS = tuple(f"box.{side}=reflecting" for side in SIDES)
 
 
 def test_pairs_and_discs_are_counted_by_hand(make):
@@ -109,18 +96,10 @@ def test_instants_of_a_log_without_events_are_its_checkpoints(make):
     assert set(found.time) <= set(log.checkpoints.times)
     state = log.state_at(found.time[3])
     assert found.series[3] == np.abs(bond_order(state.position, log.box, log.periodic).value.mean())
-    with pytest.raises(UserError, match="only 0 checkpoints"):
-        order(log, start=float(log.checkpoints.times[-2]) + 1e-6, end=float(log.checkpoints.times[-1]) - 1e-6)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "message"),
-    [
-        (["log.events=false"], "has no events"),
-        ([*WALLS, "run.method=monte_carlo"], "no positions"),
-        ([*WALLS, "piston=[{ position = 1, mass = 5, pressure = 80 }]"], "no answer for a gas with"),
-    ],
-)
-def test_what_cannot_be_measured_is_refused(make, overrides, message):
-    with pytest.raises(UserError, match=message):
-        order(make(*overrides))
+    raised(
+        "only 0 checkpoints",
+        order,
+        log,
+        start=float(log.checkpoints.times[-2]) + 1e-6,
+        end=float(log.checkpoints.times[-1]) - 1e-6,
+    )

@@ -11,6 +11,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 import pytest
+from helpers.logs import PERIODIC, gas, raised
 from helpers.support import ROOT
 
 import idealgas
@@ -22,15 +23,10 @@ from idealgas.analysis.core.quantities import ESTIMATE, as_csv, names
 from idealgas.analysis.core.result import Result
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.core.tables import Number, Table, escape, estimates, html_table
-from idealgas.errors import UserError
 from idealgas.report.sections import make_sections
 from idealgas.scene import load_scene, parse_scene
 
-GAS = """
-box.size = [8, 8]
-species = [{name = "gas", count = 30, radius = 0.2, speed = 1.0}]
-run.collisions_per_disc = 60
-"""
+GAS = gas(30, 0.2, (8, 8), "collisions_per_disc = 60", speed=1.0)
 
 SLIT = (
     "species.0.region=[0,0,4,8]",
@@ -38,11 +34,7 @@ SLIT = (
     "run.collisions_per_disc=10",
 )
 
-WAVES = (
-    *(f'box.{side}="periodic"' for side in ("left", "right", "bottom", "top")),
-    "species.0.radius=0.5",
-    "run.collisions_per_disc=1500",
-)
+WAVES = (*PERIODIC, "species.0.radius=0.5", "run.collisions_per_disc=1500")
 STROKES = (
     "thermostat={temperature=1, rate=1}",
     "piston=[{velocity=[[0, 0], [5, -1], [6, 0], [11, 1], [12, 0], [17, -1], [18, 0]]}]",
@@ -111,11 +103,7 @@ def test_a_scene_leads_with_what_it_names_or_its_effects_call_for():
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
-        (
-            "presure",
-            {},
-            r'unknown analysis, did you mean "pressure"\? \(got presure; allowed billiard, cooling, ',
-        ),
+        ("presure", {}, r'unknown analysis, did you mean "pressure"\? \(got presure; allowed billiard, cooling, '),
         ("speeds of light", {}, r"unknown analysis \(got speeds of light; allowed billiard, cooling, "),
         ("profile", {"bin": 3}, r'unknown option of profile, did you mean "bins"\? \(got bin; allowed start, end, '),
         ("profile", {"bins": 0}, r"bins: wrong value \(got 0; allowed a whole number >= 1 and <= 1000\)"),
@@ -127,8 +115,7 @@ def test_a_scene_leads_with_what_it_names_or_its_effects_call_for():
     ],
 )
 def test_unknown_names_and_wrong_options_are_refused(make, name, options, message):
-    with pytest.raises(UserError, match=message):
-        registry.analyse(make("run.events=50"), name, **options)
+    raised(message, registry.analyse, make(), name, **options)
 
 
 def test_an_option_takes_its_default():
@@ -149,9 +136,8 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     headline = measured.summary()
     assert headline == result.summary() == str(measured).splitlines()[0]
     assert len(headline) < 300
-    assert any(
-        word in headline.lower() for word in ("agree", "differ", "theory")
-    )  # no number without a theory or its absence
+    said = ("agree", "differ", "theory")  # no number without a theory or its absence
+    assert any(word in headline.lower() for word in said)
     text = json.dumps(result.as_dict(), allow_nan=False)
     rows = list(csv.DictReader(io.StringIO(as_csv(result.as_dict(), analysis.name))))
     numbers = [float(row[name]) for row in rows for name in ESTIMATE if row[name]]
@@ -179,6 +165,7 @@ def test_results_show_themselves_in_a_notebook(make, analysis):
     figure = result.plot()
     assert len(figure.axes) == len(combined.plot().axes) > 0
     assert figure._repr_png_().startswith(b"\x89PNG")
+    assert all(ax.get_xlabel() and ax.get_ylabel() for ax in figure.axes)
 
 
 def test_what_a_notebook_shows_is_plain_text():

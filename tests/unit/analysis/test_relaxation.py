@@ -6,8 +6,9 @@ import shutil
 import numpy as np
 import pytest
 from helpers.crafted import craft, put
+from helpers.logs import gas, log_of, raised, species
 
-from idealgas import open_run, relaxation
+from idealgas import open_run, parse_scene, relaxation
 from idealgas.analysis.core.ensemble import ensemble
 from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation.acceptance import acceptance
@@ -23,29 +24,9 @@ from idealgas.analysis.relaxation.speeds import (
 )
 from idealgas.errors import UserError
 from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
-SCENE = """
-scene.seed = 5
-box.size = [10, 10]
-species = [{name = "gas", count = 80, radius = 0.1, speed = 2.0}]
-run.collisions_per_disc = 60
-"""
+GAS = gas(80, 0.1, (10, 10), "collisions_per_disc = 60", speed=2.0, seed=5)
 STANDARD_ERRORS = 4
-
-
-@pytest.fixture(scope="module")
-def make_log(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("relaxation")
-
-    def make(text):
-        path = folder / f"{abs(hash(text))}.h5"
-        if not path.exists():
-            simulate(parse_scene(text), path)
-        return open_log(path)
-
-    return make
 
 
 def test_distance_of_a_few_values():
@@ -98,45 +79,40 @@ def test_decay_times_are_found_in_collisions_that_set_in_late():
     assert decay_time(collisions, 2 - np.exp(-collisions / 2.9), 2.0) == pytest.approx(2.9, rel=1e-4)
 
 
-def test_reduced_energies_of_both_species_have_mean_one(make_log):
+def test_reduced_energies_of_both_species_have_mean_one():
     """In the mean over the discs, whatever their masses, about the velocity of the centre of mass."""
-    text = SCENE.replace("}]", '}, {name = "heavy", count = 20, radius = 0.1, mass = 10, speed = 1.0}]')
-    with make_log(text) as log:
-        state = log.state_at(log.end_time)
-        found = reduced_energy(log, state.velocity, ensemble(log))
-        assert speed_distributions(log, 1.0, end=1.0).expected.sum() == pytest.approx(100)
+    log = log_of(GAS + species("heavy", 20, 0.1, mass=10, speed=1.0))
+    state = log.state_at(log.end_time)
+    found = reduced_energy(log, state.velocity, ensemble(log))
+    assert speed_distributions(log, 1.0, end=1.0).expected.sum() == pytest.approx(100)
     assert found.mean() == pytest.approx(1)
     energy = log.discs.mass * (state.velocity**2).sum(axis=1) / 2
     assert found == pytest.approx(energy / energy.mean())
 
 
-def test_collisions_are_counted_for_both_discs(make_log):
-    with make_log(SCENE) as log:
-        (rows,) = log.chunks(("time", "partner"))
-        time = np.array([0.0, rows.time[99], rows.time[-1]])
-        found = collisions_per_disc(log, time)
-        assert found[0] == 0
-        assert found[1] * 80 == (rows.partner[rows.time <= time[1]] >= 0).sum()
-        assert found[2] * 80 == (rows.partner >= 0).sum() == 4800
-        late = collisions_per_disc(log, time[1:])
-        assert late[1] == found[2] - found[1]
+def test_collisions_are_counted_for_both_discs(log):
+    (rows,) = log.chunks(("time", "partner"))
+    time = np.array([0.0, rows.time[99], rows.time[-1]])
+    found = collisions_per_disc(log, time)
+    assert found[0] == 0
+    assert found[1] * 80 == (rows.partner[rows.time <= time[1]] >= 0).sum()
+    assert found[2] * 80 == (rows.partner >= 0).sum() == 4800
+    late = collisions_per_disc(log, time[1:])
+    assert late[1] == found[2] - found[1]
 
 
-def test_forty_collisions_a_disc_are_looked_at(make_log):
-    with make_log(SCENE) as log:
-        first, last = colliding_span(log, None, None)
-        assert first == 0
-        assert collisions_per_disc(log, np.array([0.0, last]))[-1] == pytest.approx(40, abs=2 / 80)
-        assert colliding_span(log, 1.0, 2.0) == (1.0, 2.0)
-        assert colliding_span(log, None, log.end_time) == (0, log.end_time)
-        with pytest.raises(UserError, match="no two discs collide between t = 0 and 1e-09"):
-            colliding_span(log, None, 1e-9)
+def test_forty_collisions_a_disc_are_looked_at(log):
+    first, last = colliding_span(log, None, None)
+    assert first == 0
+    assert collisions_per_disc(log, np.array([0.0, last]))[-1] == pytest.approx(40, abs=2 / 80)
+    assert colliding_span(log, 1.0, 2.0) == (1.0, 2.0)
+    assert colliding_span(log, None, log.end_time) == (0, log.end_time)
+    raised("no two discs collide between t = 0 and 1e-09", colliding_span, log, None, 1e-9)
 
 
-def test_what_was_seen_of_equal_speeds(make_log):
-    with make_log(SCENE) as log:
-        found = relaxation(log)
-        late = log.state_at(found.time[40]).velocity
+def test_what_was_seen_of_equal_speeds(log):
+    found = relaxation(log)
+    late = log.state_at(found.time[40]).velocity
     assert found.kurtosis[0] == pytest.approx(1, abs=1e-12)
     assert found.distance[0] == pytest.approx(1 - math.exp(-1), abs=1e-12)
     square = (late**2).sum(axis=1)
@@ -152,30 +128,16 @@ def test_what_was_seen_of_equal_speeds(make_log):
     assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
 
 
-def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make_log):
-    with make_log(SCENE.replace("speed = 2.0", "temperature = 1.0")) as log:
-        found = relaxation(log)
+def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make):
+    found = relaxation(make("species.gas.speed=", "species.gas.temperature=1.0"))
     assert found.in_time is None
     assert found.first_indistinguishable is not None
     assert found.as_dict()["relaxation_time"] is None
 
 
-@pytest.mark.parametrize(
-    ("extra", "message"),
-    [
-        ("gravity.acceleration = [0, -1]", "the kinetic energy of its discs is not constant: gravity"),
-        ("log.events = false", r"has no events \(made with log.events = false\)"),
-    ],
-)
-def test_gases_that_do_not_tend_to_the_law(make_log, extra, message):
-    with make_log(SCENE + extra) as log, pytest.raises(UserError, match=message):
-        relaxation(log)
-
-
-def test_development_counts_every_disc_at_every_instant(make_log):
-    with make_log(SCENE) as log:
-        found, whole = speed_distributions(log, 1.0, end=5.0), speed_distributions(log, 0.5).counts
-        at_two = np.hypot(*log.state_at(2.0).velocity.T)
+def test_development_counts_every_disc_at_every_instant(log):
+    found, whole = speed_distributions(log, 1.0, end=5.0), speed_distributions(log, 0.5).counts
+    at_two = np.hypot(*log.state_at(2.0).velocity.T)
     assert found.time.tolist() == [0, 1, 2, 3, 4, 5]
     assert found.counts.shape == (6, 9)
     assert (whole.sum(axis=1) == 80).all()
@@ -186,14 +148,13 @@ def test_development_counts_every_disc_at_every_instant(make_log):
     assert found.expected.sum() == pytest.approx(80)
     assert found.expected[-1] == pytest.approx(80 * math.exp(-(2.4**2)))
     assert found.trials is None
+    raised("instants are too many for a table", speed_distributions, log, 1e-9)
 
 
-def test_development_by_trials(make_log):
-    with make_log(
-        SCENE.replace("run.collisions_per_disc = 60", "run.trials = 2500\nrun.method = 'monte_carlo'")
-    ) as log:
-        found, made = speed_distributions(log, 1000), acceptance(log)
-        (rows,) = log.chunks(("time", "trial"))
+def test_development_by_trials(make):
+    log = make("run.collisions_per_disc=", "run.trials=2500", "run.method=monte_carlo")
+    found, made = speed_distributions(log, 1000), acceptance(log)
+    (rows,) = log.chunks(("time", "trial"))
     assert found.trials.tolist() == [0, 1000, 2000]
     assert found.collisions[1] * 80 == (rows.trial <= 1000).sum()
     assert found.time[1] == rows.time[rows.trial <= 1000][-1]
@@ -201,8 +162,8 @@ def test_development_by_trials(make_log):
 
 
 def test_development_by_trials_of_a_run_that_was_left_early(tmp_path):
-    text = SCENE.replace("run.collisions_per_disc = 60", "run.trials = 2500\nrun.method = 'monte_carlo'")
-    with open_run(parse_scene(text), tmp_path / "run.h5") as run:
+    early = ("run.collisions_per_disc=", "run.trials=2500", "run.method=monte_carlo")
+    with open_run(parse_scene(GAS, overrides=early), tmp_path / "run.h5") as run:
         run.advance(events=200)
     with open_log(tmp_path / "run.h5") as log:
         (rows,) = log.chunks(("trial",))
@@ -211,15 +172,9 @@ def test_development_by_trials_of_a_run_that_was_left_early(tmp_path):
         assert speed_distributions(log, 50).trials.tolist() == list(range(0, last + 1, 50))
 
 
-def test_a_table_without_end_is_refused(make_log):
-    with make_log(SCENE) as log, pytest.raises(UserError, match="instants are too many for a table"):
-        speed_distributions(log, 1e-9)
-
-
-def test_a_gas_that_comes_to_rest_is_one_line(make_log, tmp_path):
+def test_a_gas_that_comes_to_rest_is_one_line(log, tmp_path):
     path = tmp_path / "run.h5"
-    with make_log(SCENE) as log:
-        shutil.copy(log.path, path)
+    shutil.copy(log.path, path)
     craft(path, put("checkpoints/velocity", ..., 1e-200))
     with open_log(path) as log, pytest.raises(UserError, match=r"no disc moves at t = 0$"):
         relaxation(log)

@@ -4,30 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas, log_of
 
 import idealgas
-from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.scattering.distinct import distinct_parts
 from idealgas.analysis.scattering.sums import correlation, read, segments
-from idealgas.errors import NotApplicableError, UserError
 
-GAS = """
-scene.seed = 5
-run.collisions_per_disc = 600
-[box]
-size = [9, 9]
-left = "periodic"
-right = "periodic"
-bottom = "periodic"
-top = "periodic"
-[[species]]
-name = "gas"
-count = 30
-radius = 0.5
-mass = 2
-temperature = 1.5
-"""
+GAS = gas(30, 0.5, (9, 9), "collisions_per_disc = 600", periodic="xy", mass=2, temperature=1.5, seed=5)
 TEMPERATURE = 1.5 * 60 / 58
 """T = 2E/D with D = 2N - 2."""
 
@@ -74,14 +58,6 @@ def test_sums_against_states(make, monkeypatch, starts, step):
     distance = np.hypot(*np.moveaxis(apart, 2, 0)).ravel()
     assert one.moments[4] == pytest.approx(((distance**2).mean(), (distance**4).mean()))
     assert one.distances == pytest.approx(np.histogram(distance, edges)[0] / len(distance))
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory):
-    path = tmp_path_factory.mktemp("scattering") / "run.h5"
-    simulate(parse_scene(GAS), path)
-    with open_log(path) as log:
-        yield log
 
 
 @pytest.fixture(scope="module")
@@ -132,22 +108,20 @@ def test_displacements_are_normal_but_for_their_non_gaussian_parameter(found):
 
 
 @pytest.mark.parametrize("drift", [(0.0, 0.0), (3.0, -0.5)])
-def test_other_discs_against_states(tmp_path, log, drift, monkeypatch):
+def test_other_discs_against_states(log, drift, monkeypatch):
     """Pairs by hand, at the instants of two segments of two starts each, relative to the centre of mass."""
     state = log.state_at(0.0)
     discs = [
         f"{{ position = {place}, velocity = {velocity}, radius = 0.5, mass = 2 }}"
         for place, velocity in zip(state.position.tolist(), (state.velocity + drift).tolist(), strict=True)
     ]
-    box = GAS[GAS.index("[box]") : GAS.index("[[species]]")]
-    simulate(parse_scene(f"disc = [{', '.join(discs)}]\nrun.until = 20\n{box}"), tmp_path / "run.h5")
+    moving = log_of(GAS, f"disc=[{', '.join(discs)}]", "species=", "run={until=20}")
     window = Window(np.array([5.0, 20.0]), 0, False)
     monkeypatch.setattr("idealgas.analysis.scattering.distinct.SEGMENTS", 2)
     monkeypatch.setattr("idealgas.analysis.scattering.distinct.STARTS", 2)
     times, starts = [0.0, 0.3, 2.0], np.linspace(5, 18, 4)
-    with open_log(tmp_path / "run.h5") as moving:
-        found = distinct_parts(moving, window, times)
-        places = {at: moving.state_at(at).position for start in starts for at in start + np.array(times)}
+    found = distinct_parts(moving, window, times)
+    places = {at: moving.state_at(at).position for start in starts for at in start + np.array(times)}
     for time, one in zip(times, found, strict=True):
         edges = np.append(one.distance - 0.025, one.distance[-1] + 0.025)
         assert edges == pytest.approx(np.arange(len(edges)) / 20, abs=1e-12)
@@ -199,14 +173,3 @@ def test_spectrum_has_the_structure_as_its_integral(found):
     for one in found.waves:
         integral = (2 * one.spectrum.value[1:].sum() + one.spectrum.value[0]) * one.frequency[1] / (2 * math.pi)
         assert integral == pytest.approx(one.structure.value, rel=0.03)
-
-
-def test_other_gases_are_refused(make):
-    log = make("box.left=reflecting", "box.right=reflecting", "run.collisions_per_disc=10")
-    with pytest.raises(NotApplicableError, match="one species in a periodic box"):
-        idealgas.scattering(log)
-
-
-def test_too_short(log):
-    with pytest.raises(UserError, match="window too short"):
-        idealgas.scattering(log, start=0.0, end=1.0)

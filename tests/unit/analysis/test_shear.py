@@ -4,13 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import log_of
 from scipy.integrate import quad
 
-from idealgas import Scene, parse_scene, simulate
+from idealgas import Scene
 from idealgas.analysis.shear import _caveats, _product, shear
 from idealgas.columns import SIDES
-from idealgas.errors import NotApplicableError
-from idealgas.log import open_log
 from idealgas.log.start import continued_scene
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
@@ -25,15 +24,14 @@ disc = [
 """
 
 
-def test_two_discs_that_the_flow_leaves_behind(tmp_path):
+def test_two_discs_that_the_flow_leaves_behind():
     """c = (-t/2, 1) and (t/2, -1): integrals of 3 c c over blocks, over the area 32; they do not meet.
 
     Their common motion along x, ¼, lasts and is no heat.
     """
-    simulate(parse_scene(SCENE), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = shear(log, start=9.0, end=33.0)
-        assert log.summary["disc_collisions"] == 0
+    log = log_of(SCENE)
+    found = shear(log, start=9.0, end=33.0)
+    assert log.summary["disc_collisions"] == 0
     edges = found.window.edges
     width = edges[1] - edges[0]
     xx, yy = np.diff(edges**3 / 2) / width, 6.0
@@ -65,15 +63,14 @@ species = [{{ name = "gas", count = 8, radius = 0.4, placement = "lattice", velo
 
 
 @pytest.mark.parametrize("motion", [(0.0, 1.7), (2.5, 0.0), (2.5, -3.1)])
-def test_a_common_motion_changes_nothing_else(tmp_path, motion):
+def test_a_common_motion_changes_nothing_else(motion):
     """The images move in the same way, so that the gas has the same collisions, and its flow moves with it."""
     velocities = np.random.default_rng(1).normal(size=(8, 2))
     results = []
     for common in ((0.0, 0.0), motion):
-        simulate(parse_scene(GAS.format((velocities + common).tolist())), tmp_path / "run.h5", force=True)
-        with open_log(tmp_path / "run.h5") as log:
-            assert log.counts["disc_collisions"] == 5
-            results.append(shear(log, start=0.0, end=5.5))
+        log = log_of(GAS.format((velocities + common).tolist()))
+        assert log.counts["disc_collisions"] == 5
+        results.append(shear(log, start=0.0, end=5.5))
     rest, moving = results
     assert moving.temperatures == pytest.approx(rest.temperatures, rel=1e-9)
     assert moving.viscosities == pytest.approx(rest.viscosities, rel=1e-9)
@@ -81,13 +78,10 @@ def test_a_common_motion_changes_nothing_else(tmp_path, motion):
     assert moving.normal_stress.value == pytest.approx(rest.normal_stress.value, rel=1e-9)
 
 
-def test_slope_and_profile_of_a_flow_that_moves_with_the_gas(tmp_path):
+def test_slope_and_profile_of_a_flow_that_moves_with_the_gas():
     """The two discs, on their way up at ¾ in addition: at height h from the middle v - w t/2 = c + h/2."""
-    simulate(
-        parse_scene(SCENE.replace("0.25, 1]", "0.5, 1.75]").replace("0.25, -1]", "0, -0.25]")), tmp_path / "run.h5"
-    )
-    with open_log(tmp_path / "run.h5") as log:
-        found = shear(log, start=9.0, end=33.0)
+    log = log_of(SCENE.replace("0.25, 1]", "0.5, 1.75]").replace("0.25, -1]", "0, -0.25]"))
+    found = shear(log, start=9.0, end=33.0)
 
     def motion(time):
         h = np.remainder(np.multiply.outer([1.75, -0.25], time) + 2, 4) - 2
@@ -111,41 +105,36 @@ disc = [
 """
 
 
-def test_states_at_the_times_of_events_are_those_after_them(tmp_path):
+def test_states_at_the_times_of_events_are_those_after_them():
     """Also that of a disc that leaves through the bottom: it is at the top then, and as fast as discs are there."""
-    simulate(parse_scene(CROSSING), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        down = np.flatnonzero(rows.partner == -1 - SIDES.index("bottom"))
-        assert len(down) > 10
-        assert (rows.partner == -1 - SIDES.index("top")).sum() > 10
-        for k, i in enumerate(rows.disc):
-            state = log.state_at(rows.time[k])
-            assert np.array_equal(state.position[i], rows.position[k])
-            assert np.array_equal(state.velocity[i], rows.velocity[k])
-        edges = rows.time[down]
-        pieces = list(log.flights(edges, columns=("disc", "start", "position", "velocity")))
-        at = {(f.disc[k], f.start[k]): (*f.position[k], *f.velocity[k]) for f in pieces for k in range(len(f.disc))}
-        for k in down[:-1]:
-            assert at[rows.disc[k], rows.time[k]] == (*rows.position[k], *rows.velocity[k])
-        time = rows.time[down[3]]
-        now, later = (shear(log, start=start, end=25.0).temperatures for start in (time, time + 1e-9))
-        assert now == pytest.approx(later, rel=1e-6)
+    log = log_of(CROSSING)
+    (rows,) = log.chunks()
+    down = np.flatnonzero(rows.partner == -1 - SIDES.index("bottom"))
+    assert len(down) > 10
+    assert (rows.partner == -1 - SIDES.index("top")).sum() > 10
+    for k, i in enumerate(rows.disc):
+        state = log.state_at(rows.time[k])
+        assert np.array_equal(state.position[i], rows.position[k])
+        assert np.array_equal(state.velocity[i], rows.velocity[k])
+    edges = rows.time[down]
+    pieces = list(log.flights(edges, columns=("disc", "start", "position", "velocity")))
+    at = {(f.disc[k], f.start[k]): (*f.position[k], *f.velocity[k]) for f in pieces for k in range(len(f.disc))}
+    for k in down[:-1]:
+        assert at[rows.disc[k], rows.time[k]] == (*rows.position[k], *rows.velocity[k])
+    time = rows.time[down[3]]
+    now, later = (shear(log, start=start, end=25.0).temperatures for start in (time, time + 1e-9))
+    assert now == pytest.approx(later, rel=1e-6)
 
 
-def test_a_start_at_the_time_of_a_crossing(tmp_path):
+def test_a_start_at_the_time_of_a_crossing():
     """At t = 2 the images are above each other, and a disc has just left through the bottom: the motion goes on."""
-    simulate(parse_scene(CROSSING), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        (rows,) = log.chunks()
-        assert log.state_at(2.0).position[0, 1] == 8.0
-        text = continued_scene(log, 2.0, str(tmp_path / "run.h5"))
-    scene = parse_scene(text)
-    assert scene.given.position[0].tolist() == [4, 0]
-    assert scene.given.velocity[0].tolist() == [1, -3]  # 5 at the top
-    simulate(scene, tmp_path / "later.h5", force=True)
-    with open_log(tmp_path / "later.h5") as log:
-        (later,) = log.chunks()
+    log = log_of(CROSSING)
+    (rows,) = log.chunks()
+    assert log.state_at(2.0).position[0, 1] == 8.0
+    following = log_of(continued_scene(log, 2.0, str(log.path)))
+    assert following.scene.given.position[0].tolist() == [4, 0]
+    assert following.scene.given.velocity[0].tolist() == [1, -3]  # 5 at the top
+    (later,) = following.chunks()
     rows = rows._make(column if column is None else column[rows.time >= 2] for column in rows)
     assert later.partner[:20].tolist() == rows.partner[:20].tolist()
     assert later.time[:20] + 2 == pytest.approx(rows.time[:20], abs=1e-9)
@@ -160,13 +149,6 @@ def test_a_disc_that_is_given_beyond_sheared_sides_has_the_velocity_of_its_image
     box = {"size": (8.0, 8.0), "left": "periodic", "right": "periodic", "bottom": side, "top": side}
     scene = Scene(box=box, run={"until": 10.0}, discs=discs)
     assert (scene.given.position.tolist(), scene.given.velocity.tolist()) == ([[2, 6]], [[1, -3]])
-
-
-def test_there_is_none_without_sheared_sides(tmp_path):
-    plain = SCENE.replace(", bottom = { shear = 0.5 }, top = { shear = 0.5 }", "")
-    simulate(parse_scene(plain), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log, pytest.raises(NotApplicableError, match="requires sheared sides"):
-        shear(log)
 
 
 def test_integrals_along_a_flight():

@@ -4,14 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.logs import gas
 
 from idealgas import sound
 from idealgas.analysis.sound import _amplitudes, _wave, correlations
 from idealgas.analysis.theory.waves import Decay, Fluid, correlation, fit, sound_of_discs
-from idealgas.errors import UserError
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
 FLUID = Fluid(speed=2.8, damping=2.5, spreading=2.4, exponent=2.1)
 TIME = np.linspace(0.0, 40.0, 201)
@@ -59,64 +56,34 @@ def test_correlations_are_averages_over_the_starts_of_each_part():
             assert found[part, lag] == pytest.approx(np.mean(slow))
 
 
-GAS = """
-box = {{size = [10, 8], left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}
-species = [{species}]
-run.collisions_per_disc = 40
-"""
-ONE = '{name = "a", count = 20, radius = 0.5, temperature = 1}'
+GAS = gas(20, 0.5, (10, 8), "collisions_per_disc = 300", periodic="xy")
 
 
-def log_of(folder, species=ONE, x="periodic", y="periodic"):
-    simulate(parse_scene(GAS.format(species=species, x=x, y=y)), folder / "run.h5")
-    return open_log(folder / "run.h5")
+def test_amplitudes_are_sums_over_discs_and_errors_those_of_a_jackknife(log, monkeypatch):
+    """The jackknife error of a mean of parts is their standard deviation over √n."""
+    times = np.array([0.0, 0.3 * log.end_time, log.end_time])
+    places = np.array([state.position for state in log.frames(times)])
+    expected = np.exp(-2j * np.pi * places / log.box).sum(axis=1).T
+    assert _amplitudes(log, times, (0, 1), None) == pytest.approx(expected, abs=1e-9)
+    linear = lambda lag, found, guess, thermal: Decay(1.0, guess.k, Fluid(*found[:4]))  # noqa: E731
+    monkeypatch.setattr("idealgas.analysis.sound.fit", linear)
+    draw = np.random.default_rng(1).normal(size=(2, 1, 200))
+    wave = _wave(log, (0,), (Decay(1.0, 1.0, FLUID), None), np.arange(4.0), draw[0] + 1j * draw[1])
+    estimates = (wave.speed, wave.damping, wave.spreading, wave.exponent)
+    assert [estimate.value for estimate in estimates] == pytest.approx(wave.correlation)
+    assert [estimate.standard_error for estimate in estimates] == pytest.approx(wave.error, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("change", "complaint"),
-    [
-        ({"x": "reflecting", "y": "reflecting"}, "periodic sides"),
-        ({"species": ONE + ", " + ONE.replace('"a"', '"b"')}, "one species"),
-        ({}, "the shortest in which waves can be followed"),
-    ],
-    ids=["walls", "mixture", "short"],
-)
-def test_what_has_no_sound_is_refused(tmp_path, change, complaint):
-    with log_of(tmp_path, **change) as log, pytest.raises(UserError, match=complaint):
-        sound(log, start=0.0, end=2.0)
-
-
-def test_a_wave_in_a_small_box_is_said_to_be_no_wave_of_a_fluid(tmp_path):
-    scene = GAS.format(species=ONE, x="periodic", y="reflecting").replace("disc = 40", "disc = 1000")
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = sound(log, start=0.0)
+def test_a_wave_in_a_small_box_is_said_to_be_no_wave_of_a_fluid(make):
+    log = make("box.bottom=reflecting", "box.top=reflecting", "run.collisions_per_disc=1000")
+    found = sound(log, start=0.0)
     (wave,) = found.waves
     assert (wave.axes, wave.wavelength) == ("x", 10.0)
     assert any("mean free paths or diameters long" in sentence for sentence in found.caveats)
 
 
-def test_a_speed_that_is_hardly_known_is_said_to_be(tmp_path, monkeypatch):
-    scene = GAS.format(species=ONE, x="periodic", y="periodic").replace("disc = 40", "disc = 300")
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        part = max(wave.speed.standard_error / wave.speed.value for wave in sound(log, start=0.0).waves)
-        for rough, said in ((0.99, True), (1.01, False)):
-            monkeypatch.setattr("idealgas.analysis.sound.ROUGH", rough * part)
-            assert any("is known to" in sentence for sentence in sound(log, start=0.0).caveats) == said
-
-
-def test_amplitudes_are_sums_over_discs_and_errors_those_of_a_jackknife(tmp_path, monkeypatch):
-    """The jackknife error of a mean of parts is their standard deviation over √n."""
-    with log_of(tmp_path) as log:
-        times = np.array([0.0, 0.3 * log.end_time, log.end_time])
-        places = np.array([state.position for state in log.frames(times)])
-        expected = np.exp(-2j * np.pi * places / log.box).sum(axis=1).T
-        assert _amplitudes(log, times, (0, 1), None) == pytest.approx(expected, abs=1e-9)
-        linear = lambda lag, found, guess, thermal: Decay(1.0, guess.k, Fluid(*found[:4]))  # noqa: E731
-        monkeypatch.setattr("idealgas.analysis.sound.fit", linear)
-        draw = np.random.default_rng(1).normal(size=(2, 1, 200))
-        wave = _wave(log, (0,), (Decay(1.0, 1.0, FLUID), None), np.arange(4.0), draw[0] + 1j * draw[1])
-    estimates = (wave.speed, wave.damping, wave.spreading, wave.exponent)
-    assert [estimate.value for estimate in estimates] == pytest.approx(wave.correlation)
-    assert [estimate.standard_error for estimate in estimates] == pytest.approx(wave.error, rel=1e-9)
+def test_a_speed_that_is_hardly_known_is_said_to_be(log, monkeypatch):
+    part = max(wave.speed.standard_error / wave.speed.value for wave in sound(log, start=0.0).waves)
+    for rough, said in ((0.99, True), (1.01, False)):
+        monkeypatch.setattr("idealgas.analysis.sound.ROUGH", rough * part)
+        assert any("is known to" in sentence for sentence in sound(log, start=0.0).caveats) == said

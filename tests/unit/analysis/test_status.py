@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas
 
 from idealgas.analysis import status as module
 from idealgas.analysis.pressure.measure import PAIRS, pressure
@@ -36,15 +37,11 @@ def test_of_many_rows_the_first_after_a_checkpoint_are_read(lanes, monkeypatch):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_the_pressure_is_that_of_the_virial_of_pairs(make):
-    log = make("run.until=6")
+def test_the_pressure_is_that_of_the_virial_of_pairs(log):
     found = status(log)
     (route,) = (route for route in pressure(log, log.start_time, log.end_time).routes if route.name == PAIRS)
     assert (found.pressure, found.compressibility_factor) == (route.pressure, route.compressibility_factor)
     assert found.compressibility_factor.theory > 1
 
 
-GAS = """
-box.size = [6, 6]
-species = [{ name = "gas", count = 12, radius = 0.5, temperature = 1 }]
-"""
+GAS = gas(12, 0.5, (6, 6), "until = 6")

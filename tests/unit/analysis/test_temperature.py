@@ -1,10 +1,9 @@
 """Temperatures of every direction and species, of discs whose energies are known, and equipartition between them."""
 
 import pytest
+from helpers.logs import log_of
 
-from idealgas import parse_scene, simulate
 from idealgas.analysis.temperature import temperature
-from idealgas.log import open_log
 
 pytestmark = pytest.mark.interpreted
 
@@ -27,23 +26,22 @@ def test_energies_of_two_discs(lanes):
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_species_has_the_mean_of_its_discs(tmp_path):
+def test_a_species_has_the_mean_of_its_discs():
     """Two discs of one species and one of another in three lanes: 1 and 4 along x, and 9."""
     rows = (("a", 2, 1), ("a", 6, 2), ("b", 10, 3))
     discs = ", ".join(
         f'{{ position = [5, {y}], velocity = [{v}, 0], radius = 0.5, species = "{name}" }}' for name, y, v in rows
     )
     walls = "wall = [{ from = [0, 4], to = [10, 4] }, { from = [0, 8], to = [10, 8] }]"
-    simulate(parse_scene(f"box.size = [10, 12]\nrun.until = 100\n{walls}\ndisc = [{discs}]\n"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = temperature(log, start=0.0)
+    log = log_of(f"box.size = [10, 12]\nrun.until = 100\n{walls}\ndisc = [{discs}]\n")
+    found = temperature(log, start=0.0)
     assert [entry.number for entry in found.species] == [2, 1, 3]
     for entry, along in zip(found.species, (2.5, 9.0, 14 / 3), strict=True):
         assert values(entry) == pytest.approx([along, 0.0, along / 2], rel=1e-12)
 
 
 @pytest.mark.usefixtures("uncompiled")
-def test_a_conserved_momentum_takes_its_part(tmp_path):
+def test_a_conserved_momentum_takes_its_part():
     """Along x the centre of mass, with 1/3, keeps E_x = 3/2 · 1/9: T = 2 (3 - 1/6)/3, and along x T (1 - m/M).
 
     Masses 1 and 2 at (-1, 1) and (1, 1) turn round at the upper and lower side and do not meet.
@@ -56,9 +54,8 @@ def test_a_conserved_momentum_takes_its_part(tmp_path):
             { position = [2, 2.5], velocity = [1, 1], radius = 0.5, mass = 2, species = "heavy" },
         ]
     """
-    simulate(parse_scene(text), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = temperature(log, start=0.0, end=4.0)
+    log = log_of(text)
+    found = temperature(log, start=0.0, end=4.0)
     t = 2 * (3 - 1 / 6) / 3
     light, heavy, _ = found.species
     assert found.law == f"T = {t:.6g} (2E/D with D = 3), T(1 - m/M) along x"

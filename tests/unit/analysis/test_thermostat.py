@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers.logs import gas
 
 from idealgas import evolution, histogram
 from idealgas.analysis.core.flights import Moments
@@ -9,24 +10,17 @@ from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import WallImpulses
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.transport.measure import transport
 from idealgas.columns import BATH, Kind
-from idealgas.errors import NotApplicableError
 
-GAS = """
-scene.seed = 3
-box.size = [8, 6]
-log.pressure = true
-run.until = 60
-species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
-thermostat = { temperature = 2, rate = 0.5 }
-"""
+GAS = gas(
+    40, 0.1, (8, 6), "until = 60", temperature=1.5, seed=3,
+    then="log.pressure = true\nthermostat = { temperature = 2, rate = 0.5 }",
+)  # fmt: skip
 
 
 @pytest.mark.slow
-def test_thermostat_collisions_hit_no_wall(make):
+def test_thermostat_collisions_hit_no_wall(log):
     """Sums over the rows of walls alone, and over the samples of a run that counts as it goes."""
-    log = make()
     edges = np.array([0.0, log.end_time])
     moments, impacts, walls = Moments(), Impacts(), WallImpulses(log)
     stream(log, edges, [moments, impacts, walls])
@@ -46,14 +40,13 @@ def test_thermostat_collisions_hit_no_wall(make):
     assert walls.faces[0, :, :, 0].sum(axis=1) == pytest.approx(push, rel=1e-9)
 
 
-def test_the_pressure_is_that_of_the_bath(make):
-    found = pressure(make())
+def test_the_pressure_is_that_of_the_bath(log):
+    found = pressure(log)
     assert found.temperature == 2
     assert found.check().agrees
 
 
-def test_the_energy_that_thermostat_collisions_give_is_on_the_account(make):
-    log = make()
+def test_the_energy_that_thermostat_collisions_give_is_on_the_account(log):
     found = evolution(log)
     assert np.abs(found.balance).max() < 1e-12
     assert found.given.keys() == {"the heat bath"}
@@ -70,11 +63,8 @@ def test_the_energy_that_thermostat_collisions_give_is_on_the_account(make):
 
 
 @pytest.mark.slow
-def test_what_has_no_law(make):
-    log = make()
+def test_what_has_no_law(make, log):
     assert histogram(log).no_law is None
     assert histogram(log, "free-path").no_law == "a heat bath changes velocities in flight"
-    with pytest.raises(NotApplicableError, match="thermostat"):
-        transport(log)
     two = make("box.left={ thermal = 1 }")
     assert histogram(two).no_law == "walls and heat bath have 2 temperatures"

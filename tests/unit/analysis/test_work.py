@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers.logs import gas, log_of, species
 from helpers.support import ROOT
 
 import idealgas
-from idealgas import load_scene, open_log, simulate
+from idealgas import load_scene, simulate
 from idealgas.analysis.registry import find
 from idealgas.analysis.theory.free_energy import log_configurations
 from idealgas.analysis.theory.two_discs import configurations
@@ -16,12 +17,18 @@ from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.work import _pairs
 from idealgas.analysis.work.processes import crossings, process
 from idealgas.columns import Kind
-from idealgas.errors import NotApplicableError, UserError
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
 SCENE = ROOT / "configs" / "work.toml"
-BOX = "box.size = [4, 3]\nrun.until = 1\nspecies = [{{ name = 'gas', count = {}, radius = {}, temperature = 1 }}]"
+
+
+def discs(number, radius):
+    return gas(number, radius, (4, 3), "until = 1")
+
+
+def configurations_of(text, sides=(4.0, 3.0)):
+    return log_configurations(make_gas(parse_scene(text)), sides, (False, False))
 
 
 def test_room_of_two_discs():
@@ -36,7 +43,7 @@ def test_room_of_two_discs():
 @pytest.mark.parametrize(("number", "radius"), [(1, 0.5), (2, 0.4), (3, 0.2), (5, 0.1)])
 def test_free_energy_against_random_configurations(number, radius):
     """Fraction of 200 000 random configurations without overlap, k = 4."""
-    found = log_configurations(make_gas(parse_scene(BOX.format(number, radius))), (4.0, 3.0), (False, False))
+    found = configurations_of(discs(number, radius))
     places = np.random.default_rng(1).random((200_000, number, 2)) * (4 - 2 * radius, 3 - 2 * radius)
     i, j = np.triu_indices(number, 1)
     share = (((places[:, i] - places[:, j]) ** 2).sum(axis=2) > 4 * radius**2).all(axis=1).mean()
@@ -48,19 +55,13 @@ def test_free_energy_against_random_configurations(number, radius):
 
 def test_species_of_one_radius_are_equal_discs():
     """Two species of two discs each have the configurations of four discs of one."""
-    both = (
-        "species = [{ name = 'a', count = 2, radius = 0.3, temperature = 1 }, "
-        "{ name = 'b', count = 2, radius = 0.3, temperature = 1 }]"
-    )
-    rooms = (4.0, 3.0), (False, False)
-    mixed = log_configurations(make_gas(parse_scene(f"box.size = [4, 3]\nrun.until = 1\n{both}")), *rooms)
-    assert mixed == log_configurations(make_gas(parse_scene(BOX.format(4, 0.3))), *rooms)
+    second = species("b", 2, 0.3)
+    assert configurations_of(discs(2, 0.3) + second) == configurations_of(discs(4, 0.3))
 
 
 def test_discs_that_do_not_fit():
-    gas = make_gas(parse_scene(BOX.format(2, 0.5)))
-    assert log_configurations(gas, (0.9, 3.0), (False, False)) is None
-    assert log_configurations(gas, (1.5, 1.5), (False, False)) is None
+    assert configurations_of(discs(2, 0.5), (0.9, 3.0)) is None
+    assert configurations_of(discs(2, 0.5), (1.5, 1.5)) is None
 
 
 def strokes(draw, number, spread=1.0, free=0.7, temperature=2.0):
@@ -100,11 +101,8 @@ def test_strokes_without_work_are_a_value_of_their_own():
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
-    path = tmp_path_factory.mktemp("work") / "run.h5"
-    simulate(load_scene(SCENE), path)
-    with open_log(path) as log:
-        yield log
+def log():
+    return log_of("work")
 
 
 def test_strokes_of_a_log(log):
@@ -148,24 +146,6 @@ def test_theory_of_the_shipped_scene(log):
     inwards, outwards = (one.free_energy for one in idealgas.work(log).processes)
     assert inwards.theory == pytest.approx(math.log(room(4, 3) / room(3, 3)), rel=1e-12)
     assert outwards.theory == -inwards.theory
-
-
-@pytest.mark.parametrize(
-    ("overrides", "error", "why"),
-    [
-        (("piston.velocity=[[0, -0.01], [25, 0]]",), UserError, "no stroke of the piston after a rest"),
-        pytest.param(
-            ("thermostat=",), NotApplicableError, "requires one piston, of given velocities", marks=pytest.mark.slow
-        ),
-        pytest.param(
-            ("restitution.normal=0.9",), NotApplicableError, "has no answer for a gas", marks=pytest.mark.slow
-        ),
-    ],
-)
-def test_other_gases_are_refused(overrides, error, why, tmp_path):
-    simulate(load_scene(SCENE, [*overrides, "run.until=30"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log, pytest.raises(error, match=why):
-        idealgas.work(log)
 
 
 @pytest.mark.long

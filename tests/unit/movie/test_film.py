@@ -8,12 +8,12 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, log_of, raised
 from matplotlib.figure import Figure
 from PIL import Image
 
-from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
-from idealgas.log import LogState, open_log
+from idealgas.log import LogState
 from idealgas.movie import film
 from idealgas.movie.film import animate
 from idealgas.movie.gif import GifWriter
@@ -22,7 +22,6 @@ from idealgas.movie.painter import Painter
 from idealgas.movie.panels import DensityPanel, SidesPanel
 from idealgas.movie.piston_track import PistonTrack
 from idealgas.report.player import player
-from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 
 SIZE = (960, 540)
@@ -30,22 +29,19 @@ STATE = LogState(2.5, np.array([[2.0, 7.0], [8.0, 1.0]]), np.array([[1.0, 0.0], 
 WHITE = 250
 
 
+TEXT = """
+scene.title = "two"
+box.size = [10, 10]
+run.until = 20
+disc = [
+    { position = [2, 7], velocity = [1, 0], radius = 0.5 },
+    { position = [8, 1], velocity = [0, 1], radius = 0.01 },
+]
+"""
+
+
 def scene(extra=""):
-    return parse_scene(f"""
-        scene.title = "two"
-        box.size = [10, 10]
-        [[disc]]
-        position = [2, 7]
-        velocity = [1, 0]
-        radius = 0.5
-        [[disc]]
-        position = [8, 1]
-        velocity = [0, 1]
-        radius = 0.01
-        [run]
-        until = 20
-        {extra}
-    """)
+    return parse_scene(TEXT + extra)
 
 
 def paint(extra="", state=STATE, pistons=(), by_species=False, size=SIZE):
@@ -85,6 +81,7 @@ def test_the_room_beyond_a_piston_is_shown_in_part():
 
 def test_discs_are_where_they_are():
     _, at = paint()
+    assert at(8, 1).min() < 200  # the smallest disc is seen
     assert at(2, 7).max() < WHITE
     assert at(2.45, 7).max() < WHITE
     assert at(2, 6.55).max() < WHITE
@@ -92,17 +89,9 @@ def test_discs_are_where_they_are():
     assert at(5, 5).min() > WHITE
 
 
-def test_the_smallest_disc_is_seen():
-    _, at = paint()
-    assert at(8, 1).min() < 200
-
-
 def test_discs_at_joined_sides_show_their_other_half():
     state = STATE._replace(position=np.array([[0.1, 9.9], [5.0, 5.0]]))
-    periodic = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
-    made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
-        f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.5\n" for x in (2, 8)
-    ))  # fmt: skip
+    made = parse_scene(TEXT, overrides=(*PERIODIC, "disc.1.radius=0.5"))
     painter = Painter(made, make_gas(made), (), 1.0, size=SIZE)
     frame = painter.paint(state)[..., :3]
     place = layout(SIZE, (10.0, 10.0))
@@ -186,19 +175,16 @@ def test_a_gif_gives_its_frames_back(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def path(tmp_path_factory):
-    made = tmp_path_factory.mktemp("film") / "run.h5"
-    simulate(scene(), made)
-    return made
+def log():
+    return log_of(TEXT)
 
 
-def test_instants_are_even_and_in_the_window(path, tmp_path, monkeypatch):
+def test_instants_are_even_and_in_the_window(log, tmp_path, monkeypatch):
     seen = []
     paint = Painter.paint
     monkeypatch.setattr(Painter, "paint", lambda self, state: seen.append(state) or paint(self, state))
-    with open_log(path) as log:
-        made = animate(log, tmp_path / "film.gif", start=3.0, end=5.0, fps=20, speed=2.0, size=(321, 240))
-        expected = [log.state_at(state.time).position for state in seen]
+    made = animate(log, tmp_path / "film.gif", start=3.0, end=5.0, fps=20, speed=2.0, size=(321, 240))
+    expected = [log.state_at(state.time).position for state in seen]
     times = [state.time for state in seen]
     assert np.allclose(times, 3 + 0.1 * np.arange(21), rtol=0, atol=1e-12)
     assert np.array_equal([state.position for state in seen], expected)
@@ -207,18 +193,16 @@ def test_instants_are_even_and_in_the_window(path, tmp_path, monkeypatch):
         assert (image.n_frames, image.size) == (21, (320, 240))
 
 
-def test_without_an_end_it_is_twenty_seconds_of_film(path, tmp_path):
-    with open_log(path) as log:
-        made = animate(log, tmp_path / "film.gif", fps=2, speed=0.5, size=(240, 240))
+def test_without_an_end_it_is_twenty_seconds_of_film(log, tmp_path):
+    made = animate(log, tmp_path / "film.gif", fps=2, speed=0.5, size=(240, 240))
     assert made.end == 10.0
     assert made.frames == 41
 
 
 @pytest.mark.needs("ffmpeg")
 @pytest.mark.slow
-def test_a_video_has_all_frames(path, tmp_path):
-    with open_log(path) as log:
-        made = animate(log, tmp_path / "film.mp4", end=2.0, fps=25, speed=1.0, size=(321, 240))
+def test_a_video_has_all_frames(log, tmp_path):
+    made = animate(log, tmp_path / "film.mp4", end=2.0, fps=25, speed=1.0, size=(321, 240))
     probe = ("ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", str(made.path))
     (stream,) = json.loads(subprocess.run(probe, capture_output=True, check=True).stdout)["streams"]
     assert (stream["width"], stream["height"], stream["codec_name"]) == (320, 240, "h264")
@@ -275,18 +259,14 @@ def test_the_panel_counts_the_discs_on_the_right():
 
 
 @pytest.mark.parametrize(("y", "compared"), [(5.0, ["Maxwell-Boltzmann"]), (8.0, [])])
-def test_speeds_of_discs_that_never_meet_are_not_compared_with_maxwell_boltzmann(tmp_path, y, compared):
+def test_speeds_of_discs_that_never_meet_are_not_compared_with_maxwell_boltzmann(y, compared):
     """As in the report: two discs that fly towards each other, at one height or at two."""
-    discs = "".join(
-        f"[[disc]]\nposition = [{x}, {height}]\nvelocity = [{v}, 0]\nradius = 0.5\n"
-        for x, height, v in ((2, 5, 1), (8, y, -1))
-    )
-    simulate(parse_scene(f"box.size = [10, 10]\nrun.until = 10\n{discs}"), tmp_path / "two.h5")
-    with open_log(tmp_path / "two.h5") as log:
-        painter = film._painter(log, 1.0, (0.0, 10.0), [], {})
-        painter.paint(log.state_at(9.0))
-        assert [handle.get_label() for handle in painter._panel.handles] == compared
-        assert player(log).head["mixes"] == bool(compared)
+    discs = (f"{{position=[{x}, {at}], velocity=[{v}, 0], radius=0.5}}" for x, at, v in ((2, 5, 1), (8, y, -1)))
+    log = log_of(TEXT, "run.until=10", f"disc=[{', '.join(discs)}]")
+    painter = film._painter(log, 1.0, (0.0, 10.0), [], {})
+    painter.paint(log.state_at(9.0))
+    assert [handle.get_label() for handle in painter._panel.handles] == compared
+    assert player(log).head["mixes"] == bool(compared)
 
 
 def test_the_density_is_that_of_the_strips():
@@ -301,41 +281,34 @@ def test_the_density_is_that_of_the_strips():
 
 
 def test_a_trail_is_a_line_between_the_frames_with_gaps_at_joined_sides():
-    periodic = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right"))
-    made = parse_scene(periodic + "box.size = [10, 10]\nrun.until = 1\n" + "".join(
-        f"[[disc]]\nposition = [{x}, 5]\nvelocity = [1, 0]\nradius = 0.1\n" for x in (2, 8)
-    ))  # fmt: skip
+    made = parse_scene(TEXT, overrides=(*PERIODIC[:2], "disc.0.radius=0.1", "disc.1.radius=0.1"))
     painter, place = Painter(made, make_gas(made), (), 1.0, size=SIZE, trails=[1]), layout(SIZE, (10.0, 10.0))
     for x in (6.0, 9.0, 1.0, 3.0):
         frame = painter.paint(STATE._replace(position=np.array([[5.0, 9.0], [x, 4.0]])))[..., :3]
     at = lambda x, y: frame[round(540 - place.box[1] - y * place.scale), round(place.box[0] + x * place.scale)].max()  # noqa: E731
     assert [bool(at(x, 4.0) < 200) for x in (7.5, 2.0, 5.0, 9.6)] == [True, True, False, False]
-    with pytest.raises(UserError, match=r"^trail: no disc 2 \(allowed 0 to 1\)$"):
-        Painter(made, make_gas(made), (), 1.0, trails=[0, 2])
+    raised(r"^trail: no disc 2 \(allowed 0 to 1\)$", Painter, made, make_gas(made), (), 1.0, trails=[0, 2])
 
 
-def test_a_video_that_fails_says_why_and_leaves_nothing(path, tmp_path, monkeypatch):
+def test_a_video_that_fails_says_why_and_leaves_nothing(log, tmp_path, monkeypatch):
     program = tmp_path / "bin" / "ffmpeg"
     program.parent.mkdir()
     program.write_text("#!/bin/sh\necho first >&2\necho 'no such codec' >&2\nexit 3\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", str(program.parent) + os.pathsep + os.environ["PATH"])
-    with open_log(path) as log, pytest.raises(UserError, match=r"^ffmpeg: no such codec$") as caught:
-        animate(log, tmp_path / "film.mp4", end=2.0, size=(240, 240))
-    assert caught.value.exit_code == 1
+    raised(r"^ffmpeg: no such codec$", animate, log, tmp_path / "film.mp4", end=2.0, size=(240, 240), code=1)
     assert [entry.name for entry in tmp_path.iterdir()] == ["bin"]
 
 
-def test_an_old_film_survives_a_failure(path, tmp_path, monkeypatch):
+def test_an_old_film_survives_a_failure(log, tmp_path, monkeypatch):
     (tmp_path / "film.gif").write_bytes(b"GIF89a old")
 
     def fail(self, frame):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(GifWriter, "write", fail)
-    with open_log(path) as log, pytest.raises(UserError, match="cannot be written: No space left") as caught:
-        animate(log, tmp_path / "film.gif", end=2.0, size=(240, 240), force=True)
-    assert caught.value.exit_code == 1
+    film = {"output": tmp_path / "film.gif", "end": 2.0, "size": (240, 240), "force": True}
+    raised("cannot be written: No space left", animate, log, code=1, **film)
     assert [(entry.name, entry.read_bytes()) for entry in tmp_path.iterdir()] == [("film.gif", b"GIF89a old")]
 
 
@@ -343,13 +316,8 @@ def test_speeds_are_relative_to_a_conserved_motion_of_the_gas():
     """The picture of the speeds is that of the same gas at rest as a whole."""
 
     def speeds(flow):
-        sides = "".join(f'box.{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
         velocities = [[flow + v, 0.0] for v in (1, -1)]
-        discs = "".join(
-            f"[[disc]]\nposition = [{2 + 6 * k}, 5]\nvelocity = {velocity}\nradius = 0.5\n"
-            for k, velocity in enumerate(velocities)
-        )
-        made = parse_scene(f"{sides}box.size = [10, 10]\nrun.until = 1\n{discs}")
+        made = parse_scene(TEXT, overrides=(*PERIODIC, *(f"disc.{k}.velocity={v}" for k, v in enumerate(velocities))))
         frame = Painter(made, make_gas(made), (), 1.0, size=SIZE).paint(STATE._replace(velocity=np.array(velocities)))
         x, y, width, height = (round(v) for v in layout(SIZE, (10.0, 10.0)).panel)
         return frame[SIZE[1] - y - height + 4 : SIZE[1] - y - 4, x + 4 : x + width - 4].copy()

@@ -4,11 +4,9 @@ import base64
 
 import numpy as np
 import pytest
+from helpers.logs import log_of
 
-from idealgas.log import open_log
 from idealgas.report.player import ACCURACY, LEAP, TICKS, player
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
 pytestmark = pytest.mark.interpreted
 
@@ -27,11 +25,10 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_discs_fly_to_the_places_in_the_log(tmp_path, name):
-    simulate(parse_scene(SCENES[name] + GAS), tmp_path / "gas.h5")
-    with open_log(tmp_path / "gas.h5") as log:
-        played, events = player(log), next(log.chunks())
-        start, box = log.state_at(0.0), log.box
+def test_discs_fly_to_the_places_in_the_log(name):
+    log = log_of(SCENES[name] + GAS)
+    played, events = player(log), next(log.chunks())
+    start, box = log.state_at(0.0), log.box
 
     def column(key, kind):
         return np.frombuffer(base64.b64decode(played.arrays[key]), kind)

@@ -37,34 +37,31 @@ def test_error_of_long_series(name):
     assert own < 0.4
 
 
-@pytest.mark.parametrize("length", [40, 150])
+@pytest.mark.parametrize(("length", "last"), [(40, None), (150, None), (250, 25)], ids=["40", "150", "a tenth of 250"])
 @pytest.mark.parametrize("name", PROCESSES)
-def test_intervals_of_short_series_hold(name, length):
+def test_intervals_of_short_series_hold(name, length, last):
     rng = np.random.default_rng(2)
     held = 0
     for _ in range(300):
         series = series_of(PROCESSES[name][0], length, rng)
-        error, samples = autoregression.error_of_mean(series)
-        held += abs(series.mean()) < stats.t.ppf(0.975, samples - 1) * error
+        error, samples = autoregression.error_of_mean(series, last) if last else autoregression.error_of_mean(series)
+        held += abs(series[-(last or length) :].mean()) < stats.t.ppf(0.975, samples - 1) * error
     assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
 
 
-@pytest.mark.parametrize("name", PROCESSES)
-def test_intervals_of_a_tenth_of_a_series_hold(name):
-    rng = np.random.default_rng(4)
-    held = 0
-    for _ in range(300):
-        series = series_of(PROCESSES[name][0], 250, rng)
-        error, samples = autoregression.error_of_mean(series, 25)
-        held += abs(series[-25:].mean()) < stats.t.ppf(0.975, samples - 1) * error
-    assert 0.90 <= held / 300 <= 0.99  # 95 ± 4 standard errors of 1.26
-
-
-def test_a_series_whose_squares_are_zero_has_no_error():
+def test_short_and_constant_series():
+    """And one whose squares are zero in double precision, which has no error."""
     tiny = 1e-302 * np.random.default_rng(5).normal(size=300)
     assert autoregression.is_constant(tiny)
     assert math.isnan(autoregression.error_of_mean(tiny).error)
     assert autoregression.error_of_mean(np.full(300, 1e-302)) == (0.0, 300.0)
+    assert math.isnan(autoregression.error_of_mean(np.array([1.0])).error)
+    assert autoregression.error_of_mean(np.full(9, 3.7)) == (0.0, 9)
+    assert autoregression.error_of_mean(np.array([1.0, 3.0])) == (pytest.approx(1.0), pytest.approx(2.0))
+    assert autoregression.inefficiency(np.full(50, 2.5)) == 1.0
+    assert autoregression.inefficiency(np.arange(3.0)) == 1.0
+    frozen = np.tile(np.random.default_rng(7).normal(size=8), (40, 1))
+    assert autoregression.inefficiency(frozen) == 40.0
 
 
 def test_variance_of_mean_sums_all_covariances():
@@ -98,13 +95,6 @@ def test_numpy_and_compiled_functions_have_the_same_numbers(monkeypatch, length,
     assert processes[0] == processes[1]
 
 
-def test_short_and_constant_series():
-    assert np.isnan(autoregression.error_of_mean(np.array([1.0])).error)
-    assert autoregression.error_of_mean(np.full(9, 3.7)) == (0.0, 9)
-    two = autoregression.error_of_mean(np.array([1.0, 3.0]))
-    assert two == (pytest.approx(1.0), pytest.approx(2.0))
-
-
 @pytest.mark.parametrize(("memory", "expected"), [(0.0, 1.0), (0.5, 3.0), (0.9, 19.0)])
 def test_inefficiency_of_a_known_process(memory, expected):
     rng = np.random.default_rng(5)
@@ -127,13 +117,6 @@ def test_inefficiency_counts_no_swing_back():
     first = 1 + 2 * np.cos(0.4 * np.arange(1, 4)).sum()
     assert autoregression.inefficiency(swings) == pytest.approx(first, rel=0.05)
     assert autoregression.inefficiency(series_of([-0.6], 500, rng)) == 1.0
-
-
-def test_inefficiency_of_constant_and_short_series():
-    assert autoregression.inefficiency(np.full(50, 2.5)) == 1.0
-    assert autoregression.inefficiency(np.arange(3.0)) == 1.0
-    frozen = np.tile(np.random.default_rng(7).normal(size=8), (40, 1))
-    assert autoregression.inefficiency(frozen) == 40.0
 
 
 @pytest.mark.parametrize("scale", [1e-120, 1e176, 1e300])

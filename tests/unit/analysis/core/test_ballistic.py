@@ -2,19 +2,13 @@
 
 import numpy as np
 import pytest
+from helpers.logs import gas, streamed
 from scipy.integrate import quad
 
 from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, VelocityHistogram
 from idealgas.analysis.core.intervals import FreeFlights
-from idealgas.analysis.core.stream import stream
 
-GAS = """
-scene.seed = 3
-box.size = [6, 5]
-run.events = 200
-gravity.acceleration = [0.3, -0.7]
-species = [{name = "gas", count = 9, radius = 0.3, mass = 2.0, temperature = 1.0}]
-"""
+GAS = gas(9, 0.3, (6, 5), "events = 200", mass=2.0, seed=3, then="gravity.acceleration = [0.3, -0.7]")
 
 VALUES = {
     "speed": lambda v: np.hypot(*v.T),
@@ -31,8 +25,9 @@ def test_time_in_each_bin_of_falling_discs(quantity, gravity, make):
     log = make(f"gravity.acceleration={gravity}")
     edges = np.linspace(0.2, 0.8, 4) * log.end_time
     low, high = (-3.0, 3.0) if quantity in ("vx", "vy") else (0.0, 3.0)
-    tally = VelocityHistogram(quantity, np.array([low]), np.array([high]), 10, np.array([2, 5]), log.gravity)
-    stream(log, edges, [tally])
+    tally = streamed(
+        log, edges, VelocityHistogram(quantity, np.array([low]), np.array([high]), 10, np.array([2, 5]), log.gravity)
+    )
     steps = 4000
     for block in range(3):
         width = edges[block + 1] - edges[block]
@@ -51,8 +46,7 @@ def test_time_in_each_bin_of_falling_discs(quantity, gravity, make):
 def test_free_paths_of_falling_discs_are_arcs(make):
     log = make()
     edges = np.array([0.0, log.end_time])
-    tally = FreeFlights(True, np.array([10.0]), 5, 1, 10_000)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, FreeFlights(True, np.array([10.0]), 5, 1, 10_000))
     g, arcs = np.array(log.gravity), []
     start = log.state_at(0.0)
     last = {disc: (0.0, start.velocity[disc], 0.0, False) for disc in range(9)}

@@ -5,10 +5,10 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas, raised
 
 from idealgas.analysis.core import bond_order as module
 from idealgas.analysis.core.bond_order import bond_order
-from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
@@ -93,15 +93,11 @@ def test_order_does_not_depend_on_where_the_box_is_cut():
 
 def test_100_states_of_a_fluid_have_no_common_direction():
     """√N |⟨ψ₆⟩| is below 4 where directions are independent: their sum is a walk of N steps of less than 1."""
-    scene = (
-        "box={size=[1,1],left='periodic',right='periodic',bottom='periodic',top='periodic'}\nrun.until=1\n"
-        "species=[{name='gas',count=400,radius=0.01545096808,temperature=1}]\nscene.seed="
-    )
     found = []
     for seed in range(100):
-        gas = make_gas(parse_scene(f"scene.seed={seed}\n" + scene.rpartition("scene.seed=")[0]))
-        found.append(20 * abs(bond_order(gas.position, gas.box, (True, True)).value.mean()))
-    assert gas.packing_fraction == pytest.approx(0.3, abs=1e-6)
+        made = make_gas(parse_scene(gas(400, 0.01545096808, (1, 1), "until = 1", periodic="xy", seed=seed)))
+        found.append(20 * abs(bond_order(made.position, made.box, (True, True)).value.mean()))
+    assert made.packing_fraction == pytest.approx(0.3, abs=1e-6)
     assert np.mean(found) < 4
     assert np.mean(found) > 0.3  # and they have an order, each of its own
 
@@ -116,13 +112,8 @@ def test_an_uneven_gas_needs_no_images(monkeypatch):
     assert points == [1004]
 
 
-def test_discs_at_one_place_are_refused():
-    with pytest.raises(UserError, match="same position"):
-        bond_order(np.full((3, 2), math.nan), (1, 1), (True, True))
-
-
-def test_discs_outside_the_box_are_refused():
+def test_discs_at_one_place_or_outside_the_box_are_refused():
+    raised("same position", bond_order, np.full((3, 2), math.nan), (1, 1), (True, True))
     inside = np.random.default_rng(1).random((20, 2))
     for beyond in ((0.5, 3.0), (-0.2, 0.5)):
-        with pytest.raises(UserError, match="outside the box"):
-            bond_order(np.vstack((inside, beyond)), (1, 1), (False, False))
+        raised("outside the box", bond_order, np.vstack((inside, beyond)), (1, 1), (False, False))

@@ -1,18 +1,14 @@
 """Chambers of a divided box, against areas and lengths by hand."""
 
 import pytest
+from helpers.logs import gas
 
 from idealgas.analysis.core.chambers import Chambers
 from idealgas.columns import SIDES
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
 
-GAS = """
-scene.seed = 3
-box.size = [8, 6]
-run.until = 1
-species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1, region = [0, 0, 3, 6] }]
-"""
+GAS = gas(30, 0.1, (8, 6), "until = 1", seed=3, region=[0, 0, 3, 6])
 LEFT, BOTTOM = SIDES.index("left"), SIDES.index("bottom")
 ROW = "wall=[{ from = [3, 0], to = [3, 2] }, { from = [3, 6], to = [3, 2], opens_at = 5, closes_at = 9 }]"
 

@@ -2,31 +2,22 @@
 
 import numpy as np
 import pytest
+from helpers.logs import gas, species
 
-from idealgas import open_log, parse_scene, pressure, simulate
+from idealgas import pressure
 
-SCENE = """
-scene.seed = 1
-box.size = [10, 10]
-species = [
-    { name = "grain", count = 2, radius = 0.5, mass = 20, temperature = 1 },
-    { name = "gas", count = 50, radius = 0.1, temperature = 1 },
-]
-run.until = 200
-"""
+GAS = gas(50, 0.1, (10, 10), "until = 200", seed=1).replace(
+    "[[species]]", f"{species('grain', 2, 0.5, mass=20)}\n[[species]]"
+)
 
 
-def test_few_collisions_are_few_samples(tmp_path):
+def test_few_collisions_are_few_samples(log):
     """An error from n events is known no better than from n samples."""
-    simulate(parse_scene(SCENE), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = pressure(log)
-        duration = found.window.duration
-        inside = np.concatenate([b.time > found.window.start for b in log.chunks()])
-        disc, partner = (
-            np.concatenate([getattr(b, name) for b in log.chunks()])[inside] for name in ("disc", "partner")
-        )
-        (rate,) = [r.rate for r in found.collision_rates if r.species == r.other == "grain"]
+    found = pressure(log)
+    duration = found.window.duration
+    inside = np.concatenate([b.time > found.window.start for b in log.chunks()])
+    disc, partner = (np.concatenate([getattr(b, name) for b in log.chunks()])[inside] for name in ("disc", "partner"))
+    (rate,) = [r.rate for r in found.collision_rates if r.species == r.other == "grain"]
     events = ((disc < 2) & (partner >= 0) & (partner < 2)).sum() / 2
     assert 1 < events < 20
     assert rate.independent_samples <= events

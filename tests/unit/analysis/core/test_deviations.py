@@ -1,11 +1,10 @@
 """Derivatives of the final state against differences of runs with 32 digits."""
 
 import numpy as np
-import pytest
+from helpers.logs import PERIODIC, log_of, raised
 
 import idealgas
 from idealgas import open_log, simulate
-from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 
 GAS = """
@@ -13,7 +12,6 @@ box.size = [6, 6]
 run = { method = "brute_force", precision = "double-double", until = 6 }
 species = [{ name = "gas", count = 6, radius = 0.5, temperature = 1 }]
 """
-PERIODIC = tuple(f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top"))
 
 
 def final(scene, path):
@@ -43,13 +41,11 @@ def test_derivatives_of_a_run(tmp_path):
         assert np.abs(derivative - expected).max() < 1e-3 * np.abs(derivative).max()
 
 
-def test_phase_space_keeps_its_volume(tmp_path):
+def test_phase_space_keeps_its_volume():
     """The determinant of the map is 1 in size (Liouville): exact motion of equal masses, 24 dimensions."""
-    simulate(parse_scene(GAS, overrides=(*PERIODIC, "run={until=6}")), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = idealgas.sensitivity(log).reshape(24, 24)
-        assert np.abs(np.linalg.slogdet(found)[1]) < 1e-6
-        one = idealgas.sensitivity(log, discs=[2])
-        assert np.array_equal(one[:, :, 0], idealgas.sensitivity(log)[:, :, 2])
-        with pytest.raises(UserError, match="discs: no disc 6"):
-            idealgas.sensitivity(log, discs=[6])
+    log = log_of(GAS, *PERIODIC, "run={until=6}")
+    found = idealgas.sensitivity(log).reshape(24, 24)
+    assert np.abs(np.linalg.slogdet(found)[1]) < 1e-6
+    one = idealgas.sensitivity(log, discs=[2])
+    assert np.array_equal(one[:, :, 0], idealgas.sensitivity(log)[:, :, 2])
+    raised("discs: no disc 6", idealgas.sensitivity, log, discs=[6])

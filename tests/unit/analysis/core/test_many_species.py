@@ -5,36 +5,30 @@ import shutil
 import numpy as np
 import pytest
 from helpers.log_fuzz.commands import NAME, forms, reading_commands
+from helpers.logs import log_of, species
 from helpers.support import code_errors_and_memory
 
-from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.core.ensemble import equipartition_violation, known_ensemble
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.state import Gas
 
 
-@pytest.mark.parametrize(("species", "groups"), [(32, 32), (33, 1), (1000, 1)])
-def test_many_species_are_counted_with_all_discs(species, groups):
-    ones, at_rest = np.ones(species), np.zeros((species, 2))
-    names = tuple(f"s{k}" for k in range(species))
-    gas = Gas((99.0, 99.0), at_rest, at_rest, ones, ones, np.arange(species, dtype=np.uint16), names)
+@pytest.mark.parametrize(("number", "groups"), [(32, 32), (33, 1), (1000, 1)])
+def test_many_species_are_counted_with_all_discs(number, groups):
+    ones, at_rest = np.ones(number), np.zeros((number, 2))
+    names = tuple(f"s{k}" for k in range(number))
+    gas = Gas((99.0, 99.0), at_rest, at_rest, ones, ones, np.arange(number, dtype=np.uint16), names)
     tally = Impacts()
     tally.begin(gas, np.linspace(0.0, 1.0, 513))
-    assert tally.collisions.shape == (512, species, groups)
+    assert tally.collisions.shape == (512, number, groups)
     assert gas.partners == (names if groups > 1 else ("all",))
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log():
     """A thousand species of two discs each, and five events."""
-    species = (
-        f'[[species]]\nname = "s{k}"\ncount = 2\nradius = {0.3 + 3e-4 * k}\nmass = {1 + 1e-3 * k}\ntemperature = 1\n'
-        for k in range(1000)
-    )
-    path = tmp_path_factory.mktemp("many") / "many.h5"
-    simulate(parse_scene("[box]\nsize = [100, 100]\n[run]\nevents = 5\n" + "".join(species)), path)
-    with open_log(path) as log:
-        yield log
+    kinds = (species(f"s{k}", 2, 0.3 + 3e-4 * k, mass=1 + 1e-3 * k) for k in range(1000))
+    return log_of("[box]\nsize = [100, 100]\n[run]\nevents = 5\n" + "".join(kinds))
 
 
 def test_bounds_of_temperatures_contain_the_number_of_species(log):

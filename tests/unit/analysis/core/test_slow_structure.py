@@ -3,29 +3,28 @@
 import math
 
 import pytest
+from helpers.logs import log_of, species
 from helpers.support import ROOT
 
-from idealgas import analyse, open_log, parse_scene, simulate
+from idealgas import analyse
 from idealgas.analysis.core.caveats import of_window
 from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.core.exchange import INDEPENDENT, Exchange
-
-PERIODIC = "".join(f'{side} = "periodic"\n' for side in ("left", "right", "bottom", "top"))
+from idealgas.columns import SIDES
 
 
 def equal(number, phi):
-    radius = math.sqrt(phi / (number * math.pi))
-    return f'[[species]]\nname = "gas"\ncount = {number}\nradius = {radius!r}\ntemperature = 1\n'
+    return species("gas", number, math.sqrt(phi / (number * math.pi)))
 
 
 def mixture(number, phi):
     """Half of the discs 1.6 times as large and three times as heavy as the others."""
     radius = math.sqrt(2 * phi / (number * math.pi * (1 + 1.6**2)))
-    each = '[[species]]\nname = "{}"\ncount = {}\nradius = {!r}\nmass = {}\ntemperature = 1\n'
-    return each.format("light", number // 2, radius, 1) + each.format("heavy", number // 2, 1.6 * radius, 3)
+    return species("light", number // 2, radius) + species("heavy", number // 2, 1.6 * radius, mass=3)
 
 
-WALLS = "".join(f"{side} = {{ thermal = 1 }}\n" for side in ("left", "right", "bottom", "top"))
+PERIODIC = "".join(f'{side} = "periodic"\n' for side in SIDES)
+WALLS = "".join(f"{side} = {{ thermal = 1 }}\n" for side in SIDES)
 GRAVITY = "[gravity]\nacceleration = [0, -2]\n"
 LOSSES = "[restitution]\nnormal = 0.9\n"
 
@@ -57,12 +56,10 @@ FAST = {  # 1.0
 
 @pytest.mark.parametrize("name", [*SLOW, *FAST])
 @pytest.mark.parametrize("start", [None, pytest.param(0.5, marks=pytest.mark.slow)])
-def test_slow_structure_is_said(name, start, tmp_path):
+def test_slow_structure_is_said(name, start):
     discs, collisions = (SLOW | FAST)[name]
-    scene = f"scene.seed = 1\n[box]\nsize = [1, 1]\n{discs}[run]\ncollisions_per_disc = {collisions}\n"
-    simulate(parse_scene(scene), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = [analyse(log, analysis, start=start) for analysis in ("pressure", "histogram")]
+    log = log_of(f"scene.seed = 1\n[box]\nsize = [1, 1]\n{discs}[run]\ncollisions_per_disc = {collisions}\n")
+    found = [analyse(log, analysis, start=start) for analysis in ("pressure", "histogram")]
     for result in found:
         said = [sentence for sentence in result.caveats if "relaxes slowly" in sentence]
         assert bool(said) == (name in SLOW)

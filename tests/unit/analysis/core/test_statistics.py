@@ -20,11 +20,6 @@ def autoregressive(rng, length, memory, runs=1):
     return series + 5.0
 
 
-def test_deviation_is_in_standard_errors():
-    assert Estimate(1.2, 0.1, 40, theory=1.0).deviation == pytest.approx(2.0)
-    assert Estimate(1.2, 0.1, 40).deviation is None
-
-
 def test_errors_by_blocks_of_a_straight_line():
     """0 to 15, of the variance 16 · 17/12, and means of pairs, of 4 · 8 · 9/12; over √16 and √8 of them, and 2."""
     found = statistics.errors_by_blocks(np.arange(16.0), 2.0)
@@ -39,9 +34,17 @@ def test_distances_from_an_even_distribution(samples, distance):
 
 
 def test_an_estimate_times_a_factor():
+    assert Estimate(1.2, 0.1, 40).deviation is None
     assert Estimate(2.0, 0.1, 9.0, 3.0, 0.25).times(-2.0) == Estimate(-4.0, 0.2, 9.0, -6.0, 0.5)
     assert Estimate(2.0, 0.1, 9.0).times(3.0) == Estimate(6.0, pytest.approx(0.3), 9.0)
     assert Estimate(1.5, 0.3, 9.0, 1.0, 0.4).deviation == pytest.approx(1.0)  # 0.5/√(0.3² + 0.4²)
+    assert Estimate(1.5, 0.3, 9.0, 1.0, 0.4).times(-2.0).deviation == pytest.approx(-1.0)
+
+
+def test_an_estimate_comes_back_from_its_numbers_and_unknown_ones_are_null():
+    known = Estimate(1.5, 0.03, 100.0, 1.4, 0.04)
+    assert Estimate.from_dict(known.as_dict()) == known
+    assert Estimate(math.nan, math.inf, 3.0).as_dict()["value"] is None
 
 
 @pytest.mark.parametrize(
@@ -141,61 +144,56 @@ def test_errors_by_blocks_rise_to_the_stated_one():
 @pytest.mark.parametrize(("memory", "length"), [(0.0, 100), (0.0, 512), (0.5, 512), (0.8, 1000), (0.9, 2000)])
 def test_interval_covers_the_truth(memory, length):
     series = autoregressive(np.random.default_rng(7), length, memory, runs=200)
-    hits = 0
-    for k in range(200):
-        low, high = statistics.mean(series[:, k]).interval(0.95)
-        hits += low < 5.0 < high
-    assert 180 <= hits <= 198
+    intervals = [statistics.mean(series[:, k]).interval(0.95) for k in range(200)]
+    assert 180 <= sum(low < 5.0 < high for low, high in intervals) <= 198
 
 
 def test_interval_of_a_ratio_covers_the_truth():
-    rng = np.random.default_rng(11)
-    hits = 0
+    rng, hits = np.random.default_rng(11), 0
     for _ in range(200):
         below = autoregressive(rng, 400, 0.5)[:, 0]
-        above = 2 * below + rng.normal(size=400)
-        low, high = statistics.ratio(above, below).interval()
+        low, high = statistics.ratio(2 * below + rng.normal(size=400), below).interval()
         hits += low < 2.0 < high
     assert 180 <= hits <= 198
+
+
+def rms(deviations):
+    """Of 300 normal deviates it scatters by 1/√600."""
+    assert len(deviations) == 300
+    return np.sqrt(np.mean(np.square(deviations)))
 
 
 @pytest.mark.parametrize("length", [100, 1000])
 def test_flux_has_the_error_of_the_bulk_and_of_its_store(length):
     """A store that swings for longer than the series lasts, driven by nothing."""
-    rng = np.random.default_rng(13)
-    deviations = []
+    rng, deviations = np.random.default_rng(13), []
     for _ in range(300):
         bulk = rng.normal(size=length)
         store = 8 * np.sin(0.4 * np.arange(length + 1) + rng.uniform(0, 7)) + rng.normal(size=length + 1)
-        found = statistics.mean_of_flux(bulk + np.diff(store), bulk, 0.0)
-        deviations.append(found.deviation)
-    rms = np.sqrt(np.mean(np.square(deviations)))
-    assert abs(rms - 1) < 4 / np.sqrt(2 * 300)  # the scatter of an rms of normal deviates; four of it
+        deviations.append(statistics.mean_of_flux(bulk + np.diff(store), bulk, 0.0).deviation)
+    assert abs(rms(deviations) - 1) < 4 / np.sqrt(600)
 
 
 @pytest.mark.parametrize("length", [10, 30, 100, 1000])
 def test_flux_has_the_error_of_a_store_of_known_variance(length):
     """A store of variance 9 that forgets its state in 50 samples: at first it wanders, later its change is bounded."""
-    rng = np.random.default_rng(17)
-    deviations = []
+    rng, deviations = np.random.default_rng(17), []
     for _ in range(300):
         store = 3 * (autoregressive(rng, length + 1, math.exp(-1 / 50))[:, 0] - 5)
         found = statistics.mean_of_flux(5 + np.diff(store), np.full(length, 5.0), 5.0, 9.0)
         assert found.value == pytest.approx(5 + (store[-1] - store[0]) / length)
         deviations.append(found.deviation)
-    rms = np.sqrt(np.mean(np.square(deviations)))
     more = math.sqrt(length / (length - 2))  # at first the error is known as from as many squares as there are samples
-    assert 1 - 4 / math.sqrt(2 * 300) < rms < more * (1 + 4 / math.sqrt(2 * 300))
+    assert 1 - 4 / math.sqrt(600) < rms(deviations) < more * (1 + 4 / math.sqrt(600))
 
 
 def test_flux_has_the_error_of_a_store_that_starts_from_rest():
     """The start need not be a state of chance: of a store that starts at its mean, only the end is uncertain."""
-    rng = np.random.default_rng(19)
-    deviations = []
+    rng, deviations = np.random.default_rng(19), []
     for _ in range(300):
         store = np.append(0.0, autoregressive(rng, 400, 0.5)[20:, 0] - 5)
         deviations.append(statistics.mean_of_flux(np.diff(store), np.zeros(len(store) - 1), 0.0).deviation)
-    assert abs(np.sqrt(np.mean(np.square(deviations))) - 1) < 4 / np.sqrt(2 * 300)
+    assert abs(rms(deviations) - 1) < 4 / np.sqrt(600)
 
 
 def test_statistics_import_little_of_scipy():

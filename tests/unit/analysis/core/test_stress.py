@@ -2,26 +2,16 @@
 
 import numpy as np
 import pytest
-from helpers.support import ROOT
+from helpers.logs import PERIODIC, gas, log_of, streamed
 
-from idealgas import load_scene, open_log, parse_scene, profile, shear, simulate
+from idealgas import profile, shear
 from idealgas.analysis.core.currents import PASSED_ON, XX, XY, YY, Currents
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.stress import PassedOn
 from idealgas.analysis.pressure.measure import pressure
 
-GAS = """
-scene.seed = 4
-box.size = [12, 8]
-run.collisions_per_disc = 300
-[[species]]
-name = "light"
-count = 60
-radius = 0.4
-temperature = 1
-"""
+GAS = gas(60, 0.4, (12, 8), "collisions_per_disc = 300", seed=4)
 
-PERIODIC = tuple(f"box.{side}=periodic" for side in ("left", "right", "bottom", "top"))
 STANDARD_ERRORS = 4
 
 
@@ -49,18 +39,15 @@ def test_strips_together_have_what_collisions_pass_on(make, axis, bins, sides):
     assert (np.abs(passed_on.stress[:, :, :2]).sum(axis=(0, 2)) > 0).all()
 
 
-def test_a_line_of_centres_is_shared_by_its_strips(tmp_path):
+def test_a_line_of_centres_is_shared_by_its_strips():
     """Discs of radius 1 meet head-on at x = 5.5 and 7.5, each with Δp = 2: the strips between 4 and 10 share 2 · 2."""
     discs = ", ".join(f"{{ position = [{x}, 3], velocity = [{u}, 0], radius = 1 }}" for x, u in ((3.5, 1), (9.5, -1)))
-    simulate(parse_scene(f"box.size = [14, 6]\ndisc = [{discs}]\nrun.until = 3"), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        passed_on = PassedOn(0, np.array([1.0, 4.0, 7.0, 10.0, 13.0]), (False, False))
-        stream(log, np.array([0.0, 3.0]), [passed_on])
-        assert passed_on.stress[0, :, 0] == pytest.approx([0, 3, 1, 0])
-        across = PassedOn(1, np.array([1.0, 3.5, 5.0]), (False, False))
-        stream(log, np.array([0.0, 3.0]), [across])
-        assert across.stress[0, :, 0] == pytest.approx([4, 0])
-        assert across.stress[0, :, 1:] == pytest.approx(0)
+    log = log_of(f"box.size = [14, 6]\ndisc = [{discs}]\nrun.until = 3")
+    passed_on = streamed(log, np.array([0.0, 3.0]), PassedOn(0, np.array([1.0, 4.0, 7.0, 10.0, 13.0]), (False, False)))
+    assert passed_on.stress[0, :, 0] == pytest.approx([0, 3, 1, 0])
+    across = streamed(log, np.array([0.0, 3.0]), PassedOn(1, np.array([1.0, 3.5, 5.0]), (False, False)))
+    assert across.stress[0, :, 0] == pytest.approx([4, 0])
+    assert across.stress[0, :, 1:] == pytest.approx(0)
 
 
 def test_a_periodic_gas_has_one_pressure(make):
@@ -112,16 +99,15 @@ def test_under_gravity_the_pressure_carries_the_weight_above(make):
 
 
 @pytest.mark.slow
-def test_a_sheared_gas_has_one_stress(tmp_path):
+def test_a_sheared_gas_has_one_stress():
     """P_xy is that of the analysis `shear` in every strip, P_xx and P_yy too."""
-    simulate(load_scene(ROOT / "configs" / "shear.toml", ["run.until=200"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        whole, found = shear(log, start=20.0), profile(log, bins=6, start=20.0)
-        assert (found.axis, found.law) == ("y", None)
-        assert "up to 1.4 times too small" in found.caveats[-1]
-        assert far(found.pressure["xy"], -whole.viscosity.value * whole.rate) < STANDARD_ERRORS
-        assert max(e.value + 3 * e.standard_error for e in found.pressure["xy"]) < 0
-        for name in ("xx", "yy"):
-            assert far(found.pressure[name], whole.pressure.value) < STANDARD_ERRORS
-        (gas,) = found.species
-        assert far(gas.temperature, whole.temperature.value) < STANDARD_ERRORS
+    log = log_of("shear", "run.until=200")
+    whole, found = shear(log, start=20.0), profile(log, bins=6, start=20.0)
+    assert (found.axis, found.law) == ("y", None)
+    assert "up to 1.4 times too small" in found.caveats[-1]
+    assert far(found.pressure["xy"], -whole.viscosity.value * whole.rate) < STANDARD_ERRORS
+    assert max(e.value + 3 * e.standard_error for e in found.pressure["xy"]) < 0
+    for name in ("xx", "yy"):
+        assert far(found.pressure[name], whole.pressure.value) < STANDARD_ERRORS
+    (gas,) = found.species
+    assert far(gas.temperature, whole.temperature.value) < STANDARD_ERRORS

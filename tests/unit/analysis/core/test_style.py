@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from helpers.logs import raised
 from matplotlib.collections import PolyCollection
 
 from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import COLOURS, LEGEND_ROWS, LINES, curve_style, panels
+from idealgas.analysis.core.style import COLOURS, LEGEND_ROWS, LINES, curve_style, panels, save
+from idealgas.errors import OutputError
 
 
 def test_no_two_curves_look_the_same():
@@ -49,3 +51,10 @@ def test_a_theory_is_a_line_in_a_band_of_its_error():
     assert band.get_paths()[0].get_extents().extents.tolist() == pytest.approx([1.75, 3.65, 2.25, 4.35])
     along.theory([0, 1], [1.0, 1.0], 0.0)
     assert (len(along.collections), len(row.lines)) == (1, 1)
+
+
+def test_pictures_are_written_or_refused(tmp_path):
+    figure, _ = panels(1)
+    save(figure, tmp_path / "temperature.png")
+    assert (tmp_path / "temperature.png").read_bytes().startswith(b"\x89PNG")
+    raised("no folder", save, figure, tmp_path / "no such folder" / "temperature.png", error=OutputError)

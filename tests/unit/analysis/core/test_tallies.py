@@ -5,43 +5,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.logs import gas, species, streamed
 
 from idealgas.analysis.core.collision_statistics import CollisionCounts, ImpactParameters
 from idealgas.analysis.core.flights import DensityBins, Moments, VelocityHistogram
 from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.core.intervals import FreeFlights, WaitingTimes
 from idealgas.analysis.core.stream import stream
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
-SCENE = """
-[scene]
-seed = 3
-[box]
-size = [6.0, 4.0]
-[[species]]
-name = "light"
-count = 9
-radius = 0.2
-temperature = 1.0
-[[species]]
-name = "heavy"
-count = 5
-radius = 0.35
-mass = 3.0
-speed = 0.5
-[run]
-events = 900
-"""
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory):
-    path = tmp_path_factory.mktemp("tallies") / "small.h5"
-    simulate(parse_scene(SCENE), path)
-    with open_log(path) as log:
-        yield log
+LIGHT = gas(9, 0.2, (6.0, 4.0), "events = 900", name="light", seed=3)
+GAS = LIGHT + species("heavy", 5, 0.35, mass=3.0, speed=0.5)
 
 
 @pytest.fixture(scope="module", params=[(0.0, 1.0, 11), (0.23, 0.71, 4), (0.1, 1.0, 900)], ids=str)
@@ -82,8 +55,7 @@ def flights_of(log, edges):
 
 
 def test_moments(log, edges):
-    tally = Moments()
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, Moments())
     flights = np.zeros_like(tally.flights)
     for disc, block, duration, v in flights_of(log, edges):
         m = log.discs.mass[disc]
@@ -111,8 +83,7 @@ def test_velocity_histogram(log, edges, quantity):
     }[quantity]
     low, high = np.array([-0.5, 0.1]), np.array([1.2, 0.8])
     sampled = np.array([0, 3, 10])
-    tally = VelocityHistogram(quantity, low, high, 8, sampled)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, VelocityHistogram(quantity, low, high, 8, sampled))
     counts, sums = np.zeros_like(tally.counts), np.zeros_like(tally.sums)
     for disc, block, duration, v in flights_of(log, edges):
         s = log.discs.species[disc]
@@ -128,8 +99,7 @@ def test_velocity_histogram(log, edges, quantity):
 
 
 def test_impacts(log, edges):
-    tally = Impacts()
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, Impacts())
     before = dict(enumerate(log.state_at(edges[0]).velocity))
     expected = {name: np.zeros_like(getattr(tally, name)) for name in ("pair_virial", "wall_virial", "impulse", "hits")}
     collisions = np.zeros_like(tally.collisions)
@@ -156,8 +126,7 @@ def test_impacts(log, edges):
 
 def test_virials_of_pairs_and_walls_balance(log, edges):
     """d/dt Σ r·p = 2E + Σ r·F of pairs and walls: over any window both sides are the same number."""
-    tally = Impacts()
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, Impacts())
     mass = log.discs.mass[:, None]
     first, last = (
         (mass * (state.position - np.array(log.box) / 2) * state.velocity).sum()
@@ -170,8 +139,7 @@ def test_virials_of_pairs_and_walls_balance(log, edges):
 
 def test_force_on_a_side_comes_from_the_bulk(log, edges):
     """d/dt Σ p w = ±F + flights and collisions, w the nearness to a side: over any block both are the same number."""
-    moments, impacts = Moments(), Impacts()
-    stream(log, edges, [moments, impacts])
+    moments, impacts = streamed(log, edges, Moments(), Impacts())
     gas, species = log.discs, log.discs.species
     for side in range(4):
         axis, sign = side // 2, 2 * (side % 2) - 1
@@ -187,8 +155,7 @@ def test_force_on_a_side_comes_from_the_bulk(log, edges):
 
 
 def test_virials_of_bulk_and_walls_balance_in_every_block(log, edges):
-    moments, impacts = Moments(), Impacts()
-    stream(log, edges, [moments, impacts])
+    moments, impacts = streamed(log, edges, Moments(), Impacts())
     middle, mass = np.array(log.box) / 2, log.discs.mass[:, None]
     virial = [(mass * (state.position - middle) * state.velocity).sum() for state in log.frames(edges)]
     kinetic = moments.flights[:, :, 1:3].sum(axis=(1, 2))
@@ -197,8 +164,7 @@ def test_virials_of_bulk_and_walls_balance_in_every_block(log, edges):
 
 
 def test_density_bins(log, edges):
-    tally = DensityBins(3)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, DensityBins(3))
     discs = np.zeros_like(tally.discs)
     for block, state in enumerate(log.frames(edges[1:])):
         place = (state.position / np.array(log.box) * 3).astype(int)
@@ -211,8 +177,7 @@ def test_density_bins(log, edges):
 @pytest.mark.parametrize("path", [True, False], ids=["path", "time"])
 def test_free_flights(log, edges, path):
     high = np.array([2.0, 1.0])
-    tally = FreeFlights(path, high, 10, stride=3, most_samples=200)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, FreeFlights(path, high, 10, stride=3, most_samples=200))
     since, speed, length, began = {}, {}, {}, {}
     flights = []
     for time, disc, partner, _, _, velocity in rows_of(log, edges):
@@ -236,8 +201,7 @@ def test_free_flights(log, edges, path):
 
 
 def test_waits(log, edges):
-    tally = WaitingTimes(np.array([0.05]), 10, stride=4, most_samples=50)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, WaitingTimes(np.array([0.05]), 10, stride=4, most_samples=50))
     times = [time for time, disc, partner, *_ in rows_of(log, edges) if partner < 0 or disc < partner]
     waits = np.diff(times)
     assert tally.counts.sum() == len(waits)
@@ -250,8 +214,7 @@ def test_waits(log, edges):
 
 def test_impact_parameters(log, edges):
     """From positions and velocities after collisions, which conserve |b|."""
-    tally = ImpactParameters((False, False), 10, stride=3, most_samples=200)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, ImpactParameters((False, False), 10, stride=3, most_samples=200))
     rows = rows_of(log, edges)
     found = []
     for first, second in pairwise(rows):
@@ -267,8 +230,7 @@ def test_impact_parameters(log, edges):
 
 def test_collision_counts(log, edges):
     time = (edges[-1] - edges[0]) / 7.5
-    tally = CollisionCounts(time, bins=4, stride=3)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, CollisionCounts(time, bins=4, stride=3))
     found = np.zeros((7, 14), int)
     for when, disc, partner, *_ in rows_of(log, edges):
         if partner >= 0 and (v := int((when - edges[0]) / time)) < 7:
@@ -286,11 +248,9 @@ def test_collision_counts(log, edges):
 def test_collision_counts_of_times_together(log, edges, monkeypatch):
     """Seven times in at most four groups: three of two each."""
     time = (edges[-1] - edges[0]) / 7.5
-    single = CollisionCounts(time, bins=4, stride=3)
-    stream(log, edges, [single])
+    single = streamed(log, edges, CollisionCounts(time, bins=4, stride=3))
     monkeypatch.setattr("idealgas.analysis.core.collision_statistics.MOST_BLOCKS", 4)
-    grouped = CollisionCounts(time, bins=4, stride=3)
-    stream(log, edges, [grouped])
+    grouped = streamed(log, edges, CollisionCounts(time, bins=4, stride=3))
     assert grouped.begins == pytest.approx(single.begins[:6:2])
     assert np.array_equal(grouped.counts, single.counts[:6:2] + single.counts[1:6:2])
     assert np.array_equal(grouped.sums, single.sums[:6:2] + single.sums[1:6:2])

@@ -7,20 +7,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from helpers.crafted import craft
+from helpers.logs import gas, raised, streamed
 
 from idealgas.analysis.core.stream import stream
 from idealgas.analysis.core.walls import MovingWall, WallGauge, WallImpulses
 from idealgas.columns import Kind
-from idealgas.errors import UserError
 from idealgas.log import open_log
 from idealgas.movie.piston_track import piston_tracks
 
-GAS = """
-scene.seed = 3
-box.size = [9, 6]
-run.events = 900
-species = [{name = "gas", count = 12, radius = 0.2, mass = 2.0, temperature = 1.0}]
-"""
+GAS = gas(12, 0.2, (9, 6), "events = 900", mass=2.0, seed=3)
 
 SEGMENTS = (
     'wall=[{from=[3, 1.5], to=[3, 4.5], name="post"}, {from=[5, 2], to=[7, 3], name="ramp", temperature=1.5}, '
@@ -32,8 +27,7 @@ SEGMENTS = (
 def test_every_hit_counts_for_its_wall_and_face(make):
     log = make(SEGMENTS, "gravity.acceleration=[0.2, -0.5]", "box.left={thermal=1.2}")
     edges, g = np.linspace(0.1, 0.9, 5) * log.end_time, np.array(log.gravity)
-    tally = WallImpulses(log)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, WallImpulses(log))
     state = log.state_at(edges[0])
     since = {disc: (edges[0], state.velocity[disc]) for disc in range(12)}
     given, faces = np.zeros((4, 7, 2)), defaultdict(float)
@@ -72,8 +66,7 @@ def test_walls_and_gravity_account_for_all_momentum(make):
     """Exact: what the discs lose, less what gravity gave them, is what walls got."""
     log = make(SEGMENTS, "gravity.acceleration=[0.2, -0.5]")
     edges = np.array([0.2, 0.5, 0.8]) * log.end_time
-    tally = WallImpulses(log)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, WallImpulses(log))
     momentum = [2.0 * log.state_at(time).velocity.sum(axis=0) for time in edges]
     for block, (start, end) in enumerate(pairwise(range(3))):
         weight = 24.0 * np.array(log.gravity) * (edges[end] - edges[start])
@@ -104,22 +97,14 @@ def test_the_room_below_a_piston_with_a_mass(side, make):
     """The mean of its place, looked up at many times on the path that films show."""
     log = make(f'piston=[{{side="{side}", position=4, mass=3, pressure=2}}]', "run.events=1500")
     edges = np.linspace(0.0, 1.0, 9) * log.end_time
-    tally = MovingWall(log, 0)
-    stream(log, edges, [tally])
+    tally = streamed(log, edges, MovingWall(log, 0))
     (track,) = piston_tracks(log, 0.0, log.end_time)
     places = np.array([[track.at(t) for t in a + (b - a) * (np.arange(400) + 0.5) / 400] for a, b in pairwise(edges)])
     assert tally.place == pytest.approx(places.mean(axis=1), rel=1e-4)
     assert np.ptp(tally.place) > 0.1
 
 
-def test_a_piston_without_a_sample_is_one_line(make, tmp_path):
-    log = make('piston=[{side="right", velocity=-0.3}]', "run.events=", "run.until=10")
-    path = craft(shutil.copyfile(log.path, tmp_path / "none.h5"), lambda file: None, {"observables": 0})
-    with open_log(path) as other, pytest.raises(UserError, match="has no sample of its piston"):
-        MovingWall(other, 0)
-
-
-def test_the_room_below_a_driven_piston_is_exact(make):
+def test_the_room_below_a_driven_piston_is_exact(make, tmp_path):
     log = make('piston=[{side="right", velocity=-0.3}]', "run.events=", "run.until=10")
     edges = np.linspace(1, 9, 5)
     gauge = WallGauge(log)
@@ -131,3 +116,6 @@ def test_the_room_below_a_driven_piston_is_exact(make):
     assert exposed["top wall"] == pytest.approx(2 * expected, rel=1e-12)
     assert exposed["right wall"] == pytest.approx([12.0] * 4)
     assert gauge.moving[0].balance(1.0, 9.0) is None
+    path = craft(shutil.copyfile(log.path, tmp_path / "none.h5"), lambda file: None, {"observables": 0})
+    with open_log(path) as other:
+        raised("has no sample of its piston", MovingWall, other, 0)

@@ -8,21 +8,15 @@ import tracemalloc
 import numpy as np
 import pytest
 from helpers.crafted import craft
+from helpers.logs import PERIODIC, gas
 
 from idealgas import evolution, open_log
 from idealgas.analysis.evolution import MOST_SAMPLES, EvolutionAnalysis
 from idealgas.analysis.evolution.pressure_series import STATES
-from idealgas.errors import UserError
+from idealgas.columns import SIDES
 from idealgas.log.hdf5.commit import Commit
 
-GAS = """
-scene.seed = 3
-box.size = [12, 8]
-run.until = 20
-species = [{ name = "gas", count = 40, radius = 0.1, temperature = 1.5 }]
-"""
-
-PERIODIC = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
+GAS = gas(40, 0.1, (12, 8), "until = 20", temperature=1.5, seed=3)
 
 
 def test_temperatures_are_those_of_the_states(make):
@@ -43,6 +37,7 @@ def test_without_events_it_has_the_samples(make):
     assert found.temperature == pytest.approx(found.parts["motion"] / 40)
     assert np.abs(found.balance).max() < 1e-12
     assert found.spin == pytest.approx(found.parts["spin"] * 2 / 40)
+    assert found.pressure is None
 
 
 def test_more_gases_than_colours(make):
@@ -50,10 +45,8 @@ def test_more_gases_than_colours(make):
     pistons = [f'{{ inner = "x", name = "{name}", position = {k}, mass = 9 }}' for k, name in enumerate("abcdefg", 2)]
     inside = [f"{{ position = [{k + 1.5}, 4], velocity = [0.1, 0], radius = 0.1 }}" for k in range(8)]
     last = '{ inner = "x", position = 9, mass = 9 }'
-    log = make(
-        f"piston=[{', '.join([*pistons, last])}]", f"disc=[{', '.join(inside)}]", "species.0.region=[9, 0, 12, 8]"
-    )
-    found = evolution(log)
+    discs = (f"disc=[{', '.join(inside)}]", "species.0.region=[9, 0, 12, 8]")
+    found = evolution(make(f"piston=[{', '.join([*pistons, last])}]", *discs))
     assert [*found.pistons] == [*(f"{name} piston" for name in "abcdefg"), "piston"]
     assert [*found.chambers][-2:] == ["between g piston and piston", "right"]
     lines = EvolutionAnalysis().figure(found).axes[0].lines
@@ -77,11 +70,9 @@ def test_of_very_many_samples_some_are_read(make, tmp_path):
     craft(path, multiply, {"observables": number})
     with open_log(path) as log:
         tracemalloc.start()
-        try:
-            found = evolution(log)
-            _, most = tracemalloc.get_traced_memory()
-        finally:
-            tracemalloc.stop()
+        found = evolution(log)
+        _, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
         assert len(log.observables["energy"][1]) == number
     assert found.samples.tolist() == np.linspace(0, 20, number)[::17].tolist()
     assert (found.parts["motion"] == found.parts["motion"][0]).all()
@@ -162,14 +153,14 @@ def test_haff(make):
     assert 20 / (math.sqrt(t[0] / t[-1]) - 1) == pytest.approx(tau, rel=0.05)
     assert np.abs(found.balance).max() < 1e-12
     assert found.dissipated.keys() == {"discs"}
+    assert found.pressure is None  # nothing is hit
     energy = found.parts["motion"]
     assert found.dissipated["discs"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-12 * energy[0])
 
 
 @pytest.mark.usefixtures("uncompiled")
 def test_what_elastic_discs_lose_by_rounding_is_no_loss(make):
-    found = evolution(make("restitution.wall=0.9", "run.until=3"))
-    assert found.dissipated.keys() == {"left", "right", "bottom", "top"}
+    assert {*evolution(make("restitution.wall=0.9", "run.until=3")).dissipated} == {*SIDES}
 
 
 def test_adiabat(make):
@@ -193,25 +184,16 @@ def test_a_piston_with_a_mass_keeps_its_balance_and_has_a_place(make):
     assert "work done by the piston" in [text.get_text() for ax in shown for text in ax.get_legend().get_texts()]
 
 
-@pytest.mark.parametrize(
-    ("overrides", "t"),
-    [
-        ([], 1.5),
-        (["box.left={ thermal = 2 }"], 2.0),
+def test_equilibrium(make):
+    for overrides, t in (
+        ((), 1.5),
+        (("box.left={ thermal = 2 }",), 2.0),
         (PERIODIC, 1.5),
-        (["box.left={ thermal = 2 }", "box.right={ thermal = 1 }"], None),
-        (["rotation.roughness=0"], None),
-    ],
-)
-def test_equilibrium(make, overrides, t):
-    found = evolution(make(*overrides, "run.until=2"))
-    assert (found.law is None) == (t is None)
-    assert t is None or found.law.temperature[-1] == pytest.approx(t)
-
-
-def test_times_that_are_not_there(make):
-    with pytest.raises(UserError, match="empty time window"):
-        evolution(make(), 5.0, 30.0)
+        (("box.left={ thermal = 2 }", "box.right={ thermal = 1 }"), None),
+        (("rotation.roughness=0",), None),
+    ):
+        law = evolution(make(*overrides, "run.until=2")).law
+        assert (law and law.temperature[-1]) == (t and pytest.approx(t)), overrides
 
 
 def test_pressure_in_bins_of_time(make):
@@ -220,10 +202,9 @@ def test_pressure_in_bins_of_time(make):
     found = evolution(log)
     series, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
     assert series.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
-    assert series.area[[0, -1]] == pytest.approx(
-        96 - 0.8 * 20 * np.array([0.5, len(series.area) - 0.5]) / len(series.area)
-    )
-    assert set(series.pressure) == {"left wall", "right wall", "bottom wall", "top wall"}
+    n = len(series.area)
+    assert series.area[[0, -1]] == pytest.approx(96 - 0.8 * 20 * np.array([0.5, n - 0.5]) / n)
+    assert {*series.pressure} == {f"{side} wall" for side in SIDES}
     titles = [table.title for table in found.analysis.tables(found)]
     assert titles[1] == "Pressure on walls, means over bins of time"
     axes = [ax.get_ylabel() for ax in found.plot().axes]
@@ -259,11 +240,6 @@ def test_pressure_of_a_uniform_gas_is_that_of_all_sides(make):
     sides = np.mean([series.pressure[f"{side} wall"] for side in ("left", "right")], axis=0) * 16
     ends = np.mean([series.pressure[f"{side} wall"] for side in ("bottom", "top")], axis=0) * 24
     assert series.pressure["all sides"] == pytest.approx((sides + ends) / 40)
-
-
-def test_without_hits_there_is_no_pressure(make):
-    assert evolution(make("log.events=false")).pressure is None
-    assert evolution(make(*PERIODIC)).pressure is None
 
 
 @pytest.mark.parametrize(

@@ -4,17 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas
 
 from idealgas.analysis.evolution.pressure_series import GROUP, pressure_series
 from idealgas.analysis.evolution.pressure_series import _scatter as scatter
 
 BINS = 64
-GAS = """
-box.size = [10.0, 10.0]
-run.until = 100
-species = [{ name = "gas", count = 200, radius = 0.05, temperature = 30.0 }]
-thermostat = { temperature = 1.0, rate = 0.3 }
-"""
+GAS = gas(
+    200, 0.05, (10.0, 10.0), "until = 100", temperature=30.0, then="thermostat = { temperature = 1.0, rate = 0.3 }"
+)
 
 
 def scatters(change, spread=1.0):

@@ -1,14 +1,23 @@
-"""The estimators on energies drawn from the ensembles they are made for."""
+"""The estimators on energies drawn from the ensembles they are made for, and the routes of logs."""
 
 import math
 
 import numpy as np
 import pytest
+from helpers.logs import gas, log_of
 from scipy.signal import lfilter
 
+from idealgas import heat_capacity
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.heat_capacity import BATH, CLOSED, PISTON, HeatCapacityAnalysis, Measured
-from idealgas.analysis.heat_capacity.fluctuations import LEAST_SAMPLES, bath_fluctuations, kinetic_fluctuations
+from idealgas.analysis.heat_capacity.fluctuations import (
+    LEAST_SAMPLES,
+    EnergySeries,
+    bath_fluctuations,
+    energy_series,
+    expected_capacity,
+    kinetic_fluctuations,
+)
 
 N = 20
 
@@ -57,16 +66,10 @@ def measured(kind, energy, temperature, errors, routes=None, theory=1.0, excess=
 
 @pytest.mark.parametrize("errors", [(0.0, 0.01), (0.01, 0.0), (0.01, 0.005)], ids=["exact E", "exact T", "neither"])
 def test_slope(errors):
-    random, deviations = np.random.default_rng(3), []
+    random, deviations, (of_energy, of_t) = np.random.default_rng(3), [], (error or 1e-99 for error in errors)
     for _ in range(200):
         logs = [
-            measured(
-                CLOSED,
-                1.5 * t + random.normal(0, errors[0] or 1e-99),
-                t + random.normal(0, errors[1] or 1e-99),
-                errors,
-                theory=1.5,
-            )
+            measured(CLOSED, 1.5 * t + random.normal(0, of_energy), t + random.normal(0, of_t), errors, theory=1.5)
             for t in (0.5, 1.0, 1.5, 2.0)
         ]
         (route,) = HeatCapacityAnalysis.combine(logs).routes
@@ -85,15 +88,8 @@ def test_routes_that_do_not_apply_say_why():
 
 def test_gamma_takes_the_best_measured_capacity_at_constant_area():
     c_a = measured(CLOSED, 1.0, 1.0, (0.0, 0.01), {"E/T": Estimate(1.01, 0.01, 100.0, 1.0)})
-    c_p = measured(
-        PISTON,
-        2.0,
-        1.0,
-        (0.0, 0.01),
-        {"fluctuations of the kinetic energy": Estimate(2.02, 0.02, 100.0, 2.0)},
-        2.0,
-        1.0,
-    )
+    routes = {"fluctuations of the kinetic energy": Estimate(2.02, 0.02, 100.0, 2.0)}
+    c_p = measured(PISTON, 2.0, 1.0, (0.0, 0.01), routes, 2.0, 1.0)
     gamma = HeatCapacityAnalysis.combine([c_a, c_p]).routes[-1]
     assert gamma.name == "γ"
     assert (gamma.value.value, gamma.value.theory) == pytest.approx((2.0, 2.0))
@@ -104,3 +100,50 @@ def test_gamma_takes_the_best_measured_capacity_at_constant_area():
 def test_json_comes_back():
     log = measured(PISTON, 2.0, 1.0, (0.0, 0.01), {"E/T": Estimate(1.0, 0.1, float("inf"), 1.0)}, 2.0, 1.0)
     assert HeatCapacityAnalysis.restore(log.as_dict(), "point") == log
+
+
+def test_a_short_run_with_a_piston_lacks_samples_not_a_piston():
+    log = log_of("piston", "run.until=300", "log.snapshot_every=5")
+    result = HeatCapacityAnalysis.combine([heat_capacity(log, start=20.0)])
+    refused, of_energy = result.refused, result.refused["fluctuations of the kinetic energy"]
+    assert "independent samples of the energy are too few (128 needed)" in of_energy
+    assert "it requires" not in of_energy
+    assert refused["γ"].startswith("no heat capacity of the gas with the piston was measured")
+    assert refused["Var(E)/T²"].startswith("it requires thermal walls")
+    rows = [label.get_text() for label in HeatCapacityAnalysis.figure(result).axes[0].get_yticklabels()]
+    assert rows == ["no dE/dT", "no E/T", "no Var(E)/T²", "no fluctuations", "no γ"]
+
+
+@pytest.mark.parametrize(
+    ("effect", "collisions"), [("rotation={inertia=0.5, roughness=1}", 800), ("gravity.acceleration=[0, -0.1]", 100)]
+)
+def test_events_tell_the_energy_at_all_times(effect, collisions):
+    """The capacity of rough discs is 3N/2; samples at the starts of epochs were too few to give any."""
+    few = ("species.0.count=100", f"species.0.radius={math.sqrt(0.1 / math.pi)!r}")
+    log = log_of("quickstart", *few, effect, f"run.collisions_per_disc={collisions}")
+    series, measured = energy_series(log), heat_capacity(log)
+    time, kinetic = log.observables["kinetic_energy"]
+    assert energy_series(log, start=float(time[1])).kinetic[0] == pytest.approx(kinetic[1], rel=1e-12)
+    assert np.ptp(series.energy) < 1e-9 * series.energy.mean()
+    for route in measured.routes.values():
+        assert abs(route.deviation) < 4
+        assert route.standard_error < 0.3
+    assert bool(measured.routes) == (collisions > 100)
+
+
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize(
+    ("effect", "position", "potential"),
+    [
+        (f"gravity.acceleration=[0, {-1 / 4.98!r}]", None, 1 - 1 / (2 * math.sinh(0.5)) ** 2),
+        ("piston=[{ side='right', mass=50, pressure=4 }]", 10.0, 1.0),
+    ],
+    ids=["column", "piston"],
+)
+def test_capacity_of_positions_by_theory(effect, position, potential):
+    """For x = mgh/T = 1, x² eˣ/(eˣ - 1)² is 1/(2 sinh ½)². In a dilute gas Z² and d(φZ)/dφ are 1 + 4φ, to order φ²."""
+    kinetic = np.full(2, 40.0)
+    series = EnergySeries(kinetic, kinetic, position and np.full(2, position), 0.0)
+    theory, of_piston = expected_capacity(log_of(gas(40, 0.01, (10, 5), "events = 1"), effect), series)
+    assert theory.value == pytest.approx(1 + potential, abs=1e-6)
+    assert of_piston == (position and pytest.approx(1.0, abs=1e-6))

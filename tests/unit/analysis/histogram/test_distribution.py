@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from helpers.logs import raised
 
 from idealgas.analysis.core.statistics import Estimate, ks_p_value, ratio
 from idealgas.analysis.histogram.distribution import distribution_of
 from idealgas.analysis.histogram.intervals import _third, _variance
 from idealgas.analysis.theory.distributions import UniformLaw
-from idealgas.errors import UserError
 
 pytestmark = pytest.mark.interpreted
 
@@ -46,8 +46,7 @@ def test_distances_from_a_law_and_its_error():
 
 def test_without_counts_there_is_none():
     for nothing in ({"counts": np.zeros((4, 4), int)}, {"samples": ()}):
-        with pytest.raises(UserError, match="too few events"):
-            made(**nothing)
+        raised("too few events", made, **nothing)
 
 
 @pytest.mark.parametrize(

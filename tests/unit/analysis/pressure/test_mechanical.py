@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, gas, raised
 
 from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
@@ -11,18 +12,13 @@ from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.mechanical import WallPressure
 from idealgas.analysis.pressure.tables import _on_walls, _unlike, pressure_tables
-from idealgas.errors import NotApplicableError, UserError
 
-GAS = """
-scene.seed = 3
-box.size = [8, 6]
-run.until = 40
-species = [{ name = "gas", count = 30, radius = 0.1, temperature = 1.5 }]
-"""
+UP = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
+GAS = gas(30, 0.1, (8, 6), "until = 40", temperature=1.5, seed=3)
 
 EFFECTS = {
     "gravity.acceleration=[0, -0.3]": "gravity",
-    "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]": "piston",
+    UP: "piston",
     "wall=[{ from = [4, 0], to = [4, 3] }]": "wall segments",
     "restitution.normal=0.95": "restitution",
     "box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }": "several temperatures",
@@ -56,20 +52,19 @@ def test_a_plain_box_has_routes_and_no_more(make):
     assert {"walls", "forces"}.isdisjoint(found.as_dict())
 
 
+def theories(found):
+    return {wall.name: wall.pressure.theory for wall in found.mechanical.walls}
+
+
 def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
-    up = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
-    walls = {wall.name: wall.pressure for wall in pressure(make(up)).mechanical.walls}
-    assert {name: value.theory for name, value in walls.items()} == {
-        "left wall": None,
-        "right wall": None,
-        "bottom wall": None,
-        "top wall": 2.0,
-    }
-    heavy = pressure(make(up, "gravity.acceleration=[0, -0.5]")).mechanical
-    assert {wall.name: wall.pressure.theory for wall in heavy.walls}["top wall"] == pytest.approx(2 + 8 * 0.5 / 8)
-    assert heavy.forces[-1].y.theory == pytest.approx(-15.0)  # the weight of 30 discs
-    at_its_stop = pressure(make("piston=[{ side = 'top', mass = 8, pressure = 0.2 }]"))
-    assert {wall.name: wall.pressure.theory for wall in at_its_stop.mechanical.walls}["top wall"] is None
+    sides = dict.fromkeys(("left wall", "right wall", "bottom wall"))
+    assert theories(pressure(make(UP))) == sides | {"top wall": 2.0}
+    heavy = pressure(make(UP, "gravity.acceleration=[0, -0.5]"))
+    assert theories(heavy)["top wall"] == pytest.approx(2 + 8 * 0.5 / 8)
+    assert heavy.mechanical.forces[-1].y.theory == pytest.approx(-15.0)  # the weight of 30 discs
+    assert (
+        theories(pressure(make("piston=[{ side = 'top', mass = 8, pressure = 0.2 }]")))["top wall"] is None
+    )  # at its stop
 
 
 def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
@@ -84,8 +79,7 @@ def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
 
 
 def test_a_piston_is_held_in_a_gas_that_cools_too(make):
-    up = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
-    walls = {wall.name: wall.pressure for wall in pressure(make(up, "restitution.normal=0.99")).mechanical.walls}
+    walls = {wall.name: wall.pressure for wall in pressure(make(UP, "restitution.normal=0.99")).mechanical.walls}
     assert walls["top wall"].theory == 2.0
     assert walls["top wall"].standard_error < 0.2 * walls["left wall"].standard_error
 
@@ -107,8 +101,7 @@ def test_a_heat_bath_carries_no_weight_on_average(make):
 
 @pytest.mark.usefixtures("uncompiled")
 def test_a_disc_that_meets_nothing_presses_on_nothing(make):
-    periodic = [f"box.{side}='periodic'" for side in ("left", "right", "bottom", "top")]
-    log = make("species.count=1", "run.until=4", "log={ events=false, pressure=true, snapshot_every=0.1 }", *periodic)
+    log = make("species.count=1", "run.until=4", "log={ events=false, pressure=true, snapshot_every=0.1 }", *PERIODIC)
     found = pressure(log).mechanical
     assert found.walls == ()
     assert found.forces[-1].x.value == 0.0
@@ -130,23 +123,11 @@ def test_a_wall_that_is_never_hit_has_no_error_bar(make):
     assert row[1:3] == ["0", ""]
 
 
-@pytest.mark.usefixtures("uncompiled")
-def test_samples_alone_do_not_follow_a_piston(make):
-    log = make(
-        "piston=[{ mass = 8, pressure = 2, position = 6 }]", "log={ events=false, pressure=true }", "run.until=0.1"
-    )
-    with pytest.raises(UserError, match="has no events, and samples do not follow a piston") as error:
-        pressure(log)
-    assert not isinstance(error.value, NotApplicableError)  # theory is not what is missing
-
-
 def test_no_equation_of_state_of_such_gases(make):
     found = pressure(make("gravity.acceleration=[0, -0.3]"))
     assert combine_pressure([found]) is found
-    with pytest.raises(UserError, match="no equation of state holds under gravity"):
-        combine_pressure([found, found])
-    with pytest.raises(UserError, match="point 3: no equation of state holds under gravity"):
-        restore_pressure(found.as_dict(), "point 3")
+    raised("no equation of state holds under gravity", combine_pressure, [found, found])
+    raised("point 3: no equation of state holds under gravity", restore_pressure, found.as_dict(), "point 3")
 
 
 def walls_at(*pressures):

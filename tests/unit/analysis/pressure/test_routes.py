@@ -60,6 +60,9 @@ def test_every_route(make):
     assert z[PAIRS] == pytest.approx(1 + pairs / 40 / (2 * 20 * ideal), rel=1e-9)
     for route in found.routes:
         assert route.pressure.value == pytest.approx(route.compressibility_factor.value * ideal, rel=1e-12)
+    rate = (next(log.chunks()).partner >= 0).sum() / 3 / 40
+    assert found.collision_rates[0].rate.value == pytest.approx(rate, rel=1e-12)
+    assert found.free_paths[0].time.value == pytest.approx(1 / rate, rel=1e-12)
     assert pairs > 0
 
 
@@ -85,15 +88,11 @@ def test_pressures_of_two_discs_in_lanes(lanes):
     for side, name in ((0, "left wall"), (1, "right wall")):
         given = sum(impulse[d][0] * hits[d, side] for d in (0, 1))
         assert walls[name] == pytest.approx(given / 180 / 8, rel=1e-9)
-    assert walls["bottom wall"] == pytest.approx(impulse[0][1] * hits[0, 2] / 180 / 10, rel=1e-9)
-    assert walls["top wall"] == pytest.approx(impulse[1][1] * hits[1, 3] / 180 / 10, rel=1e-9)
-    assert walls["wall 4, up"] == pytest.approx(impulse[1][1] * hits[1, 4] / 180 / 10, rel=1e-9)
-    assert walls["wall 4, down"] == pytest.approx(impulse[0][1] * hits[0, 4] / 180 / 10, rel=1e-9)
+    for name, disc, wall in (("bottom wall", 0, 2), ("top wall", 1, 3), ("wall 4, up", 1, 4), ("wall 4, down", 0, 4)):
+        assert walls[name] == pytest.approx(impulse[disc][1] * hits[disc, wall] / 180 / 10, rel=1e-9)
     forces = {force.name: (force.x.value, force.y.value) for force in found.mechanical.forces}
-    assert forces["wall 4"][1] == pytest.approx(
-        (impulse[0][1] * hits[0, 4] - impulse[1][1] * hits[1, 4]) / 180, rel=1e-9
-    )
-    assert forces["all walls"][0] == pytest.approx(
-        sum(impulse[d][0] * (hits[d, 1] - hits[d, 0]) for d in (0, 1)) / 180, abs=1e-9
-    )
+    on_wall = (impulse[0][1] * hits[0, 4] - impulse[1][1] * hits[1, 4]) / 180
+    along_x = sum(impulse[d][0] * (hits[d, 1] - hits[d, 0]) for d in (0, 1)) / 180
+    assert forces["wall 4"][1] == pytest.approx(on_wall, rel=1e-9)
+    assert forces["all walls"][0] == pytest.approx(along_x, abs=1e-9)
     assert found.mechanical.area == 80.0

@@ -5,14 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from idealgas import open_log, parse_scene, simulate
 from idealgas.analysis.profile.flow import LAW, expected_flow
 from idealgas.analysis.profile.strips import collect
 from idealgas.analysis.theory import hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
-SCENE = """
+GAS = """
 box = { size = [20, 41], left = "periodic", right = "periodic", bottom = { thermal = 2 }, top = { thermal = 2 } }
 gravity.acceleration = [0.001, 0]
 species = [{ name = "gas", count = 200, radius = 0.5, mass = 3, temperature = 2, placement = "lattice" }]
@@ -20,20 +19,10 @@ run.events = 1
 """
 
 
-@pytest.fixture
-def log_of(tmp_path):
-    def run(*overrides):
-        simulate(parse_scene(SCENE, overrides=overrides), tmp_path / "run.h5", force=True)
-        return open_log(tmp_path / "run.h5")
-
-    return run
-
-
-def test_a_parabola_with_slip(log_of):
+def test_a_parabola_with_slip(make):
     """u = ρg/2η (y (H - y) + sH), H = 40 between centres; s = 1.016 ℓ, ℓ = 1.022 · 2/√π free paths."""
     edges = np.linspace(0, 41, 4101)
-    with log_of() as log:
-        found = expected_flow(log, 1, edges)
+    found = expected_flow(make(), 1, edges)
     density = 200 / (20 * 40)
     phi = density * math.pi / 4
     chi = hard_discs.fluid_contact_value(phi)
@@ -49,11 +38,11 @@ def test_a_parabola_with_slip(log_of):
     assert 0.02 < found.velocity[2050].error / velocity[2050] < 0.1
 
 
-def test_energy_and_stress_of_strips_are_relative_to_their_flow(log_of):
-    with log_of() as log:
-        times = np.array([0.0, log.end_time])
-        sums, carried, _ = collect(log, 1, 0, times, np.linspace(0, 41, 5), None)
-        states = list(log.frames(times))
+def test_energy_and_stress_of_strips_are_relative_to_their_flow(make):
+    log = make()
+    times = np.array([0.0, log.end_time])
+    sums, carried, _ = collect(log, 1, 0, times, np.linspace(0, 41, 5), None)
+    states = list(log.frames(times))
     for k in range(4):
         velocity = np.concatenate([state.velocity[state.position[:, 1] // 10.25 == k] for state in states])
         x, y = (velocity - [velocity[:, 0].mean(), 0]).T
@@ -61,12 +50,10 @@ def test_energy_and_stress_of_strips_are_relative_to_their_flow(log_of):
         assert sums[:, 0, k, 1].sum() == pytest.approx(1.5 * (x @ x + y @ y), rel=1e-12)
         assert carried[:, k].sum(axis=0) == pytest.approx([3 * x @ x, 3 * y @ y, 3 * x @ y], rel=1e-10)
     sheared = "box={ size=[20, 41], left='periodic', right='periodic', bottom={ shear=0.1 }, top={ shear=0.1 } }"
-    with log_of(sheared, "gravity=") as log:
-        sums, _, _ = collect(log, 1, None, np.zeros(1), np.linspace(0, 41, 5), None)
-        height, velocity = (
-            log.discs.position[:, 1],
-            log.discs.velocity - [[0.1, 0]] * (log.discs.position[:, 1:] - 20.5),
-        )
+    log = make(sheared, "gravity=")
+    sums, _, _ = collect(log, 1, None, np.zeros(1), np.linspace(0, 41, 5), None)
+    height = log.discs.position[:, 1]
+    velocity = log.discs.velocity - [[0.1, 0]] * (height[:, None] - 20.5)
     velocity -= velocity.mean(axis=0)
     expected = [1.5 * (velocity[height // 10.25 == k] ** 2).sum() for k in range(4)]
     assert sums[0, 0, :, 1] == pytest.approx(expected, rel=1e-12)
@@ -83,7 +70,6 @@ def test_energy_and_stress_of_strips_are_relative_to_their_flow(log_of):
         "restitution={ normal = 0.9, contact_duration = 0.01 }",
     ],
 )
-def test_where_it_is_not_known(log_of, override):
+def test_where_it_is_not_known(make, override):
     """Across the sides too, of two temperatures, without heat, of a thin gas, with losses."""
-    with log_of(override) as log:
-        assert expected_flow(log, 1, np.linspace(0, 41, 5)) is None
+    assert expected_flow(make(override), 1, np.linspace(0, 41, 5)) is None

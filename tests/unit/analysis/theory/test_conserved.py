@@ -2,18 +2,14 @@
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, gas
 
 from idealgas.analysis.theory import conserved
 from idealgas.analysis.theory.forecast import forecast
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
 
-TWO = """
-box.size = [4, 3]
-species = [{ name = "gas", count = 2, radius = 0.2, temperature = 1 }]
-run.events = 100
-"""
-PERIODIC = 'box = {size=[10, 10], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
+TWO = gas(2, 0.2, (4, 3), "events = 100")
 FLOW = "species = [{ name = 'gas', count = 4, radius = 0.2, velocities = [[3.1, 0], [2.9, 0], [3, 0.1], [3, -0.1]] }]"
 ALONG = ", ".join(f"{{position = [{2 * k + 1}, 5], velocity = [3, {(-1) ** k / 10}], radius = 0.2}}" for k in range(20))
 STREAM = f"""
@@ -41,7 +37,7 @@ def test_two_discs_without_momentum_between_walls_are_not_ergodic():
     [
         ("species.gas.count=3",),
         ("species.gas.temperature=", "species.gas.velocities=[[1, 0.5], [0.3, -0.7]]"),
-        (PERIODIC,),
+        PERIODIC,
         ("box.left={thermal = 1}",),
         ("gravity.acceleration=[0, -1]",),
         ("wall=[{from=[2, 0], to=[2, 1]}]",),
@@ -58,7 +54,7 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
 
     In equilibrium the 6 degrees of freedom that are no flow share it.
     """
-    scene, gas = made(TWO, PERIODIC, FLOW)
+    scene, gas = made(TWO, *PERIODIC, FLOW)
     assert conserved.centre_of_mass_velocity(scene, gas) == pytest.approx([3, 0])
     assert gas.temperature == pytest.approx(4.505)
     found = forecast(scene, gas)
@@ -71,10 +67,10 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
 def test_unequal_discs_have_a_centre_of_mass_and_a_fixed_disc_takes_momentum():
     """3 (2, 1) + (-2, 5) = 4 (1, 2). Beside a fixed disc the other has both of its degrees of freedom."""
     pair = "species=[{{name='a', mass={}, velocities=[[2, 1]], {n}}}, {{name='b', velocities=[[-2, 5]], {n}}}]"
-    scene, gas = made(TWO, PERIODIC, pair.format(3, n="count=1, radius=0.2"))
+    scene, gas = made(TWO, *PERIODIC, pair.format(3, n="count=1, radius=0.2"))
     assert conserved.centre_of_mass_velocity(scene, gas) == pytest.approx([1, 2])
     assert conserved.degrees_of_freedom(scene, gas) == 2
-    assert conserved.degrees_of_freedom(*made(TWO, PERIODIC, pair.format(1e12, n="count=1, radius=0.2"))) == 2
+    assert conserved.degrees_of_freedom(*made(TWO, *PERIODIC, pair.format(1e12, n="count=1, radius=0.2"))) == 2
     for unit in (0.1, 1.0, 10.0):
         assert conserved.are_fixed(unit * np.array([1e12, 0.9e12, 1.0])).tolist() == [True, False, False]
 
@@ -92,7 +88,7 @@ def test_a_flow_that_walls_stop_becomes_heat():
     assert "is lost to the heat bath" in sentence
 
 
-@pytest.mark.parametrize("overrides", [(), (PERIODIC,)], ids=["walls", "periodic"])
+@pytest.mark.parametrize("overrides", [(), PERIODIC], ids=["walls", "periodic"])
 @pytest.mark.parametrize("seed", range(5))
 def test_motion_by_chance_is_not_mentioned(overrides, seed):
     start = ("species.gas.count=200", "species.gas.temperature=", "species.gas.speed=2", "species.gas.radius=0.01")

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, gas, log_of, species, streamed
 
 from idealgas.analysis.core.currents import APART_X, CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
 from idealgas.analysis.core.flights import Moments
@@ -14,33 +15,14 @@ from idealgas.analysis.transport.coefficients import _coefficients, flow_in_samp
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import WALLS, transport_tables
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
-SCENE = """
-scene.seed = 3
-box = {{size = [6, 5], left = "{x}", right = "{x}", bottom = "periodic", top = "periodic"}}
-species = [
-    {{name = "gas", count = 12, radius = 0.3, temperature = 1.0}},
-    {{name = "heavy", count = {heavy}, radius = 0.4, mass = 2.5, temperature = 1.0}},
-]
-run.collisions_per_disc = 60
-"""
+GAS = gas(12, 0.3, (6, 5), "collisions_per_disc = 60", periodic="xy", temperature=1.0, seed=3)
+HEAVY = species("heavy", 3, 0.4, mass=2.5)
 
 
-def run(folder, x="periodic", heavy=0):
-    scene = SCENE.format(x=x, heavy=heavy)
-    if not heavy:
-        scene = "\n".join(line for line in scene.splitlines() if "heavy" not in line)
-    simulate(parse_scene(scene), folder / "small.h5")
-    return open_log(folder / "small.h5")
-
-
-@pytest.fixture(scope="module", params=[0, 3], ids=["equal", "mixture"])
-def log(request, tmp_path_factory):
-    with run(tmp_path_factory.mktemp("currents"), heavy=request.param) as log:
-        yield log
+@pytest.fixture(scope="module", params=["", HEAVY], ids=["equal", "mixture"])
+def log(request):
+    return log_of(GAS + request.param)
 
 
 @pytest.fixture(scope="module", params=[(0.0, 1.0, 7), (0.23, 0.71, 4), (0.1, 1.0, 900)], ids=str)
@@ -100,8 +82,7 @@ def test_currents(log, edges):
 
 def test_one_species_moves_apart_from_the_other(log, edges):
     """As the middles of their discs do."""
-    currents = Currents()
-    stream(log, edges, [currents])
+    currents = streamed(log, edges, Currents())
     states = [log.state_at(time) for time in edges[[0, -1]]]
     first, last = (state.position + state.image * log.box for state in states)
     middles = [(last - first)[log.discs.species == s].mean(axis=0) for s in range(len(log.discs.species_names))]
@@ -180,8 +161,7 @@ def test_coefficients_of_a_log(log):
         if one.difference is not None:
             assert one.difference.value == pytest.approx(routes[0] - routes[1])
     trace = (found.pressure["xx"].value + found.pressure["yy"].value) / 2
-    impacts = Impacts(len(log.walls), log.periodic)
-    stream(log, np.array([found.window.start, found.window.end]), [impacts])
+    impacts = streamed(log, np.array([found.window.start, found.window.end]), Impacts(len(log.walls), log.periodic))
     gas, dof = log.discs, 2 * len(log.discs) - 2
     frame = gas.mass @ gas.velocity / gas.mass.sum()
     temperature = (gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum() / dof
@@ -192,81 +172,75 @@ def test_coefficients_of_a_log(log):
     assert any("plateau: t = " in note for table in transport_tables(found) for note in table.notes)
 
 
-def test_walls_have_no_coefficients_of_the_whole_gas(tmp_path):
-    with run(tmp_path, x="reflecting") as log:
-        found = transport(log)
+def test_walls_have_no_coefficients_of_the_whole_gas(make):
+    log = make("box.left=reflecting", "box.right=reflecting")
+    found = transport(log)
     assert found.collective is None
     assert any(WALLS in table.notes for table in transport_tables(found))
     assert math.isfinite(found.diffusion[0].running[-1])
 
 
-def test_species_that_differ_by_name_only_diffuse_like_their_discs(tmp_path):
+def test_species_that_differ_by_name_only_diffuse_like_their_discs():
     gas = 'name = "{}", count = {}, radius = 0.3, temperature = 1.0'
     species = ", ".join("{" + gas.format(name, count) + "}" for name, count in (("white", 12), ("black", 30)))
-    sides = ", ".join(f'{side} = "periodic"' for side in ("left", "right", "bottom", "top"))
-    simulate(
-        parse_scene(f"box = {{size = [8, 9], {sides}}}\nspecies = [{species}]\nrun.events = 20_000"),
-        tmp_path / "log.h5",
-    )
-    with open_log(tmp_path / "log.h5") as log:
-        found = transport(log)
+    found = transport(log_of(f"box.size = [8, 9]\nspecies = [{species}]\nrun.events = 20_000", *PERIODIC))
     mutual = found.collective.coefficients["mutual_diffusion"].value
     for one in found.diffusion:
         assert mutual.theory == pytest.approx(one.coefficient.theory, rel=0.05)  # exactly so in an infinite gas
     assert abs(mutual.deviation) < 4
 
 
-def test_a_longer_lag_is_a_later_plateau(tmp_path):
-    with run(tmp_path) as log:
-        short, long = (transport(log, lag=lag) for lag in (2.0, 4.0))
+def test_a_longer_lag_is_a_later_plateau(make):
+    log = make()
+    short, long = (transport(log, lag=lag) for lag in (2.0, 4.0))
     assert long.collective.plateau == pytest.approx(tuple(2 * t for t in short.collective.plateau), rel=0.02)
     assert long.diffusion[0].lag[-1] == pytest.approx(2 * short.diffusion[0].lag[-1])
     assert (short.free_times, long.free_times) == pytest.approx((2.0, 4.0))
 
 
-SAMPLED = """
-scene.seed = 3
-box = {size = [16, 12], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}
-species = [{name = "gas", count = 60, radius = 0.4, temperature = 1.0}]
-disc = [{position = [8, 6], velocity = [9, -7], radius = 0.4}]
-run.events = 12_000
-log = {pressure = true, heat_flow = true, snapshot_every = 0.5}
+SAMPLED = (
+    gas(60, 0.4, (16, 12), "events = 12_000", periodic="xy", temperature=1.0, seed=3)
+    + """
+[[disc]]
+position = [8, 6]
+velocity = [9, -7]
+radius = 0.4
+[log]
+pressure = true
+heat_flow = true
+snapshot_every = 0.5
 """
+)
 
 
 @pytest.mark.slow
-def test_the_same_coefficients_without_events(tmp_path):
+def test_the_same_coefficients_without_events():
     """At the instants of snapshots the integrals of both are the same but for rounding; a fast disc moves the gas."""
     flows = {}
     for name, override in (("events", "log.events=true"), ("samples", "log.events=false")):
-        simulate(parse_scene(SAMPLED, overrides=[override]), tmp_path / f"{name}.h5")
-        with open_log(tmp_path / f"{name}.h5") as log:
-            last = 0.5 * int(log.end_time / 0.5)
-            found = transport(log, start=1.5, end=last, lag=10.0)
-            flows[name], width = flow_in_samples(log, found.window, found.collective.plateau[1])
-            if log.has_events:
-                edges = 1.5 + width * np.arange(len(flows[name]) + 1)
-                currents = Currents()
-                stream(log, edges, [currents])
-                assert flows[name][..., :APART_X] == pytest.approx(currents.flow[..., :APART_X], rel=1e-9, abs=1e-9)
-            else:
-                assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
-                assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
-                assert len(transport_tables(found)) == 4
-                assert json.dumps(found.as_dict(), allow_nan=False)
+        log = log_of(SAMPLED, override)
+        last = 0.5 * int(log.end_time / 0.5)
+        found = transport(log, start=1.5, end=last, lag=10.0)
+        flows[name], width = flow_in_samples(log, found.window, found.collective.plateau[1])
+        if log.has_events:
+            edges = 1.5 + width * np.arange(len(flows[name]) + 1)
+            currents = streamed(log, edges, Currents())
+            assert flows[name][..., :APART_X] == pytest.approx(currents.flow[..., :APART_X], rel=1e-9, abs=1e-9)
+        else:
+            assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
+            assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
+            assert len(transport_tables(found)) == 4
+            assert json.dumps(found.as_dict(), allow_nan=False)
     assert np.array_equal(flows["events"], flows["samples"], equal_nan=True)
 
 
 @pytest.mark.slow
-def test_walls_leave_the_pressure_tensor(tmp_path):
+def test_walls_leave_the_pressure_tensor():
     """By events and by samples in a window that snapshots bound; samples lack how far the gas moved across."""
-    scene = SAMPLED.replace("heat_flow = true, ", "").replace('top = "periodic"', 'top = "reflecting"')
-    scene = scene.replace('bottom = "periodic"', 'bottom = "reflecting"')
-    tensors = []
+    walls, tensors = ("box.bottom=reflecting", "box.top=reflecting", "log.heat_flow=false"), []
     for override in ("log.events=true", "log.events=false"):
-        simulate(parse_scene(scene, overrides=[override]), tmp_path / "run.h5", force=True)
-        with open_log(tmp_path / "run.h5") as log:
-            found = transport(log, start=1.5, end=0.5 * int(log.end_time / 0.5))
+        log = log_of(SAMPLED, *walls, override)
+        found = transport(log, start=1.5, end=0.5 * int(log.end_time / 0.5))
         assert (found.collective, found.walled) == (None, True)
         tensors.append(found.pressure)
     for name in ("xx", "yy"):

@@ -4,30 +4,19 @@ import json
 from dataclasses import replace
 
 import pytest
+from helpers.logs import gas
 
 from idealgas.analysis import registry
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
-SCENE = """
-scene.seed = {seed}
-box = {{size = [6, 5], left = "periodic", right = "periodic", bottom = "periodic", top = "periodic"}}
-species = [{{name = "gas", count = {count}, radius = 0.3, temperature = 1.0}}]
-run.collisions_per_disc = 60
-"""
+GAS = gas(12, 0.3, (6, 5), "collisions_per_disc = 60", periodic="xy", temperature=1.0)
 ANALYSIS = registry.find("transport")
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def results(make):
     """Two runs of 12 discs and one of 20."""
-    path, found = tmp_path_factory.mktemp("combine") / "run.h5", []
-    for seed, count in ((1, 12), (2, 20), (3, 12)):
-        simulate(parse_scene(SCENE.format(seed=seed, count=count)), path, force=True)
-        with open_log(path) as log:
-            found.append(registry.analyse(log, "transport"))
-    return found
+    runs = ((1, 12), (2, 20), (3, 12))
+    return [registry.analyse(make(f"scene.seed={seed}", f"species.gas.count={n}"), "transport") for seed, n in runs]
 
 
 def test_states(results):

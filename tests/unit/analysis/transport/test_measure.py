@@ -4,32 +4,20 @@ import json
 
 import numpy as np
 import pytest
+from helpers.logs import PERIODIC, gas, log_of
 
 from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import chance_within
-from idealgas.log import open_log
-from idealgas.run.simulate import simulate
-from idealgas.scene import parse_scene
 
-SCENE = """
-scene.seed = 3
-box = {{size = [6, 5], left = "{x}", right = "{x}", bottom = "{y}", top = "{y}"}}
-species = [{{name = "gas", count = 12, radius = 0.3, temperature = 1.0}}]
-run.collisions_per_disc = 60
-"""
+GAS = gas(12, 0.3, (6, 5), "collisions_per_disc = 60", seed=3)
+SQUARE = gas(30, 0.3, (9, 9), "collisions_per_disc = 16_000", periodic="xy", seed=3)
 
 
-@pytest.fixture(
-    scope="module", params=[("reflecting", "reflecting"), ("periodic", "periodic"), ("periodic", "reflecting")], ids=str
-)
-def log(request, tmp_path_factory):
-    path = tmp_path_factory.mktemp("transport") / "small.h5"
-    x, y = request.param
-    simulate(parse_scene(SCENE.format(x=x, y=y)), path)
-    with open_log(path) as log:
-        yield log
+@pytest.fixture(scope="module", params=[(), PERIODIC, PERIODIC[:2]], ids=["walls", "periodic", "channel"])
+def log(request, make):
+    return make(*request.param)
 
 
 def test_trajectories_are_those_of_the_frames(log):
@@ -67,12 +55,10 @@ def test_velocity_integral_of_a_known_motion():
         assert found[k] - found[k - 1] == pytest.approx(step.mean(), abs=1e-14)
 
 
-def test_velocity_correlation_time_at_any_lag(tmp_path):
+def test_velocity_correlation_time_at_any_lag():
     """It is 2D/⟨v²⟩ by Green's and Kubo's relation, even where steps are five mean free times; four standard errors."""
-    scene = SCENE.format(x="periodic", y="periodic").replace("count = 12", "count = 30").replace("[6, 5]", "[9, 9]")
-    simulate(parse_scene(scene, overrides=["run.collisions_per_disc=16000"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        short, long = (transport(log, start=0.0, lag=lag).diffusion[0] for lag in (20.0, 1000.0))
+    log = log_of(SQUARE)
+    short, long = (transport(log, start=0.0, lag=lag).diffusion[0] for lag in (20.0, 1000.0))
     square = 2 * 1.0 * (1 - 1 / 30)  # ⟨v²⟩ at T = 1 without momentum
     expected = 2 * short.coefficient.value / square
     for one in (short.velocity_correlation_time, long.velocity_correlation_time):
@@ -109,12 +95,9 @@ def test_a_single_result_holds_together(log):
     assert all(abs(estimate.deviation) < 4 for estimate in (rate.rate, contact.value))
 
 
-def test_a_species_of_one_disc_has_no_pair_with_itself(tmp_path):
-    species = '{name = "gas", count = 11, radius = 0.3, temperature = 1.0}, {name = "lone", count = 1, radius = 0.4}'
-    scene = f"box.size = [6, 5]\nspecies = [{species}]\nrun.collisions_per_disc = 60\n"
-    simulate(parse_scene(scene.replace("radius = 0.4", "radius = 0.4, temperature = 1.0")), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = transport(log)
+def test_a_species_of_one_disc_has_no_pair_with_itself(make):
+    lone = '{name = "lone", count = 1, radius = 0.4, temperature = 1.0}'
+    found = transport(make(f'species=[{{name = "gas", count = 11, radius = 0.3, temperature = 1.0}}, {lone}]'))
     pairs = [(one.species, one.other) for one in found.pair_distributions]
     assert pairs == [("gas", "gas"), ("gas", "lone")]
     assert json.dumps(found.as_dict(), allow_nan=False)
@@ -123,12 +106,9 @@ def test_a_species_of_one_disc_has_no_pair_with_itself(tmp_path):
 @pytest.mark.parametrize(
     ("collisions", "caveat"), [(120, "(16 needed)"), (480, "up to 1.3 times too small"), (4400, "")]
 )
-def test_a_window_of_few_lags_is_said(tmp_path, collisions, caveat):
+def test_a_window_of_few_lags_is_said(make, collisions, caveat):
     """One of 20 mean free times each; `calibration.csv` has the errors with 75 and 200 of them."""
-    scene = SCENE.format(x="periodic", y="periodic")
-    simulate(parse_scene(scene, overrides=[f"run.collisions_per_disc={collisions}"]), tmp_path / "run.h5")
-    with open_log(tmp_path / "run.h5") as log:
-        found = transport(log, start=0.0)
+    found = transport(make(*PERIODIC, f"run.collisions_per_disc={collisions}"), start=0.0)
     said = [sentence for sentence in found.caveats if "times as long as currents are followed" in sentence]
     assert len(said) == bool(caveat)
     assert all(caveat in sentence for sentence in said)

@@ -5,7 +5,7 @@ intervals that contain the truth. If an error is right and has ν degrees of fre
 distribution, whose rms is √(ν/(ν - 2)): 1 for many, 1.04 for 25, and 1.10 for 12. The truth is exact theory if
 available, else the mean over all seeds or, if their energies differ, a parabola in the energy.
 
-    PYTHONPATH=tests python -m helpers.calibration --seeds 2000 --folder FOLDER
+    PYTHONPATH=tests python -m tools.calibration --seeds 2000 --folder FOLDER
 
 continues from what it has stored in the folder, and prints the table of `calibration.csv`.
 """
@@ -21,8 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import stats
+from tools.calibration_cases import CASES, Case
+from tools.calibration_estimates import estimates
 
-from helpers.calibration_cases import CASES, Case
 from idealgas import Log, open_log, parse_scene, simulate
 from idealgas.analysis.core.caveats import of_window
 from idealgas.analysis.core.equilibration import measure as read_window
@@ -53,9 +54,9 @@ class Row(NamedTuple):
 
 
 def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
-    """Values, errors, samples and theory of each estimate, by its name: (seeds, 4); of KEPT share and caveat.
+    """Values, errors, samples and exact theory of each estimate, by its name: (seeds, 4); of KEPT share and caveat.
 
-    Where energies differ, the energy of the run is in the place of theory.
+    Where energies differ, the energy of the run is in the place of theory; else it is nan if there is none.
     A log in which chance looks like no equilibrium has no estimates, and a share of 0.
     """
     found: dict[str, list[tuple[float, ...]]] = {}
@@ -64,17 +65,18 @@ def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
         simulate(parse_scene(text), path, force=True)
         with open_log(path) as log:
             try:
-                estimates = list(case.measured(log))
+                taken = [one for measured in case.measured for one in estimates(log, measured)]
+                taken += [(name, one, False) for name, one in case.besides(log)]
                 window = read_window(log, []) if case.steady else None
                 share = window.duration / (log.end_time - log.start_time) if window else None
                 said = float(bool(window and (of_window(window) or case.caveats(log))))
                 energy = energy_of(log)
             except NotApplicableError:
-                estimates, share, said = [], 0.0, 1.0
-        for name, one in estimates:
-            exact = one.theory if one.theory is not None and one.theory_error == 0 else math.nan
-            exact = energy if case.energies_differ else exact
-            found.setdefault(name, []).append((one.value, one.standard_error, one.independent_samples, exact))
+                taken, share, said = [], 0.0, 1.0
+        for name, one, exact in taken:
+            truth = one.theory if exact and one.theory is not None else math.nan
+            truth = energy if case.energies_differ else truth
+            found.setdefault(name, []).append((one.value, one.standard_error, one.independent_samples, truth))
         if share is not None:
             found.setdefault(KEPT, []).append((share, said, math.nan, math.nan))
     return {name: np.array(rows) for name, rows in found.items()}
@@ -86,28 +88,6 @@ def energy_of(log: Log) -> float:
     return float(gas.mass @ ((gas.velocity**2).sum(axis=1) / 2 - gas.position @ np.array(log.gravity)))
 
 
-EXACT = (
-    "mean speed",
-    "temperature along x",
-    "temperature, light",
-    "temperature, heavy",
-    "temperature",
-    "mean vx (histogram)",
-    "pressure tensor, xy",
-    "temperature gradient",
-    "all walls, x",
-    "all walls, y",
-    "Boltzmann's H",
-    "free energy, inwards",
-    *(f"kinetic energy before, {way}" for way in ("inwards", "outwards")),
-    "crossing",
-    "slope of the crossing",
-    "mean impact parameter",
-    *(f"⟨j²⟩ {way}, {size}" for way in ("along", "across") for size in ("long", "second", "third", "short")),
-)
-"""Estimates whose theory is exact for this number of discs; others are compared with their mean over all seeds."""
-
-
 def row_of(case: str, run: str, name: str, found: np.ndarray) -> Row:
     """Row of the table from values, errors, samples and theory (runs, 4)."""
     value, error, samples, theory = found.T
@@ -115,7 +95,7 @@ def row_of(case: str, run: str, name: str, found: np.ndarray) -> Row:
     if CASES[case].energies_differ:
         truth, scale = np.polyval(np.polyfit(theory, value, 2), theory), math.sqrt(n / (n - 3))
     else:
-        truth, scale = (theory, 1.0) if name in EXACT else (value.mean(), math.sqrt(n / (n - 1)))
+        truth, scale = (theory, 1.0) if np.isfinite(theory).all() else (value.mean(), math.sqrt(n / (n - 1)))
     deviation = (value - truth) * scale / error
     held = np.abs(deviation) < stats.t.ppf(0.975, np.maximum(samples - 1, 1))
     return Row(case, run, name, n, float(np.sqrt((deviation**2).mean())), float(held.mean()))

@@ -1,6 +1,6 @@
 """Calibration of p-values: those of the right law are uniform over many seeds of one gas.
 
-    PYTHONPATH=tests python -m helpers.p_values --first 1000
+    PYTHONPATH=tests python -m tools.p_values --first 1000
 
 prints the table of `p_values.csv`: for each gas and quantity the mean p-value, which is 0.5 ± 0.29/√runs, the share of
 runs with p < 0.05, and the Kolmogorov-Smirnov p-value of all p-values against a uniform distribution.
@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 from scipy import stats
+from tools.calibration_cases import PERIODIC, THERMAL
 
-from helpers.calibration_cases import PERIODIC, THERMAL
 from idealgas import histogram, open_log, parse_scene, simulate
 
 QUANTITIES = ("speed", "energy", "vx", "vy")
