@@ -108,4 +108,4 @@ def _print(summary: "Summary", output: str, from_start: bool, shows: Sequence[st
         rows["file size"] = decimal(os.path.getsize(output))
     print_tables([facts(output if summary.completed else f"{output} (interrupted)", rows)])
     if shows:
-        echo("what it shows: " + ", ".join(f"`idealgas {name} {shlex.quote(output)}`" for name in shows))
+        echo("suggested analyses: " + ", ".join(f"`idealgas {name} {shlex.quote(output)}`" for name in shows))

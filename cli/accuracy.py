@@ -43,7 +43,7 @@ def accuracy(
     from idealgas.scene import load_scene
 
     if quiet() and output is None and not as_json:
-        raise UserError("-q: neither -o nor --json, so that nothing would be left of the result")
+        raise UserError("-q: requires -o or --json, otherwise the result would be lost")
     scene = load_scene(path, overrides)
     gas = make_gas(scene)
     on_orbit = not scene.effects and is_on_orbit(gas)

@@ -78,7 +78,7 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
     shape = f"lattice: {lattice.rows} rows along {'xy'[lattice.axis]} of {lattice.columns} discs"
     if abs(lattice.strain) < LEAST_STRAIN:
         return f"{shape}, without strain"
-    return f"{shape}, strain {lattice.strain:+.3g} across them; box.size = {list(lattice.unstrained)} has none"
+    return f"{shape}, strain {lattice.strain:+.3g} across them; without strain: box.size = {list(lattice.unstrained)}"
 
 
 def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
@@ -88,13 +88,13 @@ def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
         yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."
         return
     yield (
-        f"at rest: a disc keeps bouncing, {least:.4g} to {most:.4g} times per time, up to a height of "
+        f"at rest: a disc keeps bouncing, with {least:.4g} to {most:.4g} hits per unit time, up to a height of "
         f"{rest.height:.3g} and an energy of {rest.energy:.3g} times its mass"
     )
     if rest.per_free_time > MANY_HITS:
         yield (
             f"warning: A disc at rest has up to {rest.per_free_time:.3g} times as many events as a disc of the initial "
-            f"gas, all {number} together {number * most:.3g} per time; a longer contact duration reduces them."
+            f"gas, all {number} together {number * most:.3g} per unit time; a longer contact duration reduces them."
         )
 
 

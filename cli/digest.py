@@ -24,7 +24,7 @@ def digest(context: click.Context, arguments: tuple[str, ...], check: bool) -> N
     """
     if not check:
         if len(arguments) != 1:
-            raise UserError("digest: one RUN.h5 is needed, or --check")
+            raise UserError("digest: give one RUN.h5, or --check")
         from idealgas.log.digest import digest as digest_of
 
         from ._analysis import open_log

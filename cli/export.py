@@ -77,5 +77,7 @@ def _kind_of(output: str | None) -> "Kind":
     ending = Path(output or "").suffix.lower()
     kind = next((kind for kind, file_format in FORMATS.items() if file_format.ending == ending), None)
     if kind is None:
-        raise UserError(f"--format: missing (allowed {', '.join(KINDS)}), or an OUT with the ending of one")
+        raise UserError(
+            f"--format: missing (allowed {', '.join(KINDS)}), or give OUT the ending of one of these formats"
+        )
     return kind

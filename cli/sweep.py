@@ -99,7 +99,7 @@ def sweep(
     if plot:
         check_output(plot, Path(plot).suffix.lower(), force, paths)
         if len(plans) > 1 and not compares:
-            raise UserError("--plot: several sweeps have no common figure but that of their published values")
+            raise UserError("--plot: several sweeps can only be plotted together against published values")
     from ._interrupt import stop_signals
 
     outcomes: list[dict[str, Any]] = []
@@ -132,7 +132,7 @@ def _folders(paths: tuple[str, ...], output: str) -> list[str]:
         return [output]
     names = [Path(path).stem for path in paths]
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise UserError(f"{twice}: several sweeps of one name, which is that of the folder of their results")
+        raise UserError(f"{twice}: two sweeps have this name, and so the same folder; rename one of the files")
     return [str(Path(output) / name) for name in names]
 
 

@@ -44,7 +44,9 @@ _BEGINNINGS = {
 """Patterns of the first bytes of the files that this program writes, by kind."""
 
 IN_USE = "another run is writing this file"
-NO_LOCKS = "no locks on this file system (HDF5_USE_FILE_LOCKING=FALSE goes without; let only one process write a file)"
+NO_LOCKS = (
+    "this file system does not support locks; set HDF5_USE_FILE_LOCKING=FALSE and let only one process write the file"
+)
 
 Name = str | os.PathLike[str]
 

@@ -34,7 +34,7 @@ def accuracy_figure(found: Accuracy) -> Figure:
     _cost(axes[0], found)
     if len(axes) > 1:
         _digits(axes[1], found)
-    return add_title(figure, f"{found.title}: what accuracy costs")
+    return add_title(figure, f"{found.title}: CPU time and accuracy")
 
 
 def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.ndarray:
@@ -145,7 +145,7 @@ def _trajectories(ax: Panel, study: Accuracy) -> None:
         path = np.maximum(row.trajectory, LEAST)
         ax.plot(study.collisions, path, "-o", ms=3, color=colour, alpha=shade, label=row.case.name)
     ax.set_yscale("log")
-    ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the truth (diameters)")
+    ax.set(xlabel="collisions per disc (no unit)", ylabel="rms distance from the double-double motion (diameters)")
     ax.legend()
 
 
@@ -166,4 +166,4 @@ def orbit_figure(found: OrbitStudy) -> Figure:
     ax.set_ylim(bottom=0)
     ax.set(xlabel="decimal digits carried (no unit)", ylabel="orbit lasts (time, at speed 1)")
     ax.legend()
-    return add_title(figure, "Unstable periodic orbit: how long digits keep it")
+    return add_title(figure, "Unstable periodic orbit: lifetime against digits")

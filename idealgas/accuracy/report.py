@@ -105,9 +105,9 @@ def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
     cost, finer = cost_of(dt, found.steps), cost_of(law.step(TARGET / 10), found.steps)
     times = cost / found.event_driven.timing.median
     return (
-        f"To compute {what} to {TARGET:.0%}, time steps need dt = {dt:.2g} and {times:.2g} times the CPU time of the "
-        f"event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt {law.second:+.2g} "
-        f"dt²); the next factor of 10 in accuracy costs a factor of {finer / cost:.2g}."
+        f"To compute {what} to {TARGET:.0%}, time steps require dt = {dt:.2g} and {times:.2g} times the CPU time of "
+        f"the event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt "
+        f"{law.second:+.2g} dt²); a further factor of 10 in accuracy costs a factor of {finer / cost:.2g}."
     )
 
 

@@ -53,9 +53,9 @@ def check_scene(
     rounding = 0.0 if all(isinstance(s.radius, float) for s in scene.species) else DRAWN
     for name, values in {"radius": radius, "mass": mass, "species": species}.items():
         if not np.allclose(values, getattr(gas, name), rtol=rounding, atol=0.0):
-            raise ValueError(f"not of discs with this discs/{name}")
+            raise ValueError(f"the discs do not have the values of discs/{name}")
     if [(wall.name, wall.start, wall.end) for wall in number_walls(scene)] != list(walls):
-        raise ValueError("other walls than walls/name and walls/endpoints")
+        raise ValueError("walls differ from walls/name and walls/endpoints")
     if len(scene.piston) != pistons:
         raise ValueError(f"{len(scene.piston)} pistons (checkpoints/piston_position: {pistons})")
     if scene.properties.acceleration != gravity:
@@ -78,4 +78,6 @@ def check_scene(
     }
     for column in event_columns(*has):
         if column.when and has[column.when] != (column.name in columns):
-            raise ValueError(f"{'with' if has[column.when] else 'without'} {column.when} (got other columns)")
+            raise ValueError(
+                f"{'with' if has[column.when] else 'without'} {column.when} (the columns of the log differ)"
+            )

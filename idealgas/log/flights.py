@@ -171,7 +171,7 @@ class FlightReader:
             raise LogError(f"{log.path}: its flights have no {' and no '.join(unknown)} (allowed: {', '.join(known)})")
         times = np.array([log.start_time, log.end_time] if edges is None else edges, float)
         if times.ndim != 1 or len(times) < 2 or not (np.diff(times) >= 0).all():
-            raise LogError(f"{log.path}: edges of flights are two times or more in increasing order")
+            raise LogError(f"{log.path}: edges of flights must be two or more times in increasing order")
         if not log.start_time <= times[0] <= times[-1] <= log.end_time:
             got = f"t = {times[0]:g} to {times[-1]:g} (allowed {log.start_time:g} to {log.end_time:g})"
             raise LogError(f"{log.path}: no flights from {got}")

@@ -104,7 +104,9 @@ class LogHistory(LogHeader):
     def _check_checkpoint(self, time: float, row: int) -> None:
         """Raise DamageError unless the number of rows before a checkpoint agrees with its time."""
         if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
-            raise DamageError(self.path, f"checkpoints/row: {row} at t = {time:g} (got other events before it)")
+            raise DamageError(
+                self.path, f"checkpoints/row: {row} at t = {time:g} (the events before it have other times)"
+            )
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -44,4 +44,4 @@ def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
         for special_kind, special_partner in PARTNERS.items():
             wrong |= (kind == special_kind) != (partner == special_partner)
         if wrong.any():
-            raise ValueError(f"events/kind: not that of its partner in row {start + int(wrong.argmax())}")
+            raise ValueError(f"events/kind: disagrees with the partner in row {start + int(wrong.argmax())}")

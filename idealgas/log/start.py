@@ -97,5 +97,7 @@ def _sampled(log: Log, column: str, time: float) -> np.ndarray:
     k = int(np.abs(times - time).argmin()) if len(times) else 0
     if not len(times) or times[k] != time:
         nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
-        raise UserError(f"{log.path}: the piston is known at samples only, not at t = {time:g}{nearest}")
+        raise UserError(
+            f"{log.path}: the position of the piston is known only at samples, not at t = {time:g}{nearest}"
+        )
     return values[k]

@@ -259,7 +259,7 @@ class LogWriter:
         names, values = list(summary), [json.dumps(value) for value in summary.values()]
         sizes = [np.dtype(column.dtype).itemsize for column in schema.SUMMARY_COLUMNS]
         if not summary or max(map(len, names)) > sizes[0] or max(map(len, values)) > sizes[1]:
-            raise ValueError("a summary needs at least one field, and all have to be short")
+            raise ValueError("a summary requires at least one field, and fields must be short")
         return _Rows(self._tables["summary"], 0, len(summary), [np.array(names, "S"), np.array(values, "S")])
 
     def _put_row(self, name: str, given: Mapping[str, Any]) -> None:

@@ -173,9 +173,10 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
             for a gas with a piston or with discs that escape.
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
-        raise UserError(f"{log.path}: has a piston, and neighbours are only found in a box with fixed sides")
+        moving = ", ".join(log.scene.lacking("fixed_walls"))
+        raise UserError(f"{log.path}: colours by order require a box with fixed sides (got a scene with {moving})")
     if colouring == "order" and log.escapes:
-        raise UserError(f"{log.path}: discs leave this gas, and neighbours are only found among all of them")
+        raise UserError(f"{log.path}: colours by order require that no discs leave the gas")
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method})")
     log.require_events()

@@ -97,7 +97,7 @@ def check_outputs(folder: Path, points: Iterable[int]) -> None:
             check_output(path, LOG, force=True)
             with open_log(path) as log:
                 if log.command != COMMAND:
-                    raise OutputError(f"{path}: not a log of this sweep, which does not overwrite it")
+                    raise OutputError(f"{path}: was not written by this sweep and is not overwritten")
 
 
 def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:

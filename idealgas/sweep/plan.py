@@ -242,8 +242,8 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:
-        allowed = "a scene in which nothing but the box has a place"
-        raise SceneError([f"{place}: the box alone is scaled (got a scene with {', '.join(fixed)}; allowed {allowed})"])
+        allowed = "a scene in which nothing has a fixed position in the box"
+        raise SceneError([f"{place}: phi scales only the box (got a scene with {', '.join(fixed)}; allowed {allowed})"])
     if isinstance(phi, bool) or not isinstance(phi, int | float) or not 0 < phi < 1:
         raise SceneError([f"{place}: not a packing fraction (got {toml_value(phi)}; allowed 0 < phi < 1)"])
     width, height = scene.box.size

@@ -110,7 +110,7 @@ def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> 
     for width, alpha in ((3, 0.15), (1, 0.4)):
         ax.axvspan(-width, width, color=GREY, alpha=alpha, linewidth=0, label=f"±{width}σ")
     ax.set(xlim=(-1.08 * FARTHEST, 1.08 * FARTHEST), ylim=(len(papers) - 0.4, -0.6))
-    ax.set_xlabel("own value - published value (σ, both errors together)")
+    ax.set_xlabel("deviation from the published value (combined σ)")
     name_rows(ax, [f"{source} ({len(compared)})" for source, compared in papers.items()], fontsize=8)
     ax.legend()
     return figure

@@ -102,7 +102,7 @@ def _read_point(path: Path) -> dict[str, Any]:
             for row in rows(result, ""):
                 _estimate.validate_python(row.values)
         if path.name != result_path("", contents["point"]).name:
-            raise ValueError(f"point {contents['point']} under another name")
+            raise ValueError(f"the file name does not match point {contents['point']}")
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"])) or "contents"

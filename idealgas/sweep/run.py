@@ -258,6 +258,6 @@ async def _check_scheduler(address: str) -> None:
             reason = "TLS needs certificates, distributed.comm.tls in dask's configuration"
         raise UserError(f"{address}: not the address of a scheduler ({reason})") from None
     except OSError:
-        raise UserError(f"{address}: no answer from a scheduler within {TIMEOUT:g} s") from None
+        raise UserError(f"{address}: no scheduler answered within {TIMEOUT:g} s") from None
     if identity.get("type") != "Scheduler":
         raise UserError(f"{address}: the address of a dask {identity.get('type')}, not of a scheduler")

@@ -33,7 +33,7 @@ class Settings(Table):
     analyses: Annotated[tuple[AnalysisName, ...], Field(strict=False)] = Field(
         default=(), description=f"names of {', '.join(commands())}"
     )
-    keep_logs: bool = Field(default=True, description="whether the logs stay after their analyses")
+    keep_logs: bool = Field(default=True, description="whether logs are kept after their analyses")
 
 
 class Axis(Table):
@@ -49,7 +49,9 @@ class Axis(Table):
     log_range: Annotated[tuple[Positive, Positive, Count], Field(strict=False)] | None = Field(
         default=None, description="[first, last, number of values], first and last > 0"
     )
-    zip: str | None = Field(default=None, description="a word; axes of one word are as long as one another")
+    zip: str | None = Field(
+        default=None, description="a word; axes with the same word vary together and have equal lengths"
+    )
 
     @property
     def steps(self) -> list[Value]:
@@ -70,7 +72,7 @@ class Published(Table):
     quantity: str = Field(description='its name in results.csv, such as "run.events"')
     values: Annotated[tuple[Number, ...], Field(strict=False)] = Field(description="one for each point")
     errors: Annotated[tuple[NotNegative, ...], Field(strict=False)] = Field(
-        default=(), description="their standard errors; none: exact"
+        default=(), description="their standard errors; exact if absent"
     )
     note: str = Field(default="", description="a known difference, in one sentence")
 
@@ -128,8 +130,8 @@ def table_errors(tables: Tables) -> Iterator[Issue]:
             yield Issue((("axis", i, "key"),), "second axis of this key", axis.key, "one axis for each key")
         seen.add(axis.key)
         if axis.zip is not None and lengths.setdefault(axis.zip, len(axis.steps)) != len(axis.steps):
-            got, allowed = f"{len(axis.steps)} values", f"{lengths[axis.zip]}, as the others of zip = {axis.zip}"
-            yield Issue((("axis", i, "zip"),), "not as long as the axes it goes along with", got, allowed)
+            got, allowed = f"{len(axis.steps)} values", f"{lengths[axis.zip]}, as for the others with zip = {axis.zip}"
+            yield Issue((("axis", i, "zip"),), "length differs from the other axes with this zip", got, allowed)
 
 
 def size_errors(tables: Tables) -> Iterator[Issue]:

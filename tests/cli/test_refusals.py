@@ -45,7 +45,7 @@ ACCURACY = [
     (f"{CONFIGS}/baffle.toml", "nothing to compare: time steps do not support wall segments…"),
     (f"{CONFIGS}/bounce.toml", "nothing to compare: a single disc never collides with another…"),
     (f"{CONFIGS}/novak-bortz.toml", "run.method: nothing to compare…"),
-    ("scene.toml -q", "-q: neither -o nor --json, so that nothing would be left of the result"),
+    ("scene.toml -q", "-q: requires -o or --json, otherwise the result would be lost"),
 ]
 ANALYSES = [
     ("--from 1e6", "…empty time window…"),
@@ -71,7 +71,7 @@ LOGS = [
     ("resume run.h5 --until -1", "…run.until: out of range…"),
     ("resume run.h5 --events 1.5", "…'1.5' is not a valid integer…"),
 ]
-PARTS = "…parts are at least one file of events or flights in parquet…"
+PARTS = "…parts must be 1 or more, for events or flights in parquet…"
 EXPORTS = [
     ("--frames 3", "--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)…"),
     ("--frames 3 -o gas.xyz", "--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)…"),
@@ -92,7 +92,7 @@ FILMS = [
     ("piston.h5 --to 31", "…piston.h5: empty time window t = 0 to 31: the log covers t = 0 to 30…"),
     ("run.h5 --speed 1e-9 --to 30", "…frames are too many (allowed <= 1,000,000)…"),
     ("run.h5 -o film.avi", "…film.avi: unknown kind of film (allowed: .mp4, .gif)…"),
-    ("piston.h5 --colour order", "…has a piston, and neighbours are only found in a box with fixed sides…"),
+    ("piston.h5 --colour order", "…colours by order require a box with fixed sides (got a scene with piston)…"),
     ("run.h5 --frame 4", "…film.gif: unknown figure format (allowed .png)…"),
     ("piston.h5 --frame 31 -o a.png", "…piston.h5: no state at t = 31: the log covers t = 0 to 30…"),
     ("run.h5 -o folder.gif", "…folder.gif: is a folder…"),

@@ -87,7 +87,7 @@ def test_failing_points_do_not_stop_the_others(plan, tmp_path):
     [
         pytest.param(
             ("-o", "out", "--scheduler", "tcp://127.0.0.1:9"),
-            "tcp://127.0.0.1:9: no answer from a scheduler within 10 s",
+            "tcp://127.0.0.1:9: no scheduler answered within 10 s",
             marks=pytest.mark.slow,
         ),
         (("-o", "out", "--scheduler", "nowhere"), "nowhere: not the address of a scheduler"),

@@ -269,7 +269,7 @@ def test_a_scene_shows_what_it_says(name, tmp_path):
     path = str(tmp_path / "run.h5")
     printed = called("run", SCENES[name], "-o", path).stdout
     leads = registry.shown(load_scene(SCENES[name]))
-    assert printed.splitlines()[-1].startswith(f"what it shows: `idealgas {leads[0]} ")
+    assert printed.splitlines()[-1].startswith(f"suggested analyses: `idealgas {leads[0]} ")
     for analysis in leads:
         output_of(analysis, path)
     for claim in CLAIMS:

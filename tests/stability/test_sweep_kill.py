@@ -114,7 +114,7 @@ def test_the_scheduler_is_killed(history, undisturbed, tmp_path):
             assert (running.returncode, stdout) == (2, "")
             assert stderr in (
                 "lost the connection to the scheduler; run the same command again to continue\n",
-                f"{address}: no answer from a scheduler within 10 s\n",
+                f"{address}: no scheduler answered within 10 s\n",
             )
     print(f"{'scheduler' if process else 'sweep'} killed after {number_done(folder)} points")
     assert finished(path, folder) == undisturbed  # at once: workers of a sweep that was killed may still be running

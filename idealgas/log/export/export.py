@@ -78,7 +78,7 @@ def export(
     if rows not in tables.END_OF:
         raise unknown("table of rows", rows, tuple(tables.END_OF))
     if parts is not None and (kind != "parquet" or times is not None or parts < 1):
-        raise LogError(f"parts are at least one file of events or flights in parquet (got {parts}, {kind})")
+        raise LogError(f"parts must be 1 or more, for events or flights in parquet (got {parts}, {kind})")
     if times is None and not file_format.has_events:
         raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
     if times is None:

@@ -58,7 +58,7 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
     if folder.exists() and not force:
         raise OutputError(f"{folder}: already exists (use force=True to overwrite)")
     if folder.exists() and not (folder.is_dir() and all(map(_is_part, folder.iterdir()))):
-        raise OutputError(f"{folder}: not overwritten, as it is not a folder of parts alone")
+        raise OutputError(f"{folder}: not overwritten, because it is not a folder that contains only parts")
     edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
     place, writers, rows = beside(folder), list[Any](), 0
 

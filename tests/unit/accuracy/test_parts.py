@@ -194,7 +194,7 @@ def test_costs_follow_a_power_law_between_steps_and_beyond():
 def test_sentences_say_what_the_numbers_say_and_nothing_of_what_was_not_seen():
     """1 % takes dt = 0.005 and 100 s per time unit, 20 times the event-driven 5."""
     said = " ".join(sentences(study(steps(), BiasLaw(-2.0, 0.0, 0.1))))
-    assert "collision rate to 1%, time steps need dt = 0.005 and 20 times the CPU time of the event-driven" in said
+    assert "collision rate to 1%, time steps require dt = 0.005 and 20 times the CPU time of the event-driven" in said
     assert "accuracy costs a factor of 10." in said
     assert "in 16.00% of the collisions, at dt = 0.005 in 0.25%" in said
     assert "dt^2.0" in said

@@ -42,10 +42,10 @@ def test_whole_pairs_are_accepted_also_between_two_chunks_but_not_at_the_start()
         (2, 2, 2.5, "events/partner: no pair in row 11"),
         (1, 1, -2, "events/partner: no pair in row 12"),
         (4, 1, 4, "events/partner: no pair in row 14"),
-        (1, 3, Kind.WALL, "events/kind: not that of its partner in row 11"),
-        (0, 3, Kind.DISC, "events/kind: not that of its partner in row 10"),
-        (3, 3, Kind.WALL, "events/kind: not that of its partner in row 13"),
-        (0, 3, Kind.THERMOSTAT, "events/kind: not that of its partner in row 10"),
+        (1, 3, Kind.WALL, "events/kind: disagrees with the partner in row 11"),
+        (0, 3, Kind.DISC, "events/kind: disagrees with the partner in row 10"),
+        (3, 3, Kind.WALL, "events/kind: disagrees with the partner in row 13"),
+        (0, 3, Kind.THERMOSTAT, "events/kind: disagrees with the partner in row 10"),
     ],
 )
 def test_the_first_wrong_row_is_named(row, column, value, wrong):

@@ -81,7 +81,7 @@ VALUES = {
     "wall W": (put("events/partner", 17, -5), "events/partner .*: -5 in row 17"),
     "pair of one": (put("events/partner", 17, 3), "events/partner: no pair in row"),
     "kind": (put("events/kind", 17, 4), "events/kind .*: THERMOSTAT in row 17, which this log cannot have"),
-    "kind of a pair": (put("events/kind", 17, 0), "events/kind: not that of its partner in row 17"),
+    "kind of a pair": (put("events/kind", 17, 0), "events/kind: disagrees with the partner in row 17"),
     "time nan": (put("events/time", 17, NAN), "events/time .*nan in row 17"),
     "time inf": (put("events/time", 299, INF), "events/time .*inf in row 299"),
     "time tiny": (put("events/time", slice(0, 2), [0.0, 1e-310]), "events/time .*1e-310 in row 1 .allowed 0, or from"),
@@ -196,7 +196,7 @@ def thermostat_row(partner, kind):
     return edit
 
 
-NOT_OF_PARTNER = "events/kind: not that of its partner in row 17"
+NOT_OF_PARTNER = "events/kind: disagrees with the partner in row 17"
 
 
 @pytest.mark.parametrize(
@@ -262,10 +262,10 @@ SCENES = {
     "unknown key": (scene_text(b"[box]", b"[boxx]"), "scene:"),
     "count": (scene_text(b"count = 1000", b"count = 999"), "999 discs .discs/id: 1000"),
     "huge count": (scene_text(b"count = 1000", b"count = 2000000000"), "2000000000 discs|scene:"),
-    "mass": (put("discs/mass", 3, 2.0), "not of discs with this discs/mass"),
-    "radius": (put("discs/radius", 3, 1e-3), "not of discs with this discs/radius"),
+    "mass": (put("discs/mass", 3, 2.0), "the discs do not have the values of discs/mass"),
+    "radius": (put("discs/radius", 3, 1e-3), "the discs do not have the values of discs/radius"),
     "gravity": (put("gravity", 1, -1.0), "gravity"),
-    "wall": (texts("walls/name", 0, b"west"), "other walls"),
+    "wall": (texts("walls/name", 0, b"west"), "walls differ from walls/name"),
     "a heat bath": (
         scene_text(b"[run]", b"[thermostat]\ntemperature = 1\nrate = 1\n[run]"),
         "a heat bath .got no thermostat collisions",

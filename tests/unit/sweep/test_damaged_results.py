@@ -106,4 +106,4 @@ def test_each_is_one_line_of_a_sweep(finished, tmp_path, change):
 def test_a_file_under_another_name_is_refused(finished, tmp_path, name):
     with hold_folder(tmp_path / "out"):
         result_path(tmp_path / "out", 0).with_name(name).write_text(finished)
-    assert "point 0 under another name" in error_of("pressure", tmp_path / "out")
+    assert "the file name does not match point 0" in error_of("pressure", tmp_path / "out")

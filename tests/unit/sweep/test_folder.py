@@ -176,7 +176,7 @@ def test_a_log_of_another_command_is_not_replaced(plan, folder):
     sweep = plan()
     simulate(sweep.points[0].scene, log_path(folder, 0), command="idealgas run")
     before = log_path(folder, 0).read_bytes()
-    with pytest.raises(UserError, match=r"0000.h5: not a log of this sweep"):
+    with pytest.raises(UserError, match=r"0000.h5: was not written by this sweep"):
         resume_numbering(sweep, folder)
     assert log_path(folder, 0).read_bytes() == before
 

@@ -122,7 +122,7 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
         (
             'axis = [{key = "species.mass", values = [1, 2], zip = "a"},\n'
             '{key = "species.radius", values = [1], zip = "a"}]\n' + BASE,
-            ["2: axis.1.zip: not as long as the axes it goes along with (got 1 values; allowed 2"],
+            ["2: axis.1.zip: length differs from the other axes with this zip (got 1 values; allowed 2"],
         ),
         (
             '[[axis]]\nkey = "species.radius"\nvalues = [0.1, -1, 4]\n' + BASE,
@@ -142,11 +142,11 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
         ),
         (
             '[[axis]]\nkey = "phi"\nvalues = [0.1]\n' + BASE.replace("}]", f"}}, {PART}]"),
-            ["2: phi = 0.1: the box alone is scaled (got a scene with species.region"],
+            ["2: phi = 0.1: phi scales only the box (got a scene with species.region"],
         ),
         (
             '[[axis]]\nkey = "phi"\nvalues = [0.1]\n' + BASE + "disc = [{position = [1, 1], radius = 0.1}]\n",
-            ["2: phi = 0.1: the box alone is scaled (got a scene with disc"],
+            ["2: phi = 0.1: phi scales only the box (got a scene with disc"],
         ),
         (BASE.replace("events = 100", "events = 0"), ["5: run.events: out of range"]),
         ("sweep = [", ["1: not TOML"]),

@@ -94,10 +94,10 @@ def test_several_sweeps_have_one_figure(plan, tmp_path):
     ]
     text = drawn.read_text()
     assert all(part in text for part in ("A paper (2)", "Chaotic Dyn. 8, 375 (2003) (4)", "±3σ"))
-    assert "several sweeps of one name" in error_of("sweep", plan, plan, "-o", tmp_path / "twice")
+    assert "two sweeps have this name, and so" in error_of("sweep", plan, plan, "-o", tmp_path / "twice")
     plan.write_text(SWEEP.partition("[[published]]")[0])
     line = error_of("sweep", plan, pi, "-o", tmp_path / "out", "--plot", tmp_path / "y.png")
-    assert line == "--plot: several sweeps have no common figure but that of their published values\n"
+    assert line == "--plot: several sweeps can only be plotted together against published values\n"
 
 
 def test_python_writes_the_tables_as_the_command(plan, tmp_path):
