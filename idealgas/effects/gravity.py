@@ -59,7 +59,7 @@ class GravityEffect(Effect[law.Gravity]):
         key: Key = ("gravity", "acceleration")
         steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
         if not any(map(any, steps)):
-            yield Issue((key,), "no acceleration", str(list(steps[0])), "no [gravity], or one that pulls")
+            yield Issue((key,), "no acceleration", str(list(steps[0])), "a nonzero acceleration, or no [gravity]")
 
     def state_at_start(self, _: Tables, start: Start) -> law.Gravity | None:
         """Return the acceleration summed over all effects, which is what moves the discs."""

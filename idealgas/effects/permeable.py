@@ -51,7 +51,7 @@ class PermeableEffect(Effect[law.Permeable]):
             if wall.via is not None:
                 yield Issue(
                     (key, ("wall", i, "via")),
-                    "an arc that discs pass from one side",
+                    "an arc cannot be permeable from one side only",
                     got,
                     "a straight wall, or both sides",
                 )
@@ -60,7 +60,7 @@ class PermeableEffect(Effect[law.Permeable]):
                 yield Issue((key,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
             if wall.absences:
                 keys = (key, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
-                allowed = "a wall that is always there; beside a gate at its place, if need be"
+                allowed = "a wall that is always present; if necessary, add a gate at the same place"
                 yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
 
     def make(self, tables: Tables, start: Start) -> law.Permeable:

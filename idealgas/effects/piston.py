@@ -208,9 +208,9 @@ class PistonEffect(Effect[np.ndarray]):
                 continue
             key: Key = ("piston", k, "name" if piston.name else "inner")
             if piston.inner is None and piston.name:
-                yield Issue((key,), "a name of a piston at a side", f'"{piston.name}"', "none: it has that of the side")
+                yield Issue((key,), "only inner pistons have names", f'"{piston.name}"', "no name")
             elif piston.inner and piston.wall in taken:
-                yield Issue((key,), f"name taken by {taken[piston.wall]}", f'"{piston.wall}"', "a name of its own")
+                yield Issue((key,), f"name taken by {taken[piston.wall]}", f'"{piston.wall}"', "a unique name")
             elif piston.inner:
                 taken[piston.wall] = "another piston"
 

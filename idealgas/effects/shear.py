@@ -64,10 +64,17 @@ class ShearEffect(Effect[law.Shear]):
         left, right, bottom, top = tables.sides
         across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
         if left != PERIODIC or right != PERIODIC:
-            yield Issue(across, "no shear between other sides", "left and right not periodic", f'both "{PERIODIC}"')
+            yield Issue(
+                across,
+                "sheared sides require periodic left and right sides",
+                "left and right not periodic",
+                f'both "{PERIODIC}"',
+            )
         if bottom != top:
             keys: tuple[Key, ...] = (("box", "bottom"), ("box", "top"))
-            yield Issue(keys, "sheared in two ways", "different bottom and top", "the same { shear = rate } for both")
+            yield Issue(
+                keys, "different shear at bottom and top", "two different sides", "the same { shear = rate } for both"
+            )
 
     def make(self, tables: Tables, start: Start) -> law.Shear:
         return law.make_shear(tables.sides[3].shear, tables.size)

@@ -21,7 +21,7 @@ class ThermalSide(SteppedTable):
     in_steps = ("thermal",)
 
     thermal: WallTemperature = Field(
-        description='temperature > 0, energy, or steps [[0, T], [t, T], …], where "reflecting" is a T too'
+        description='temperature > 0, energy, or steps [[0, T], [t, T], …], where T may also be "reflecting"'
     )
 
     @property

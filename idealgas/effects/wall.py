@@ -192,25 +192,27 @@ def wall_issues(size: tuple[float, float], i: int, wall: WallTable) -> Iterator[
     if wall.via is not None and wall.start == wall.end:
         pass
     elif length < SHORTEST * max(size):
-        yield Issue(keys, "a wall of no length", ends, f"a length >= {SHORTEST * max(size)}")
+        yield Issue(keys, "wall too short", ends, f"a length >= {SHORTEST * max(size)}")
     elif wall.via is None and any(wall.start[a] == wall.end[a] in (0, size[a]) for a in range(2)):
-        yield Issue(keys, "a wall along a side of the box", ends, "walls inside the box; a side is a wall already")
+        yield Issue(
+            keys, "a wall along a side of the box", ends, "walls inside the box; the sides of the box are already walls"
+        )
     times = [time for absence in wall.absences for time in absence]
     if wall.is_permeable and wall.solid:
         keys = (("wall", i, "solid"), ("wall", i, "permeable_to"), ("wall", i, "permeable_from"))
-        yield Issue(keys, "a solid that lets discs pass", f'"{wall.solid}" and a permeable wall', "one of them")
+        yield Issue(keys, "a solid that lets discs pass", f'"{wall.solid}" and a permeable wall', "only one of them")
     if wall.absorbing and wall.temperature is not None:
         keys = (("wall", i, "absorbing"), ("wall", i, "temperature"))
-        yield Issue(keys, "an absorbing wall with a temperature", str(wall.temperature), "one of them")
+        yield Issue(keys, "an absorbing wall with a temperature", str(wall.temperature), "only one of them")
     if times and wall.solid:
         keys = (("wall", i, "solid"), ("wall", i, "opens_at"), ("wall", i, "closes_at"))
-        yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "one of them")
+        yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "only one of them")
     if any(later <= earlier for earlier, later in pairwise(times)):
         keys = (("wall", i, "closes_at"), ("wall", i, "opens_at"))
         opens, closes = as_times(wall.opens_at), as_times(wall.closes_at)
         single = len(opens) == len(closes) == 1
         allowed = f"> {wall.opens_at}" if single else "times in order, each opening before its closing"
-        wrong = "closes before it opens" if single else "opens and closes not in turn"
+        wrong = "closes before it opens" if single else "openings and closings do not alternate"
         yield Issue(keys, wrong, str(closes[0]) if single else f"{list(closes)} after {list(opens)}", allowed)
 
 
@@ -284,7 +286,7 @@ class WallEffect(Effect[np.recarray]):
                 taken = "the piston" if wall.name == "piston" else "a side of the box"
                 yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
             elif wall.name is not None and first.setdefault(wall.name, i) != i:
-                yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a name of its own")
+                yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a unique name")
 
     def continued(self, table: tuple[WallTable, ...], later: Later) -> tuple[WallTable, ...]:
         walls = (wall.later(later.time) for wall in table)

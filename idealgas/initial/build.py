@@ -168,7 +168,11 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
         position[chosen] = lattices.lattice_sites(lattice)
         if not lattices.fits(room, position, radius, placed, chosen):
             raise _no_room(
-                scene, triangular[0], "on a triangular lattice", f"{len(chosen)} discs", "no others in its way"
+                scene,
+                triangular[0],
+                "on a triangular lattice",
+                f"{len(chosen)} discs",
+                "no other discs or walls in its way",
             )
         placed = np.concatenate((placed, chosen))
     if at_random:

@@ -25,7 +25,7 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
             if key not in reported:
                 reported.add(key)
                 got = f"disc {i} in contact, without a velocity along the normal"
-                yield Issue((key,), f"at rest on {name}, to which it is pressed", got, "a gap or a velocity")
+                yield Issue((key,), f"at rest on {name}, against which it is pressed", got, "a gap or a velocity")
 
 
 def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:

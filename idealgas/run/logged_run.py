@@ -24,7 +24,7 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 from idealgas.system import free_unused_memory
 
-ONE_WAS_FASTER = "one was faster: few events, a busy machine, or a log that needs a core"
+ONE_WAS_FASTER = "one thread was faster: few events, a busy machine, or a log that needs a core"
 """Reason why no slice was shared although several threads were available."""
 
 SHORTEST_SLICE, LONGEST_SLICE = 0.05, 0.2  # seconds between reports of progress and checks for interruption
@@ -232,8 +232,8 @@ class LoggedRun:
         """Close the log of a run that stalls, and raise UserError."""
         self._log.close()
         raise UserError(
-            f"{self._log.path}: {reason}, up to t = {self._simulation.time:g}, so the end of the run may never come; "
-            "the log can be read, and resumed (--until gives it an end in time)"
+            f"{self._log.path}: {reason}, up to t = {self._simulation.time:g}, so the run may never end; "
+            "the log can be read and resumed (use --until to set an end time)"
         )
 
     def _log_steered(self) -> None:

@@ -113,7 +113,7 @@ def _check_end(log: Log, scene: Scene) -> None:
         (trials >= stop.trials, run.trials, trials, "trials"),
     ):
         if passed and limit is not None:
-            where = "lies before that" if limit < reached else "is not a later end"
+            where = "is earlier" if limit < reached else "is not a later end"
             raise LogError(f"{log.path}: already at {reached:,.12g} {unit}; {limit:,.12g} {where}")
 
 
@@ -164,7 +164,7 @@ def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation)
             differs = (getattr(again, name) != getattr(stored, name)).reshape(len(stored.time), -1).any(axis=1)
             if differs.any():
                 row = first + int(differs.argmax())
-                why = f"{name} in event row {row} comes out differently with this program on this machine"
+                why = f"{name} in event row {row} differs with this program on this machine"
                 raise LogError(f"{log.path}: cannot be resumed: {why}")
         first += len(stored.time)
 

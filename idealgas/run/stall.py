@@ -124,7 +124,7 @@ class StallDetector:
             return ""
         self._overdue = math.inf
         span = f"from t = {simulation.time:g} to t = {simulation.last_event_time:g}"
-        return f"{few} of {n} discs make{'s' * (few == 1)} most of the events {span}"
+        return f"{few} of {n} discs account{'s' * (few == 1)} for most of the events {span}"
 
 
 def _expected_collisions(gas: Gas, duration: float, absorbing: np.ndarray | None = None) -> float:

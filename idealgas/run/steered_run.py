@@ -131,7 +131,7 @@ class SteeredRun(LoggedRun):
         """
         self._arrive()
         if self.time == 0:
-            raise UserError("nothing has happened yet: change the scene itself")
+            raise UserError("the run has not begun: change the scene itself")
         if len(setting.encode()) > LONGEST_SETTING:
             raise UserError(f"a setting of {len(setting.encode())} bytes (allowed at most {LONGEST_SETTING})")
         simulation, change = self._simulation, SceneChange(self.time, setting)

@@ -64,7 +64,9 @@ def read_start(
         return discs.first(start.number), {}
     given = [key for key in ("log", "file") if getattr(start, key) is not None]
     if len(given) != (columns is None):
-        raise StartError("log", "not one source of discs", " and ".join(given) or "nothing", "one of log and file")
+        raise StartError(
+            "log", "exactly one source of discs is required", " and ".join(given) or "nothing", "either log or file"
+        )
     update: dict[str, Any] = {}
     if columns is None:
         path = (folder / (start.source or "")).absolute()
@@ -95,7 +97,9 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
     arrays = {name: array if array.ndim else np.full(n, array) for name, array in arrays.items()}
     for name, array in arrays.items():
         if len(array) != n:
-            raise StartError(key, f"column {name} of another length", f"{len(array)} rows", f"{n}, as position")
+            raise StartError(
+                key, f"column {name} has a wrong length", f"{len(array)} rows", f"{n}, as in column position"
+            )
     kinds = np.array(names)
     for name, default in (("radius", math.nan), ("mass", 1.0)):
         given, values = name in arrays, arrays.setdefault(name, np.full(n, default))
@@ -107,8 +111,10 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
             differs = ~(np.abs(values[members] - expected) <= SINGLE * np.abs(expected)) if given else np.zeros(1, bool)
             if differs.any():
                 row = int(members[differs.argmax()])
-                allowed = f'{np.broadcast_to(expected, len(members))[differs.argmax()]}, that of "{table.name}"'
-                raise StartError(key, f"column {name}, disc {row}: not that of its species", f"{values[row]}", allowed)
+                allowed = (
+                    f'{np.broadcast_to(expected, len(members))[differs.argmax()]}, the value of species "{table.name}"'
+                )
+                raise StartError(key, f"column {name}, disc {row}: differs from its species", f"{values[row]}", allowed)
             values[members] = expected
     for name, array in arrays.items():
         size = np.abs(array).reshape(n, -1)
@@ -133,7 +139,7 @@ def _numbers(name: str, values: Any, key: str) -> np.ndarray:
     shape = (len(array) if array.ndim else 1, *((2,) if name in VECTORS else ()))
     if (name not in VECTORS and array.ndim == 0) or array.shape == shape:
         return array
-    raise StartError(key, f"column {name} of another shape", str(array.shape), "(n, 2)" if name in VECTORS else "(n,)")
+    raise StartError(key, f"column {name} has a wrong shape", str(array.shape), "(n, 2)" if name in VECTORS else "(n,)")
 
 
 def _names(values: Any, n: int, default: str, key: str) -> list[str]:
@@ -142,5 +148,5 @@ def _names(values: Any, n: int, default: str, key: str) -> list[str]:
         return [values or default] * n
     names = [values] if isinstance(values, bytes) else list(values)
     if len(names) != n or not all(isinstance(name, str) and 0 < len(name) <= 255 for name in names):
-        raise StartError(key, "column species not of names", f"{len(names)} entries", f"{n} texts")
+        raise StartError(key, "column species not of names", f"{len(names)} entries", f"{n} names")
     return [str(name) for name in names]

@@ -27,7 +27,7 @@ def apply(override: str, document: dict[str, Any]) -> Key:
     elif isinstance(node, dict):
         node.pop(key[-1], None)
     else:
-        raise OverrideError("no value (allowed a TOML value; only a key of a table can be taken away)")
+        raise OverrideError("no value (allowed a TOML value; only a key of a table can be removed)")
     return key
 
 
@@ -51,7 +51,7 @@ def find(override: str, document: dict[str, Any], missing: bool = False) -> tupl
             step = name
         else:
             close = did_you_mean(name, _names(node))
-            raise OverrideError(f"nothing of this name{close} (got {name}; allowed {_choices(node)})")
+            raise OverrideError(f"no such key or table{close} (got {name}; allowed {_choices(node)})")
         key = (*key, step)
         if depth == len(names) - 1:
             break

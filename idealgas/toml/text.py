@@ -43,7 +43,7 @@ def read_text(path: str | PathLike[str]) -> str:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise SceneError([f"{path}: cannot be read ({reason})"]) from None
-    allowed = f"<= {MOST_BYTES:,} bytes; [start] file takes many discs"
+    allowed = f"<= {MOST_BYTES:,} bytes; for many discs use [start] file"
     raise SceneError([f"{path}: too large (got more; allowed {allowed})"])
 
 
@@ -53,7 +53,7 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         raise SceneError([f"{name}: too long (got {len(text):,} characters; allowed <= {MOST_TEXT:,})"])
     if dotted := _DOTTED.search(text):
         line = text.count("\n", 0, dotted.start()) + 1
-        raise SceneError([f"{name}:{line}: a key of too many parts (got {MOST_PARTS} dots; allowed fewer)"])
+        raise SceneError([f"{name}:{line}: a key with too many parts (got {MOST_PARTS} dots; allowed fewer)"])
     try:
         return tomllib.loads(text)
     except RecursionError:

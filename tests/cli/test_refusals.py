@@ -65,9 +65,9 @@ LOGS = [
     ("report run.h5 -o page.pdf", "…page.pdf: unknown kind of report (allowed: .html)…"),
     ("report run.h5 -o page.html --from 1e9", "…empty time window t = 1000000000…"),
     ("report run.h5 -o folder.html", "…folder.html: is a folder…"),
-    ("resume run.h5 --events 100", "…already at … events; 100 lies before that…"),
-    ("resume run.h5 --collisions-per-disc 0.1", "… collisions per disc; 0.1 lies before that…"),
-    ("resume run.h5 --until 0.001", "… units of time; 0.001 lies before that…"),
+    ("resume run.h5 --events 100", "…already at … events; 100 is earlier…"),
+    ("resume run.h5 --collisions-per-disc 0.1", "… collisions per disc; 0.1 is earlier…"),
+    ("resume run.h5 --until 0.001", "… units of time; 0.001 is earlier…"),
     ("resume run.h5 --until -1", "…run.until: out of range…"),
     ("resume run.h5 --events 1.5", "…'1.5' is not a valid integer…"),
 ]

@@ -154,5 +154,5 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1, region = [0
     result = idealgas("run", "scene.toml", "-o", "run.h5", "--json", folder=tmp_path)
     assert result.returncode == 0
     assert json.loads(result.stdout)["completed"]
-    assert result.stderr.startswith("1 of 6 discs makes most of the events from t = 0 to t = ")
+    assert result.stderr.startswith("1 of 6 discs accounts for most of the events from t = 0 to t = ")
     assert result.stderr.count("\n") == 1

@@ -49,7 +49,9 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         if disc.fixed and any(disc.velocity):
             yield Issue((("disc", i, "velocity"), ("disc", i, "fixed")), "fixed", str(list(disc.velocity)), "[0, 0]")
     if mobile and scene.start is not None:
-        yield Issue((("disc", mobile[0]), ("start",)), "discs of their own beside a start", "[[disc]]", "[start] alone")
+        yield Issue(
+            (("disc", mobile[0]), ("start",)), "[[disc]] tables in addition to [start]", "[[disc]]", "[start] alone"
+        )
     yield from species_issues(scene)
     if not {"species", "disc"} & invalid:
         yield from permeable_issues(scene)
@@ -114,25 +116,27 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
             given = [key for key in ("angular_velocity", "spin_temperature") if getattr(item, key, None) is not None]
             keys: tuple[Key, ...] = tuple((table, i, key) for key in given)
             if given and rotation is None:
-                yield Issue((*keys, ("rotation",)), "a spin without rotation", given[0], "it with a table [rotation]")
+                yield Issue(
+                    (*keys, ("rotation",)), "a spin without rotation", given[0], "a table [rotation], or no spin"
+                )
             elif len(given) > 1:
-                yield Issue(keys, "two spins", " and ".join(given), "one of them")
+                yield Issue(keys, "two spins", " and ".join(given), "only one of them")
     if scene.start is not None and rotation is None and scene.given.angular_velocity.any():
         number = int(scene.given.angular_velocity.nonzero()[0][0])
         keys = (("start",), ("rotation",))
-        yield Issue(keys, "a spin without rotation", label(scene, number).strip(), "it with a table [rotation]")
+        yield Issue(keys, "a spin without rotation", label(scene, number).strip(), "a table [rotation], or no spin")
     smooth = rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1
     if smooth and scene.thermostat is None and "thermostat" not in invalid:
         keys = (("rotation", "roughness"), ("rotation", "wall_roughness"))
         allowed = "no [rotation], or a roughness > -1"
-        yield Issue(keys, "spins that nothing changes", "smooth discs and smooth walls", allowed)
+        yield Issue(keys, "nothing changes the spins", "smooth discs and smooth walls", allowed)
 
 
 def _contact_issues(scene: Document) -> Iterator[Issue]:
     """Check that the contact duration has a finite default."""
     if scene.has_discs and math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
-        yield Issue(keys, "no default where nothing moves at the start", "nothing", "a time > 0")
+        yield Issue(keys, "no default, because nothing moves at the start", "nothing", "a time > 0")
 
 
 def _thermostat_issues(scene: Document) -> Iterator[Issue]:
@@ -143,7 +147,7 @@ def _thermostat_issues(scene: Document) -> Iterator[Issue]:
     collisions = thermostat.rate * until * scene.number_of_discs
     if collisions > MAX_THERMOSTAT_COLLISIONS:
         most = thermostat.rate * MAX_THERMOSTAT_COLLISIONS / collisions
-        allowed = f"<= {MAX_THERMOSTAT_COLLISIONS:g}, by a rate <= {most:.3g}"
+        allowed = f"<= {MAX_THERMOSTAT_COLLISIONS:g}, with a rate <= {most:.3g}"
         yield Issue(
             (("thermostat", "rate"), ("run", "until")),
             "too many thermostat collisions",

@@ -43,7 +43,7 @@ def species_issues(scene: Document) -> Iterator[Issue]:
         if s.name == EXPLICIT and EXPLICIT not in numbers:
             yield Issue((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
         elif first.setdefault(s.name, i) != i:
-            yield Issue((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a name of its own")
+            yield Issue((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a unique name")
         count, there = scene.species[i].count, numbers.get(s.name, 0)
         if there > count:
             yield Issue((("species", i, "count"), ("start",)), "fewer discs than are given", f"{count}", f">= {there}")
@@ -58,7 +58,7 @@ def species_issues(scene: Document) -> Iterator[Issue]:
         wanted = count if scene.draws_velocities else s.count
         if s.velocities is not None and needed and len(s.velocities) != wanted:
             keys = (("species", i, "velocities"), ("species", i, "count"))
-            yield Issue(keys, "not one velocity for each disc", str(len(s.velocities)), f"{wanted}, as count says")
+            yield Issue(keys, "not one velocity for each disc", str(len(s.velocities)), f"{wanted}, the value of count")
     yield from _given_species_issues(scene, first)
 
 
@@ -82,7 +82,7 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
                 number = int(discs.index[i])
                 keys = (*disc_keys(scene, (number,), key), ("species", tables[name], key))
                 wrong = f"{label(scene, number)}not the {key} of its species"
-                yield Issue(keys, wrong, f"{getattr(discs, key)[i]}", f'{expected}, that of "{name}"')
+                yield Issue(keys, wrong, f"{getattr(discs, key)[i]}", f'{expected}, the value of species "{name}"')
 
 
 def permeable_issues(scene: Document) -> Iterator[Issue]:
@@ -167,7 +167,7 @@ def _limits(scene: Document) -> tuple[Key, ...]:
 
 
 def _name_of(box: Box, space: Rectangle) -> str:
-    return "box" if space == (0.0, 0.0, *box.size) else "space before the piston"
+    return "box" if space == (0.0, 0.0, *box.size) else "space in front of the piston"
 
 
 def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
@@ -208,7 +208,12 @@ def placement_issues(scene: Document) -> Iterator[Issue]:
         keys: tuple[Key, ...] = (("species", i, "placement"),)
         if not all(scene.box.periodic):
             sides = tuple(("box", side) for side in ("left", "right", "bottom", "top"))
-            yield Issue((*keys, *sides), f"{s.placement} in a box with sides", f'"{s.placement}"', "periodic sides")
+            yield Issue(
+                (*keys, *sides),
+                f"{s.placement} placement requires a periodic box",
+                f'"{s.placement}"',
+                "periodic sides",
+            )
         elif s.region is not None:
             yield Issue(
                 (("species", i, "region"), *keys), f"region for {s.placement} discs", str(list(s.region)), "none"
@@ -228,7 +233,7 @@ def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> It
     uncompressed += ["[[wall]]"] if scene.walls else []
     if uncompressed:
         allowed = "compressed for all species, and no [[disc]], [start] or [[wall]]"
-        yield Issue((key,), "compressed beside what is not", ", ".join(uncompressed), allowed)
+        yield Issue((key,), "not everything is compressed", ", ".join(uncompressed), allowed)
     least = NARROWEST * max(s.largest_radius for _, s in kinds)
     if min(scene.box.size) < least:
         got = f"a side of {min(scene.box.size)}"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from idealgas.effects.piston import PistonTable
     from idealgas.scene.document import Document
 
-WAY = ", as one with a mass comes as near to the other side as the discs let it"
+WAY = ", because a piston with a mass may compress the gas until the discs are closely packed"
 
 CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
@@ -63,7 +63,7 @@ def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
     piston = scene.piston[k]
     if piston.inner and piston.side:
         got = f'side = "{piston.side}", inner = "{piston.inner}"'
-        yield Issue((("piston", k, "inner"), ("piston", k, "side")), "at a side and inner", got, "one of them")
+        yield Issue((("piston", k, "inner"), ("piston", k, "side")), "at a side and inner", got, "only one of them")
         return
     for name in sorted((SIDES[side] for side in sides_across(piston.axis)), key=lambda name: name != piston.wall):
         side, allowed = getattr(scene.box, name), "reflecting" if name == piston.wall else "reflecting or thermal"
@@ -88,7 +88,7 @@ def _gravity_issues(scene: Document) -> Iterator[Issue]:
     masses: list[Key] = [("piston", k, "mass") for k, piston in enumerate(scene.piston) if piston.mass is not None]
     if masses and scene.properties.later_accelerations:
         keys: tuple[Key, ...] = (("gravity", "acceleration"), *masses)
-        yield Issue(keys, "gravity in steps beside a piston with a mass", "steps", "one acceleration")
+        yield Issue(keys, "gravity in steps with a piston that has a mass", "steps", "a constant acceleration")
 
 
 def _place_key(scene: Document, k: int) -> Key:
@@ -112,7 +112,7 @@ def _row_issues(scene: Document) -> Iterator[Issue]:
         elif piston.outward < before.outward or starts[0] >= starts[1]:
             keys = (("piston", k, "position"), ("piston", k), ("piston", k - 1, "position"))
             texts = (f"{table.wall} at {start:g}" for table, start in zip((before, piston), starts, strict=True))
-            allowed = "in order of position, those at sides outside"
+            allowed = "in order of position, pistons at sides outermost"
             yield Issue(keys, "pistons not in order", ", then ".join(texts), allowed)
 
 
@@ -126,7 +126,7 @@ def _motion_issues(piston: PistonTable, k: int) -> Iterator[Issue]:
     pressed = [] if piston.inner else ["pressure"]
     if given not in (["velocity"], ["mass", *pressed], ["velocity", "mass", *pressed]):
         keys: tuple[Key, ...] = (("piston", k), *(("piston", k, key) for key in given))
-        what = "not one motion" if given else "no motion"
+        what = "ill-defined motion" if given else "no motion"
         yield Issue(
             keys,
             what,
@@ -163,7 +163,7 @@ def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
         return
     if scene.run.until is None:
         inward = velocities[-1] * piston.outward < 0 or piston.inner
-        what = "crushes the gas sooner or later" if inward else "leaves the box sooner or later"
+        what = "eventually crushes the gas" if inward else "eventually leaves the box"
         yield Issue(keys, what, "a run without until", "a run with until")
         return
     places, length, least = track(scene, piston), scene.box.size[piston.axis], least_depth(scene, piston.axis)
@@ -207,7 +207,7 @@ def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
     if acceleration * piston.outward >= 0:
         keys: tuple[Key, ...] = (("piston", k, "pressure"), ("piston", k, "mass"), ("gravity", "acceleration"))
         got = f"an acceleration of {acceleration}"
-        yield Issue(keys, "nothing presses the piston on the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
+        yield Issue(keys, "nothing presses the piston against the gas", got, f"{'<' if piston.outward > 0 else '>'} 0")
 
 
 def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
@@ -216,7 +216,7 @@ def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
     start, pull = piston.start(size), piston.acceleration(size, scene.properties.acceleration)
     if not piston.velocity and ((start == 0 and pull < 0) or (start == size[piston.axis] and pull > 0)):
         keys: tuple[Key, ...] = (("piston", k, "position"), ("gravity", "acceleration"))
-        yield Issue(keys, "a piston at rest on a side", f"{start:g}", f"0 < position < {size[piston.axis]}")
+        yield Issue(keys, "a piston pressed against a side", f"{start:g}", f"0 < position < {size[piston.axis]}")
 
 
 def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
@@ -234,7 +234,7 @@ def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
             _depth(scene, piston, end[piston.axis]) for end in bounds(wall.start, wall.end, wall.arc)
         )
         if reach > depth:
-            why = ", where it cannot come" if piston.mass is None else WAY
+            why = ", beyond the reach of the piston" if piston.mass is None else WAY
             allowed = f"no farther than {depth:.6g}{why}"
             got = f"{reach:.6g} from the {_facing(piston)} side"
             yield Issue(_in_the_way(wall, i, k), "wall in the way of the piston", got, allowed)
@@ -267,7 +267,7 @@ def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
     for i, wall in enumerate(scene.segments):
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
         if low - wall.radius < most and high + wall.radius > least:
-            allowed = f"none from {least:.6g} to {most:.6g} along {'xy'[axis]}, where it may come"
+            allowed = f"none from {least:.6g} to {most:.6g} along {'xy'[axis]}, within the reach of the piston"
             got = f"from {low:.6g} to {high:.6g}"
             yield Issue(_in_the_way(wall, i, k), f"wall in the way of {piston_names(scene.piston)[k]}", got, allowed)
 

@@ -65,7 +65,7 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
     if scene.run.dt is None:
         yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
     for place in _keys(scene, "allows_time_steps"):
-        yield Issue((place, ("run", "method")), "cannot be met in steps", got, f"event_driven, {BRUTE_FORCE}")
+        yield Issue((place, ("run", "method")), "not supported by time steps", got, f"event_driven, {BRUTE_FORCE}")
 
 
 def _precision_issues(scene: Document) -> Iterator[Issue]:
@@ -73,7 +73,7 @@ def _precision_issues(scene: Document) -> Iterator[Issue]:
     for place in _keys(scene):
         if place == ("steering",) and scene.run.precision == "float32":
             continue
-        wrong = "smooth elastic discs in a reflecting box are all there is"
+        wrong = "only smooth elastic discs in a reflecting box are supported"
         yield Issue((place, ("run", "precision")), wrong, f'precision = "{scene.run.precision}"', f'"{PLAIN}"')
 
 
@@ -90,7 +90,7 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
     """Check for a heat flow without pressure, or in gases with other sources of heat."""
     key: Key = ("log", "heat_flow")
     if not scene.log.pressure:
-        wrong = "recorded with the flow of momentum only"
+        wrong = "only recorded together with the momentum flow"
         yield Issue((key, ("log", "pressure")), wrong, "pressure = false", "pressure = true")
     if not all(scene.properties.periodic):
         yield Issue((key, ("box",)), "walls take heat and momentum", "sides that reflect", "four periodic sides")
@@ -109,7 +109,9 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
         if scene.number_of_discs < 2:
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
         elif scene.mean_speed == 0:
-            yield Issue((("run", "method"),), "nothing moves, so no pair meets", "every speed 0", "discs that move")
+            yield Issue(
+                (("run", "method"),), "nothing moves, so no pair meets", "speeds that are all 0", "discs that move"
+            )
         elif scene.run.v_ref is not None:
             yield from _slow_issues(scene, scene.run.v_ref)
 
@@ -122,7 +124,7 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
         if v_ref < least:
             keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
             yield Issue(
-                keys, "slower than the discs at the start", f"{v_ref}", f">= {least:.6g}, better ten times that"
+                keys, "slower than the discs at the start", f"{v_ref}", f">= {least:.6g}, preferably ten times as much"
             )
 
 
@@ -132,7 +134,7 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
     if run.until is not None and LONGEST * scene.mean_free_time < end:
         got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
         allowed = f"<= {LONGEST:.3g} of them, a time <= {LONGEST * scene.mean_free_time:.3g}"
-        yield Issue((("run", "until"), ("run",)), "too long for the digits of the clock", got, allowed)
+        yield Issue((("run", "until"), ("run",)), "too long for the resolution of the clock", got, allowed)
     yield from _heated_issues(scene)
     every = None if "log" in invalid else scene.log.snapshot_every
     for key, period, what, most in (
@@ -140,13 +142,13 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
         (("run", "dt"), run.dt, "steps", MOST_STEPS),
     ):
         if period is not None and most * period < end < math.inf:
-            allowed = f"<= {most:g}, by a time >= {end / most:.3g}"
+            allowed = f"<= {most:g}, with a time >= {end / most:.3g}"
             yield Issue((key, ("run",)), f"too many {what}", f"about {end / period:.3g}", allowed)
     if run.v_ref is None or run.trials is not None or math.isinf(scene.trial_time):
         return
     trials = end / scene.trial_time
     if MOST_TRIALS < trials < math.inf:
-        allowed = f"<= {MOST_TRIALS:g}, by a speed <= {run.v_ref * MOST_TRIALS / trials:.3g}"
+        allowed = f"<= {MOST_TRIALS:g}, with a speed <= {run.v_ref * MOST_TRIALS / trials:.3g}"
         yield Issue((("run", "v_ref"), ("run",)), "too many trials", f"about {trials:.3g}", allowed)
 
 
@@ -163,7 +165,7 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
     before, later = max([scene.mean_kinetic_energy, *first]), max(properties.later_temperatures, default=0.0)
     if later > MOST_HEATING * before:
         got, allowed = f"{later:g} after {before:.3g}", f"at most {MOST_HEATING:.3g} times as hot"
-        yield Issue((*keys, ("run",)), "a step beyond the digits of the account of energy", got, allowed)
+        yield Issue((*keys, ("run",)), "a step too large for the resolution of the energy account", got, allowed)
         return
     lightest, hottest = min([*(size.mass for size in scene.sizes), *scene.given.mass.tolist()]), max(*first, later, 0.0)
     speed = math.sqrt(math.pi * hottest / (2 * lightest))  # the discs may be cold at the start
@@ -173,7 +175,7 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
     if events > MOST_EVENTS:
         got = f"{hottest:g}, about {events:.3g} collisions until t = {run.until:g}"
         allowed = f"<= {MOST_EVENTS:g}, at T <= {hottest * (MOST_EVENTS / events) ** 2:.3g}"
-        yield Issue((*keys, ("run", "until")), "too hot for a run that ends", got, allowed)
+        yield Issue((*keys, ("run", "until")), "too hot: the run would take years", got, allowed)
 
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
@@ -194,7 +196,7 @@ def endless_issues(scene: Document) -> Iterator[Issue]:
         return
     alone = scene.number_of_discs == 1
     if not scene.properties.drives_discs and not (scene.has_discs and scene.mean_speed):
-        yield Issue(keys, "nothing moves, so no event ends the run", "every speed 0", "a run with until")
+        yield Issue(keys, "nothing moves, so no event ends the run", "speeds that are all 0", "a run with until")
     elif run.events is None and alone:
         yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
     elif alone and all(scene.properties.periodic) and scene.properties.empty and scene.properties.isolated:

@@ -26,7 +26,7 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
     solids = scene.solids
     for k, end in solids.loose:
         allowed = f'an end of another wall with solid = "{scene.wall[k].solid}" there, and only one'
-        yield Issue((("wall", k, "solid"),), "no closed curve", f"an end at {list(end)}", allowed)
+        yield Issue((("wall", k, "solid"),), "curve not closed", f"an end at {list(end)}", allowed)
     if solids.loose:
         return
     if made and (crossing := _crossing(scene)):
@@ -35,19 +35,19 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
             (("wall", a, "solid"), ("wall", b, "solid")),
             "curves that cross",
             f"wall {scene.wall[b].name or b}",
-            "closed curves apart",
+            "curves that do not cross",
         )
     elif made and fixed and (reaching := list(_reaching(scene, fixed, made))):
         yield from reaching
     elif solids.area >= scene.box.size[0] * scene.box.size[1] * (1 - 1e-12):
         place: Key = ("wall", next(iter(made)), "solid") if made else fixed[0].place
         got = f"{'solids' if made else 'fixed discs'} everywhere"
-        yield Issue((place,), "no area is left", got, "some place for the gas")
+        yield Issue((place,), "no area is left", got, "room for the gas")
     discs = scene.given
     for k in np.flatnonzero(solids.contain(discs.position))[:MOST_OVERLAPS].tolist():
         number = int(discs.index[k])
         keys = disc_keys(scene, (number,), "position")
-        yield Issue(keys, f"{label(scene, number)}in a solid", str(discs.position[k].tolist()), "a place out of it")
+        yield Issue(keys, f"{label(scene, number)}in a solid", str(discs.position[k].tolist()), "a position outside")
 
 
 def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, WallTable]) -> Iterator[Issue]:
@@ -66,7 +66,9 @@ def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, W
             *disc_keys(scene, (fixed[k].number,), "position", "radius"),
             ("wall", next(iter(solid)), "solid"),
         )
-        yield Issue(keys, "fixed disc reaches into a solid", str(position[k].tolist()), f"{radius[k]} or more from it")
+        yield Issue(
+            keys, "fixed disc protrudes into a solid", str(position[k].tolist()), f"{radius[k]} or more from it"
+        )
 
 
 def _crossing(scene: Document) -> tuple[int, int] | None:

@@ -235,7 +235,7 @@ def lanes(n, seed=2):
 
 @pytest.mark.parametrize("dt", [0.8, 0.2, 0.05])
 def test_a_flight_from_wall_to_wall_takes_a_step_too_long(dt):
-    """A wall is met half a step late on the average, and takes as long to leave: the flight of ℓ/v lasts ℓ/v + dt.
+    """A wall is met half a step late on average, and takes as long to leave: the flight of ℓ/v lasts ℓ/v + dt.
 
     So the rate of wall hits is too low by v dt/ℓ, to first order. Phases are uniform: k = 4 standard errors.
     """

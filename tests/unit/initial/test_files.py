@@ -115,6 +115,6 @@ def test_a_file_and_a_table_agree_about_radius_and_mass(tmp_path, radius):
     assert (given.radius.tolist(), given.mass.tolist(), given.names) == ([0.1, 0.1], [2, 2], ("a",))
     (tmp_path / "a.csv").write_text(f"x,y,radius\n1,1,0.1\n3,3,{radius}\n")
     with pytest.raises(
-        SceneError, match=rf"column radius, disc 1: not that of its species \(got {radius}; allowed 0.1"
+        SceneError, match=rf"column radius, disc 1: differs from its species \(got {radius}; allowed 0.1"
     ):
         parse_scene(FILE.format(tmp_path / "a.csv") + table)

@@ -78,7 +78,10 @@ def test_the_same_bits_without_events_resumed_and_without_the_flow_of_heat(whole
 @pytest.mark.parametrize(
     ("overrides", "said"),
     [
-        (("log.pressure=false",), "recorded with the flow of momentum only (got pressure = false; allowed pressure"),
+        (
+            ("log.pressure=false",),
+            "only recorded together with the momentum flow (got pressure = false; allowed pressure",
+        ),
         (("box.left=", "box.right="), "walls take heat and momentum (got sides that reflect; allowed four periodic"),
         (("restitution.normal=0.9",), "changes velocities between collisions (got restitution; allowed heat_flow ="),
         (("rotation.roughness=0.5",), "changes velocities between collisions (got rotation; allowed heat_flow ="),

@@ -195,8 +195,8 @@ def test_values_changed_by_the_program_as_by_the_scene(tmp_path):
     [
         ("thermostat.rate=3", "not a value that can change"),
         ("gravity.acceleration=[0, 1]", "no gravity in the scene"),
-        ("wall.gate.open=true", "wall.gate.closes_at: opens and closes not in turn"),
-        ("wall.door.open=true", "nothing of this name"),
+        ("wall.gate.open=true", "wall.gate.closes_at: openings and closings do not alternate"),
+        ("wall.door.open=true", "no such key or table"),
         ("thermostat.temperature=-1", "thermostat.temperature"),
         ("thermostat", "not an assignment"),
         ("thermostat.temperature=", "no value"),

@@ -152,8 +152,8 @@ def test_logs_that_were_damaged_by_hand_are_one_line(finished, tmp_path):
 @pytest.mark.parametrize(
     ("overrides", "message"),
     [
-        (["run.events=4e3"], "already at 5,000 events; 4,000 lies before that"),
-        (["run.until=0.001"], r"already at [\d.]+ units of time; 0.001 lies before that"),
+        (["run.events=4e3"], "already at 5,000 events; 4,000 is earlier"),
+        (["run.until=0.001"], r"already at [\d.]+ units of time; 0.001 is earlier"),
         (["run.collisions_per_disc=0.1", "run.events="], r"already at [\d.]+ collisions per disc; 0.1 lies before"),
         (["gravity.acceleration=[0, -1]"], r"with another \[gravity\]: only until, events, .* may change"),
         (["species.gas.radius=0.01", "run.events=9000"], r"with another \[species\]"),
@@ -186,7 +186,7 @@ def test_a_wrong_end_and_other_laws(finished, monkeypatch):
 
     monkeypatch.setattr(going_on, "restore", displaced)
     before = finished.read_bytes()
-    with pytest.raises(LogError, match=r"in event row \d+ comes out differently with this program on this machine"):
+    with pytest.raises(LogError, match=r"in event row \d+ differs with this program on this machine"):
         resume(finished, ["run.events=9000"])
     assert finished.read_bytes() == before
 

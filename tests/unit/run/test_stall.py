@@ -170,7 +170,7 @@ def notices(text, path, *overrides):
 
 def test_a_disc_that_keeps_the_run_busy_is_told_once_and_a_gas_never_is(tmp_path, monkeypatch):
     (line,) = notices(FALL, tmp_path / "run.h5")
-    assert line.startswith("1 of 6 discs makes most of the events from t = 0 to t = 1.3")
+    assert line.startswith("1 of 6 discs accounts for most of the events from t = 0 to t = 1.3")
     assert notices(FALL, tmp_path / "default.h5", "restitution={ wall=0.5 }", "run.until=50") == []
     # Not even where it has more events than its epochs are made for.
     monkeypatch.setattr(stall, "OVERDUE", 0.1)

@@ -232,8 +232,11 @@ START = f"{GAS}[start]\n"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (START, "start.log: not one source of discs (got nothing; allowed one of log and file)"),
-        (START + "log = 'a.h5'\nfile = 'b.csv'\n", "start.log: not one source of discs (got log and file"),
+        (START, "start.log: exactly one source of discs is required (got nothing; allowed either log or file)"),
+        (
+            START + "log = 'a.h5'\nfile = 'b.csv'\n",
+            "start.log: exactly one source of discs is required (got log and file",
+        ),
         (START + "log = 'none.h5'\n", "start.log: cannot be started from (got"),
         (START + "file = 'none.csv'\n", "start.file: cannot be read (got "),
         (START + "file = 'none.txt'\n", "start.file: unknown kind of file (got none.txt; allowed .npz, .csv"),
@@ -242,7 +245,7 @@ START = f"{GAS}[start]\n"
         (START + "log = 'OLD'\nvelocities = 'old'\n", "start.velocities: unknown value"),
         (
             START + "log = 'OLD'\n[[disc]]\nposition = [1, 1]\nradius = 0.1\n",
-            "disc.0: discs of their own beside a start",
+            "disc.0: [[disc]] tables in addition to [start]",
         ),
         ("box.size=[8, 6]\nrun.events=1\n[start]\nlog = 'OLD'\nvelocities = 'new'\n", "no species for new velocities"),
         (
@@ -252,11 +255,13 @@ START = f"{GAS}[start]\n"
         (START.replace("[8.0, 6.0]", "[7.0, 6.0]") + "log = 'OLD'\n", "not in the box"),
         (
             START.replace("radius = 0.2", "radius = 0.5") + "log = 'OLD'\n",
-            'start.log: column radius, disc 0: not that of its species (got 0.2; allowed 0.5, that of "light")',
+            "start.log: column radius, disc 0: differs from its species "
+            '(got 0.2; allowed 0.5, the value of species "light")',
         ),
         (
             START.replace("mass = 5", "mass = 6") + "log = 'OLD'\n",
-            'start.log: column mass, disc 30: not that of its species (got 5.0; allowed 6.0, that of "heavy")',
+            "start.log: column mass, disc 30: differs from its species "
+            '(got 5.0; allowed 6.0, the value of species "heavy")',
         ),
     ],
 )
@@ -287,11 +292,11 @@ def test_a_scene_from_python(tmp_path):
         ({"position": [[1, 1]], "radii": [1]}, "start.discs: unknown column (got radii"),
         (
             {"position": [1, 1, 1], "radius": 1},
-            "start.discs: column position of another shape (got (3,); allowed (n, 2))",
+            "start.discs: column position has a wrong shape (got (3,); allowed (n, 2))",
         ),
         (
             {"position": [[1, 1]], "radius": [1, 2]},
-            "start.discs: column radius of another length (got 2 rows; allowed 1",
+            "start.discs: column radius has a wrong length (got 2 rows; allowed 1",
         ),
         ({"position": [["a", 1]], "radius": [1]}, "start.discs: column position not of numbers"),
         ({"position": [[1, 1]]}, "start.discs: column radius, disc 0: invalid number (got nan"),

@@ -34,9 +34,9 @@ def walls(number):
         (walls(MOST_WALLS + 1) + HEAD + species(1), f"wall: too many walls (got 10,001; allowed <= {MOST_WALLS:,})"),
         (HEAD + GAS.format(10**7), f"species: too many discs (got 10,000,000; allowed <= {MOST_DISCS:,})"),
         (HEAD + "#" * MOST_TEXT, f"too long (got {MOST_TEXT + len(HEAD):,} characters; allowed <= {MOST_TEXT:,}"),
-        (HEAD + ".".join("a" * (MOST_PARTS + 1)) + " = 1", "<scene>:3: a key of too many parts"),
-        (HEAD + "[" + " . ".join(['"a"'] * 30_000) + "]", "<scene>:3: a key of too many parts"),
-        (HEAD + "x = {" + ".".join("a" * 30_000) + " = 1}", "<scene>:3: a key of too many parts"),
+        (HEAD + ".".join("a" * (MOST_PARTS + 1)) + " = 1", "<scene>:3: a key with too many parts"),
+        (HEAD + "[" + " . ".join(['"a"'] * 30_000) + "]", "<scene>:3: a key with too many parts"),
+        (HEAD + "x = {" + ".".join("a" * 30_000) + " = 1}", "<scene>:3: a key with too many parts"),
     ],
     ids=["species", "walls", "discs", "text", "key", "table", "inline"],
 )
@@ -48,7 +48,7 @@ def test_one_line_has_the_bound(text, message):
     ("text", "message"),
     [
         ("a" * 1_000_000, "not TOML"),
-        ("1." * 1000, "a key of too many parts"),
+        ("1." * 1000, "a key with too many parts"),
         ('"' * 1000, "not TOML"),
         ("'a" * 1000, "not TOML"),
         ("-" * 100_000, "not TOML"),
@@ -74,7 +74,7 @@ def test_a_large_file_is_one_line_and_dots_in_numbers_and_texts_are_no_keys(tmp_
     discs = "".join(f"[[disc]]\nposition = [{k}, 1]\nradius = 0.1\n" for k in range(100_000))
     (tmp_path / "many.toml").write_text(HEAD + discs)
     with pytest.raises(
-        SceneError, match=f"too large .got more; allowed <= {MOST_BYTES:,} bytes; .start. file takes many discs.$"
+        SceneError, match=f"too large .got more; allowed <= {MOST_BYTES:,} bytes; for many discs use .start. file.$"
     ):
         load_scene(tmp_path / "many.toml")
     text = 'scene.title = "' + "e.g. " * 15 + '"\n' + HEAD + species(1)

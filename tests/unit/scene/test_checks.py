@@ -51,7 +51,7 @@ SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8
     ("text", "wrong"),
     [
         pytest.param(ALONE + f"run.until = {0.999 * limit(3, 2):g}", None, id="clock"),
-        pytest.param(ALONE + f"run.until = {1.001 * limit(3, 2):g}", "too long for the digits", id="clock+"),
+        pytest.param(ALONE + f"run.until = {1.001 * limit(3, 2):g}", "too long for the resolution", id="clock+"),
         pytest.param("box.size = [10, 1]\n" + GAS.format(1, 1.01e-8), None, id="small"),
         pytest.param("box.size = [10, 1]\n" + GAS.format(1, 0.99e-8), "too small for the box", id="small-"),
         pytest.param("box.size = [2, 1]\n" + GAS.format(1, 0.5), None, id="wide"),
@@ -66,7 +66,7 @@ SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8
         pytest.param(HEAT + " }\n" + GAS.format(20, 0.1), "walls take heat and momentum", id="heat-"),
         pytest.param(solids(SQUARE, ((4, 3), (6, 2), (6, 4))), None, id="a corner on a side"),
         pytest.param(solids(SQUARE, ((3.9, 3), (6, 2), (6, 4))), "curves that cross", id="a corner in it"),
-        pytest.param(solids(SQUARE, ((4, 4), (6, 4), (6, 6))), "no closed curve", id="a corner on a corner"),
+        pytest.param(solids(SQUARE, ((4, 4), (6, 4), (6, 6))), "curve not closed", id="a corner on a corner"),
         pytest.param(NINE + "run.trials = 1\n" + TWO, "no trials in event_driven", id="owner"),
         pytest.param(NINE + "log.snapshot_every = 1.01e-7\n" + TWO, None, id="snapshots"),
         pytest.param(NINE + "log.snapshot_every = 0.99e-7\n" + TWO, "too many snap", id="more"),

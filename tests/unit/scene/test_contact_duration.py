@@ -44,7 +44,7 @@ def test_a_force_and_what_is_given():
     assert scene(FALL, "restitution.contact_duration=1e-4").restitution.contact_duration == 1e-4
     assert scene(FALL, "restitution={ normal = 1, wall = 1 }").restitution.contact_duration is None
     assert 0 < scene(FALL, "species.gas.speed=0").restitution.contact_duration < math.inf
-    with pytest.raises(SceneError, match="no default where nothing moves at the start"):
+    with pytest.raises(SceneError, match="no default, because nothing moves at the start"):
         scene("species.gas.speed=0")
 
 

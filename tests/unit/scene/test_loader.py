@@ -47,7 +47,7 @@ def test_messages_have_the_names_of_tables():
         "--set species.heavy.radius=-1: species.heavy.radius: out of range (got -1; allowed > 0)"
     ]
     assert refused(text, "species.heavi.radius=1") == [
-        '--set species.heavi.radius=1: nothing of this name, did you mean "heavy"? '
+        '--set species.heavi.radius=1: no such key or table, did you mean "heavy"? '
         "(got heavi; allowed 0 to 1, light, heavy)"
     ]
     wall = "[[wall]]\nname = 'membrane'\nfrom = [2, 0]\nto = [2, 2]\npermeable_to = ['heavi']\n"
@@ -55,7 +55,7 @@ def test_messages_have_the_names_of_tables():
         's.toml:24: wall.membrane.permeable_to: no such species, did you mean "heavy"? (got "heavi"; allowed '
     )
     assert refused(text + wall.replace("heavi", "heavy"), "wall.membran.to=[2, 1]") == [
-        '--set wall.membran.to=[2, 1]: nothing of this name, did you mean "membrane"? '
+        '--set wall.membran.to=[2, 1]: no such key or table, did you mean "membrane"? '
         "(got membran; allowed 0 to 0, membrane)"
     ]
 

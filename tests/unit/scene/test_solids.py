@@ -92,9 +92,9 @@ INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
 @pytest.mark.parametrize(
     ("text", "rest", "message"),
     [
-        (walls("inside", SIDES[:5]), "", 'wall.0.solid: no closed curve (got an end at [7.0, 5.0]; allowed an end of'),
+        (walls("inside", SIDES[:5]), "", 'wall.0.solid: curve not closed (got an end at [7.0, 5.0]; allowed an end of'),
         (walls("inside", SIDES) + walls("inside", CROSS), "", "curves that cross (got wall 6; allowed closed"),
-        (walls("inside", SIDES), INSIDE, "disc.0.position: in a solid (got [5.0, 5.0]; allowed a place out of it)"),
+        (walls("inside", SIDES), INSIDE, "disc.0.position: in a solid (got [5.0, 5.0]; allowed a position outside)"),
         (walls("inside", SIDES).replace(" }", ", opens_at = 1 }", 1), "", 'a solid that opens (got "inside" and a'),
         (ROUND.format("inside") + ROUND.format("outside"), "", "wall.0.solid: no area is left (got solids everywhere"),
         ("{ from = [1, 1], to = [3, 3], via = [2, 2] },", "", "no arc through these points (got [1.0, 1.0] via [2.0"),
@@ -119,7 +119,7 @@ SCATTERER = "disc = [{{ position = [{}, {}], radius = {}, fixed = true }}]\n" + 
         (walls("outside", SIDES), (5, 5, 2), "[5.0, 5.0]; allowed 2.0 or more from it)"),
         (walls("inside", SIDES), (5, 5 + math.sqrt(3) + 1, 1), ""),
         (walls("outside", SIDES), (5, 5, math.sqrt(3)), ""),
-        ("", (5, 5, 8), "disc.0.fixed: no area is left (got fixed discs everywhere; allowed some place for the gas)"),
+        ("", (5, 5, 8), "disc.0.fixed: no area is left (got fixed discs everywhere; allowed room for the gas)"),
     ],
     ids=["in it", "at its edge", "outside", "all around", "touching", "inscribed", "everywhere"],
 )

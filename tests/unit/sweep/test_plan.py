@@ -133,7 +133,7 @@ def test_base_scenes_in_files_of_their_own(sweep, tmp_path):
         ),
         (
             '[[axis]]\nkey = "species.neon.mass"\nvalues = [1]\n' + BASE,
-            ["2: species.neon.mass = 1: nothing of this name"],
+            ["2: species.neon.mass = 1: no such key or table"],
         ),
         ('[[axis]]\nkey = "phi"\nvalues = [0.5, 1.5]\n' + BASE, ["2: phi = 1.5: not a packing fraction"]),
         (
@@ -185,7 +185,7 @@ def test_overrides_change_the_base_scene_or_the_sweep(sweep, tmp_path):
     ("override", "line"),
     [
         ("run.events=0", "--set run.events=0: run.events: out of range"),
-        ("species.neon.mass=1", "--set species.neon.mass=1: nothing of this name"),
+        ("species.neon.mass=1", "--set species.neon.mass=1: no such key or table"),
         ("sweep.replicates=0", "--set sweep.replicates=0: sweep.replicates: out of range"),
         ("scene.seed=4", "--set scene.seed=4: the seed of a scene cannot be chosen in a sweep (allowed sweep.seed"),
         ("species.0.mass=4", "sweep.toml:2: species.gas.mass = 1: replaces the value of --set species.0.mass=4"),

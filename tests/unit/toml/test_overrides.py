@@ -62,10 +62,10 @@ def test_errors_name_the_override_not_the_file():
         "collisions_per_disc)"
     ]
     assert refused("run.events.most=3") == [
-        "--set run.events.most=3: nothing of this name (got most; allowed no key below a value)"
+        "--set run.events.most=3: no such key or table (got most; allowed no key below a value)"
     ]
     assert refused("species.count=3") == [
-        "--set species.count=3: nothing of this name (got count; allowed 0 to 1, argon, neon)"
+        "--set species.count=3: no such key or table (got count; allowed 0 to 1, argon, neon)"
     ]
     errors = refused("species.9.count=1", text=TWO.replace("events = 5", "events = 0"))
     assert [error.split(": ")[0] for error in errors] == ["--set species.9.count=1", "s.toml:17"]
