@@ -154,7 +154,7 @@ def test_logs_that_were_damaged_by_hand_are_one_line(finished, tmp_path):
     [
         (["run.events=4e3"], "already at 5,000 events; 4,000 is earlier"),
         (["run.until=0.001"], r"already at [\d.]+ units of time; 0.001 is earlier"),
-        (["run.collisions_per_disc=0.1", "run.events="], r"already at [\d.]+ collisions per disc; 0.1 lies before"),
+        (["run.collisions_per_disc=0.1", "run.events="], r"already at [\d.]+ collisions per disc; 0.1 is earlier"),
         (["gravity.acceleration=[0, -1]"], r"with another \[gravity\]: only until, events, .* may change"),
         (["species.gas.radius=0.01", "run.events=9000"], r"with another \[species\]"),
         (["run.method=brute_force"], r"with another \[run\]"),
@@ -221,7 +221,7 @@ def test_an_interrupted_run_ends_at_one_time_and_one_number_of_events(uncompiled
         assert status(log).events == ended.events == 1500 > last.values["events"] > 0
     for end, message in (
         (f"run.until={(last.time + ended.end_time) / 2!r}", f"already at {ended.end_time:,.12g} units of time; "),
-        (f"run.events={ended.events - 1}", f"already at {ended.events:,} events; {ended.events - 1:,} lies before"),
+        (f"run.events={ended.events - 1}", f"already at {ended.events:,} events; {ended.events - 1:,} is earlier"),
         (f"run.events={ended.events}", f"already at {ended.events:,} events; {ended.events:,} is not a later end"),
     ):
         with pytest.raises(LogError, match=re.escape(message)):
