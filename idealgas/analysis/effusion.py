@@ -129,7 +129,9 @@ class EffusionAnalysis(Analysis):
         there, back = flux / mean_speed / [[inner], [outer]]
         drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
         if not slit > 0 or not drive > 0:
-            raise UserError(f"{log.path}: no effusion: no disc fits through the slit, or the chambers are in balance")
+            raise UserError(
+                f"{log.path}: effusion requires a slit wider than a disc between chambers of unequal density"
+            )
         expected = mean_speed / math.pi
         density = (number - beyond[0]) / inner
         phi = density * math.pi * radius**2
@@ -146,7 +148,7 @@ class EffusionAnalysis(Analysis):
             rate = expected * slit
             law = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
         if gate.others:
-            why_not += (f"The law is that of empty chambers, and in these there is {', '.join(gate.others)}.",)
+            why_not += (f"The law assumes empty chambers; these contain {', '.join(gate.others)}.",)
         density = number / inner
         return Effusion(
             str(log.path), density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=why_not
@@ -274,12 +276,12 @@ def _slit(log: Log) -> Slit:
     inside = walls_inside(log.scene)
     gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
-        raise UserError(f"{log.path}: no effusion: it requires one gate, one species and the events")
+        raise UserError(f"{log.path}: effusion requires one gate, one species and events")
     (gate,) = gates
     across = int(gate.start[0] != gate.end[0])
     in_line = _in_line(log, gate, across)
     if why := _why_not(log, gate, in_line, across):
-        raise UserError(f"{log.path}: no effusion: {why}")
+        raise UserError(f"{log.path}: effusion requires a slit in a wall, but {why}")
     low, high = _reach(gate, across)
     obstacles = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
     opens, closes = gate.absences[0]
@@ -292,11 +294,9 @@ def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], acro
         return "the gate is not along an axis"
     (low, high), radius, size = _reach(gate, across), float(log.discs.radius[0]), log.box[1 - across]
     if high - low + 2 * radius >= size:  # what remains of the wall is shorter than a disc
-        return (
-            "the gate opens the box from side to side, so that the gas expands freely; `idealgas evolution` follows it"
-        )
+        return "the gate opens the box from side to side, so that the gas expands freely; use `idealgas evolution`"
     if log.periodic[across]:
-        return "discs pass through the periodic sides, not by the gate alone"
+        return "discs also pass through the periodic sides"
     beside = [_reach(wall, across) for wall in in_line]
     if any(min(end, high) - max(start, low) > radius for start, end in beside):
         return "a wall stands in the gate"
@@ -304,7 +304,7 @@ def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], acro
     for start, end in [*sorted([*beside, (low, high)]), (size, math.inf)]:
         gap, reached = max(gap, start - reached), max(reached, end)
     return (
-        f"the gate is in no straight wall from side to side: beside it is a gap of {gap:.4g}"
+        f"the wall of the gate does not reach from side to side: beside the gate is a gap of {gap:.4g}"
         if gap >= 2 * radius
         else ""
     )
@@ -333,10 +333,8 @@ def _reach(wall: NumberedWall, across: int) -> tuple[float, float]:
 def _instants(log: Log, gate: Slit, start: float | None, end: float | None) -> np.ndarray:
     """Return the instants (INSTANTS,) at which the open gate is sampled; raise UserError if there are none."""
     if gate.opens >= log.end_time:
-        raise UserError(
-            f"{log.path}: no effusion: the gate opens at t = {gate.opens:g}, the log ends at {log.end_time:g}"
-        )
+        raise UserError(f"{log.path}: the gate opens at t = {gate.opens:g}, but the log ends at {log.end_time:g}")
     first, last = span(log, start, end)
     if not max(gate.opens, first) < min(gate.closes, last):
-        raise UserError(f"{log.path}: no effusion: the gate is open from t = {gate.opens:g} to {gate.closes:g}")
+        raise UserError(f"{log.path}: the gate is open only from t = {gate.opens:g} to {gate.closes:g}")
     return np.linspace(max(gate.opens, first), min(gate.closes, last), INSTANTS)

@@ -89,7 +89,7 @@ class EscapeAnalysis(Analysis):
             UserError: if no wall absorbs discs, or if the log has no events or no escapes in the window.
         """
         if not log.escapes:
-            raise NotApplicableError(f"{log.path}: no wall absorbs discs")
+            raise NotApplicableError(f"{log.path}: escape requires a wall that absorbs discs, and this gas has none")
         log.require_events()
         first, last = span(log, start, end)
         at, spent, path, collisions = _flights(log, first, last, progress)
@@ -103,8 +103,8 @@ class EscapeAnalysis(Analysis):
             theory = _theory(log, spent / (last - first))
             expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
-            missing = "No theory" if theory is None else "No theory of the number left"
-            caveats = (f"{missing}: {error}.",)
+            what = "Theory" if theory is None else "Theory of the number left"
+            caveats = (f"{what} is not available: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
         per_path = None
@@ -226,7 +226,9 @@ def _expected(
     if RARE < collisions < OFTEN or len(properties.temperatures) > 1 or properties.varies:
         raise NoTheoryError("discs neither keep their speeds nor come to equilibrium before they leave")
     if mixes and (np.ptp(log.discs.mass) > 0 or lossy):
-        raise NoTheoryError("the temperature of a mixture, or with losses or spins, is not known while discs leave")
+        raise NoTheoryError(
+            "while discs leave, the temperature is not known for mixtures, or with energy losses or spins"
+        )
     if not mixes and (properties.temperatures or lossy):
         raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly meet")
     if mixes:

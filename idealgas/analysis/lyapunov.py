@@ -168,7 +168,7 @@ class LyapunovAnalysis(Analysis):
         return (
             f"Small deviations grow at the rate λ = {format_estimate(result.exponents[0])}: a collision of a disc "
             f"takes {format_estimate(result.digits)} digits, and float64 has lost its 16 digits after t = "
-            f"{result.lifetime(16):.3g}; no theory here."
+            f"{result.lifetime(16):.3g}; theory is not available."
         )
 
     @staticmethod

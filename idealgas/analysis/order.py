@@ -127,7 +127,7 @@ class OrderAnalysis(Analysis):
             UserError: without positions or with a piston, or if the window is empty or has too few checkpoints.
         """
         if not log.has_positions:
-            raise NotApplicableError(f"{log.path}: discs of this method have no positions")
+            raise NotApplicableError(f"{log.path}: order requires discs with positions")
         window, times = _instants(log, start, end)
         first = int(times.searchsorted(window.start))
         number, waves = len(log.discs), WaveVectors(log.box, len(log.discs))

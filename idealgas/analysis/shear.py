@@ -197,7 +197,7 @@ def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
     begin = after_changes(log, edges)
     first = detect_equilibration(Observable(values[begin:]) for values in series)
     if first is None:
-        raise not_steady(log, "it still changes in the second half of the log")
+        raise not_steady(log, "the gas still changes in the second half of the log")
     return begin + first
 
 
@@ -299,7 +299,7 @@ class ShearAnalysis(Analysis):
     def summary(result: ShearFlow) -> str:
         """Return viscosity and temperature, and whether the viscosity agrees with theory."""
         viscosity = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
-        why = "known for equal smooth elastic discs in no or a weak heat bath only"
+        why = "it is known only for equal smooth elastic discs, without a heat bath or with a weak one"
         return f"{viscosity}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
 
     @staticmethod

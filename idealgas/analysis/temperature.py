@@ -103,8 +103,8 @@ def temperature(
     """
     if start is None and len(log.scene.properties.temperatures) > 1 and not nonstationary_reason(log):
         raise NotApplicableError(
-            f"{log.path}: no equilibrium, as {nonequilibrium_reason(log)}: "
-            "`idealgas profile` shows T in strips; --from T sets a start by hand"
+            f"{log.path}: this analysis requires equilibrium, but {nonequilibrium_reason(log)}; "
+            "use `idealgas profile` for T in strips, or --from T to set the start by hand"
         )
     moments = Moments(log.gravity)
     window = measure(log, [moments], start, end, progress)

@@ -86,7 +86,7 @@ class LogHeader:
     def gravity(self) -> tuple[float, float]:
         """Acceleration (gx, gy) between events, length/time². Raises NotApplicableError if it changes with time."""
         if self._steps_of_gravity is not None:
-            raise NotApplicableError(f"{self.path}: not applicable to a gas whose gravity changes in time")
+            raise NotApplicableError(f"{self.path}: constant gravity is required, but gravity changes in time")
         return self._first_gravity
 
     def gravity_at(self, time: np.ndarray) -> np.ndarray:

@@ -119,7 +119,7 @@ def test_check_without_a_theory_says_so(overrides, why, tmp_path):
     silent = called("pressure", "run.h5", "--check", "-q", folder=tmp_path)
     assert (silent.returncode, silent.stdout) == (0, "")
     (line,) = silent.stderr.splitlines()
-    assert line.startswith("No theory here: ")
+    assert line.startswith("Theory is not available: ")
     assert why in line
     found = json.loads(output_of("pressure", "run.h5", "--check", "--json", folder=tmp_path))
     assert found["agrees"] is None
@@ -134,7 +134,7 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
     for log, options in zip(logs, (dense, (*dense, "--set", "scene.seed=2"), ()), strict=True):
         output_of("run", tmp_path / "scene.toml", "-o", log, *options)
     checked = called("pressure", *logs[:2], "--check").stderr
-    assert checked.startswith("No theory here: there is none for a gas of packing fraction 0.")
+    assert checked.startswith("Theory is not available: no equation of state is known for a packing fraction of 0.")
     output_of("pressure", *logs[:2])
     (row,) = json.loads(output_of("pressure", *logs, "--check", "--json"))["compared"]
     assert row["name"].startswith("φ = ")

@@ -82,7 +82,9 @@ def test_a_free_expansion_is_no_effusion(states):
     scene = ROOT / "configs" / "free-expansion.toml"
     shown("run", scene, "-o", "wide.h5", "--set", "run.until=15", folder=states)
     refused = error_of("effusion", "wide.h5", folder=states)
-    assert refused.startswith("wide.h5: no effusion: the gate opens the box from side to side")
+    assert refused.startswith(
+        "wide.h5: effusion requires a slit in a wall, but the gate opens the box from side to side"
+    )
     shown("run", ROOT / "configs" / "effusion.toml", "-o", "narrow.h5", "--set", "run.until=15", folder=states)
     assert "caveat" not in shown("effusion", "narrow.h5", folder=states).stdout
 

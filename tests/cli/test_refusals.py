@@ -58,8 +58,11 @@ LOGS = [
     ("watch eventless.h5", "…has no events (made with log.events = false)…"),
     ("pressure run.h5 run.h5", "…"),
     ("heat-capacity run.h5 run.h5", "…"),
-    ("relaxation run.h5 --plot-errors errors.png", "relaxation: no error here is from blocks of time"),
-    ("relaxation falling.h5", "…the kinetic energy of its discs is not constant: gravity…"),
+    ("relaxation run.h5 --plot-errors errors.png", "relaxation: no error bar was estimated from blocks of time"),
+    (
+        "relaxation falling.h5",
+        "…relaxation requires constant kinetic energy; use `idealgas evolution` for a gas with gravity…",
+    ),
     ("relaxation run.h5 --to 1e-9", "…no two discs collide between t = 0 and 1e-09…"),
     ("relaxation run.h5 --every 1e-9", "…instants are too many for a table (allowed <= 10000)…"),
     ("report run.h5 -o page.pdf", "…page.pdf: unknown kind of report (allowed: .html)…"),

@@ -98,7 +98,7 @@ def test_speeds_that_walls_or_a_heat_bath_change():
     assert found.expected is None
     assert found.mean_time.theory is None
     reason = "walls or a heat bath change the speeds of discs that hardly meet"
-    assert f"No theory of the number left: {reason}." in found.caveats
+    assert f"Theory of the number left is not available: {reason}." in found.caveats
 
 
 @pytest.mark.usefixtures("uncompiled")
@@ -107,9 +107,9 @@ def test_what_has_no_theory():
     gate = scene.replace('solid = "outside", ', "").replace("absorbing = true", "absorbing = true, opens_at = 11")
     found = escape_of(gate)
     assert found.per_path.theory is None
-    assert found.caveats == ("No theory: a hole opens or closes, or lets discs pass.",)
+    assert found.caveats == ("Theory is not available: a hole opens or closes, or lets discs pass.",)
     both = log_of(scene, "species.gas.radius={ values = [0.1, 0.2] }")
-    assert escape(both).caveats == ("No theory: discs have several radii.",)
+    assert escape(both).caveats == ("Theory is not available: discs have several radii.",)
     raised(r"no disc leaves the gas between t = 0 and 0\.001", escape, both, end=0.001)
 
 
@@ -118,7 +118,7 @@ def test_falling_discs_have_no_path():
     found = escape_of(ROUND.format(until=20, count=40, radius=0.2), "gravity.acceleration=[0, -0.1]")
     assert found.per_path is None
     assert found.mean_time.value > 0
-    assert found.caveats == ("No theory: discs fall, or walls move.",)
+    assert found.caveats == ("Theory is not available: discs fall, or walls move.",)
 
 
 @pytest.mark.slow

@@ -69,7 +69,12 @@ def test_what_an_analysis_tells():
     assert evolution(log).law.chambers == {}  # the pressures differ at the start
     assert found.law.chambers["left"][0] == found.chambers["left"][0]
     assert found.law.piston == pytest.approx(0.1 + 19.8 * 101 / 302)
-    raised("no heat capacity of several pistons, or of one between two gases", registry.analyse, log, "heat_capacity")
+    raised(
+        "the heat capacity requires at most one piston, with gas on one side of it",
+        registry.analyse,
+        log,
+        "heat_capacity",
+    )
 
 
 def test_the_heat_flow_is_that_of_single_hits():

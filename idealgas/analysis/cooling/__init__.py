@@ -157,8 +157,10 @@ class CoolingAnalysis(Analysis):
         settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
         window = np.flatnonzero(collisions >= settled if start is None else time >= start)
         if len(window) < FEWEST:
-            needs = f"the averages begin after {settled:.3g}; --from T sets a start by hand"
-            raise NotApplicableError(f"{log.path}: too short, with {collisions[-1]:.3g} collisions per disc ({needs})")
+            raise NotApplicableError(
+                f"{log.path}: the log has {collisions[-1]:.3g} collisions per disc, and averages begin after "
+                f"{settled:.3g}; run longer, or use --from T to set the start by hand"
+            )
         tested = parameters.normal >= granular.TESTED_FROM
         rate /= dof / (2 * number)  # conserved momentum: fewer degrees of freedom share the energy
         law = spin_law = None
@@ -212,7 +214,7 @@ class CoolingAnalysis(Analysis):
             last_scatter=late,
             last_flow=together,
             caveats=(
-                *([] if number >= FEW else [f"The laws are those of many discs, and here are {number}."]),
+                *([] if number >= FEW else [f"The laws are for many discs, and this gas has {number}."]),
                 *([] if tested else [UNTESTED]),
                 *narrow(log),
                 *nonuniform(early.value, late.value, together.value, int(shape.prod())),
@@ -312,17 +314,18 @@ def _parameters(log: Log) -> GranularParameters:
     elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
     why = ""
     if parameters.normal == 1 and abs(parameters.roughness) == 1:
-        why = "collisions of its discs lose no energy"
+        why = "collisions that lose energy, and discs of this gas conserve it"
     elif effects or not (all(log.periodic) or elastic_walls):
-        why = f"more than collisions of discs changes its energy ({', '.join(effects) or 'walls'})"
+        others = ", ".join(effects) or "walls"
+        why = f"that only collisions of discs change the energy (got {others}); use `idealgas evolution`"
     elif not log.has_positions or not log.has_events:
-        why = "it requires events with positions"
+        why = "events with positions"
     elif len(log.discs.species_names) > 1:
-        why = "its discs are of several species, and the laws are those of equal discs"
+        why = "equal discs, and this gas has several species"
     elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
-        why = "its discs never meet"
+        why = "discs that collide, and these have no radius or do not move"
     if why:
-        raise NotApplicableError(f"{log.path}: {why}")
+        raise NotApplicableError(f"{log.path}: cooling requires {why}")
     return parameters
 
 

@@ -212,12 +212,18 @@ class Analysis:
         cls, log: "Log", start: float | None, end: float | None, progress: Progress | None, values: dict[str, Any]
     ) -> Any:
         if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
-            differ = f"discs of one species that differ in radius or mass ({', '.join(unlike)})"
-            raise NotApplicableError(f"{log.path}: not applicable to {differ}")
+            differ = f"but radius or mass differ within {', '.join(unlike)}"
+            raise NotApplicableError(f"{log.path}: {cls.key} requires equal discs in each species, {differ}")
         if not cls.takes_shear and log.scene.properties.shear:
-            raise NotApplicableError(f"{log.path}: not applicable between sheared sides, where the gas flows")
+            raise NotApplicableError(
+                f"{log.path}: {cls.key} requires a gas that does not flow, but sides shear it; use `idealgas shear` or "
+                "`idealgas profile`"
+            )
         if log.escapes and not cls.takes_escapes:
-            raise NotApplicableError(f"{log.path}: not applicable to a gas that discs leave")
+            raise NotApplicableError(
+                f"{log.path}: {cls.key} requires a constant number of discs, but discs leave this gas; use `idealgas "
+                "escape` or `idealgas evolution`"
+            )
         with _arithmetic(f"{log.path}: {cls.key}"):
             result = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow: tuple[str, ...] = ()
@@ -318,7 +324,7 @@ class Analysis:
                 names.setdefault(estimate.blocks, str(row[0]))
         names.pop((), None)
         if not names:
-            raise UserError(f"{cls.key}: no error here is from blocks of time")
+            raise UserError(f"{cls.key}: no error bar was estimated from blocks of time")
         window = getattr(combined, "window", None)
         figure = block_figure(names, *((window.duration, "time") if window else (1.0, "share of the window")))
         return add_title(figure, f"{combined.title}: {cls.key}")

@@ -42,8 +42,8 @@ def of_paths(log: Log, window: Window) -> tuple[str, ...]:
     if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
         return ()
     return (
-        f"Discs hardly collide with each other ({each:.2g} times each in the window): each keeps its energy, and "
-        "averages are those of its path between walls. Where paths stay alike for long, standard errors are too small.",
+        f"Discs hardly collide with each other ({each:.2g} times each in the window): each disc keeps its energy, "
+        "and averages are over its path between walls. Standard errors are too small if paths stay alike for long.",
     )
 
 
@@ -54,7 +54,8 @@ def of_window(window: Window) -> tuple[str, ...]:
         return ()
     return (
         f"This gas relaxes slowly: {process} in t = {time:.2g}, and the window is only {window.duration / time:.2g} "
-        f"times as long. Standard errors may be up to 3 times too small; from {INDEPENDENT:g} times on they are right.",
+        "times as long. Standard errors may be up to 3 times too small; they are right if the window is "
+        f"{INDEPENDENT:g} times as long.",
     )
 
 
@@ -112,8 +113,8 @@ def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
         if origin.seed is not None:
             seeds.setdefault(origin.seed, []).append(origin.path)
     return tuple(
-        f"Runs of one seed ({seed}) may start alike, and their errors are then not independent: {named(paths)}. "
-        "Give each run a seed of its own."
+        f"Runs with the same seed ({seed}) may start alike, and their errors are then not independent: {named(paths)}. "
+        "Give each run a different seed."
         for seed, paths in seeds.items()
         if len(paths) > 1
     )
@@ -162,7 +163,7 @@ def narrow(log: Log) -> tuple[str, ...]:
         if size < (WIDE_PERIODIC if periodic else WIDE) * diameter:
             between = "to its own image" if periodic else "between walls"
             return (
-                f"The box is {size / diameter:.3g} diameters wide {between}; theory is that of a wide one "
+                f"The box is {size / diameter:.3g} diameters wide {between}; theory assumes a wide box "
                 f"({WIDE:g} diameters between walls, {WIDE_PERIODIC:g} if periodic).",
             )
     return ()

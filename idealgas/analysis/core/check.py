@@ -165,7 +165,7 @@ class CheckResult:
     def __str__(self) -> str:
         """Return the result in sentences."""
         if not self.compared:
-            return f"No theory here: {self.why_not}."
+            return f"Theory is not available: {self.why_not}."
         failed = [row.name for row in self.compared if row.agrees is False]
         if self.agrees is None:
             verdict = "Too few samples to tell whether measurement and theory agree"
@@ -201,7 +201,7 @@ def agreement(
     """
     known = [(name, item) for name, item in found if isinstance(item, PValue) or item.theory is not None]
     if not known:
-        return f"no theory here: {why_not}" if why_not else "no theory here"
+        return f"theory is not available: {why_not}" if why_not else "theory is not available"
     rows = [_row(name, theory, item, len(known)) for name, item in known]
     rows = [row for row in rows if row.shown] or rows
     differing, agreeing, few = ([row for row in rows if row.agrees is verdict] for verdict in (False, True, None))

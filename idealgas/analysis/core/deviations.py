@@ -94,8 +94,8 @@ def must_have_tangent_map(log: Log) -> None:
     gas = log.scene.properties
     plain = gas.collisions_conserve_energy and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty
     if not plain or gas.spins or gas.varies or log.scene.run.method not in ("event_driven", "brute_force"):
-        takes = "takes smooth elastic discs between plain sides, and an exact method"
-        raise NotApplicableError(f"{log.path}: not applicable: growth of deviations {takes}")
+        needs = "smooth elastic discs between plain sides, and the method event_driven or brute_force"
+        raise NotApplicableError(f"{log.path}: the growth of deviations requires {needs}")
 
 
 @njit

@@ -60,10 +60,13 @@ def ensemble(log: Log) -> Ensemble:
     known = known_ensemble(log)
     if known is None:
         causes = log.scene.lacking("conserves_energy") or log.scene.lacking("isolated")
-        alone = "for a single disc, which shares it with no other"
-        changing = "where values change in time" if log.scene.properties.varies else ""
-        given = f"under {', '.join(causes)}" if causes else changing or alone
-        raise NotApplicableError(f"{log.path}: no temperature is known beforehand {given}")
+        alone = "of a single disc"
+        changing = "whose values change in time" if log.scene.properties.varies else ""
+        given = f"with {', '.join(causes)}" if causes else changing or alone
+        raise NotApplicableError(
+            f"{log.path}: this analysis requires the temperature of equilibrium, which does not follow from a scene "
+            f"{given}; use `idealgas temperature` to measure it"
+        )
     return known
 
 
@@ -198,7 +201,10 @@ def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
         NotApplicableError: in both cases.
     """
     if strange := log.scene.lacking(*needs):
-        raise NotApplicableError(f"{log.path}: this analysis has no answer for a gas with {', '.join(strange)}")
+        raise NotApplicableError(
+            f"{log.path}: this analysis requires a gas without {', '.join(strange)}; use `idealgas evolution` to "
+            "follow the gas in time"
+        )
     if start is None and (why := nonstationary_reason(log)):
         raise not_steady(log, why)
 
@@ -219,7 +225,9 @@ def kind_of_state(log: Log) -> str:
 
 def not_steady(log: Log, why: str) -> NotApplicableError:
     """Return the error for a gas that does not reach its state, with commands that apply; why: part of a sentence."""
-    state = "equilibrium" if nonstationary_reason(log) else kind_of_state(log)
+    steady = not nonstationary_reason(log) and kind_of_state(log) == "steady state"
+    state = "a steady state" if steady else "equilibrium"
+    follow = "" if log.scene.properties.shear else "`idealgas evolution` to follow the gas in time, or "
     return NotApplicableError(
-        f"{log.path}: no {state}, as {why}: `idealgas evolution` follows it in time; --from T sets a start by hand"
+        f"{log.path}: this analysis requires {state}, but {why}; use {follow}--from T to set the start by hand"
     )

@@ -271,7 +271,7 @@ def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable])
     rest = [item._replace(values=item.values[begin:]) for item in series]
     first = detect_equilibration(rest)
     if first is None:
-        raise not_steady(log, "it still changes in the second half of the log")
+        raise not_steady(log, "the gas still changes in the second half of the log")
     if known_ensemble(log) is None:
         memory = math.ceil(MEMORIES * memory_time(item.values[first:] for item in rest if not item.least))
         first = max(first, min(memory, len(rest[0].values) // 2))

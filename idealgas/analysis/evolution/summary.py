@@ -30,7 +30,7 @@ def _change(values: np.ndarray) -> str:
 def _temperatures(result: "Evolution") -> Iterator[str]:
     law, change = result.law, f"The kinetic energy per disc {_change(result.temperature)}"
     if law is None:
-        yield f"{change}; no theory here."
+        yield f"{change}; theory is not available."
     elif mean := result.mean_temperature:
         yield f"{change}; its mean once steady, {format_estimate(mean)}: {agreement([('', mean)], 'equilibrium')}."
     elif law.steady:

@@ -73,13 +73,15 @@ class HeatCapacityAnalysis(Analysis):
         if not log.has_positions:
             raise NotApplicableError(f"{log.path}: the heat capacity requires discs with positions")
         if why := nonequilibrium_reason(log):
-            follow = "`idealgas evolution` follows the gas"
+            follow = "use `idealgas evolution` to follow the gas in time"
             if not properties.fixed_walls:
-                follow = "for γ of an adiabatic compression use `idealgas evolution`"
+                follow = "use `idealgas evolution` for γ of an adiabatic compression"
             raise NotApplicableError(f"{log.path}: the heat capacity requires equilibrium, but {why}; {follow}")
         has_piston = any(piston.mass for piston in scene.piston)
         if has_piston and (scene.piston[0].inner or len(scene.piston) > 1):
-            raise UserError(f"{log.path}: no heat capacity of several pistons, or of one between two gases")
+            raise UserError(
+                f"{log.path}: the heat capacity requires at most one piston, with gas on one side of it only"
+            )
         present = {
             BATH: not properties.isolated,
             ROUGH: properties.spins,
@@ -192,7 +194,9 @@ def _closed_box(log: Log, start: float | None, end: float | None, progress: Prog
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility_factor for route in measured.routes if route.name.startswith(WALLS)), None)
     if walls is None or walls.theory is None or not walls.value > 0:
-        raise UserError(f"{log.path}: no temperature from walls: none, never hit, or without a theory")
+        raise UserError(
+            f"{log.path}: E/T requires the temperature from walls, but no wall was hit, or theory is not available"
+        )
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # Z was computed with E/N as temperature
     n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)

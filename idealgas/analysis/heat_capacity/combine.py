@@ -103,7 +103,7 @@ def combine_logs(logs: Sequence[Measured]) -> HeatCapacity:
     used = {route.name for route in routes}
     reasons = ROUTES | {name: why for log in logs for name, why in log.refused.items()}
     if any(log.excess is not None for log in logs):
-        reasons["γ"] = "no heat capacity of the gas with the piston was measured, or theory has none"
+        reasons["γ"] = "the heat capacity of the gas with the piston was not measured, or theory is not available"
     refused = {name: why for name, why in reasons.items() if name not in used}
     return HeatCapacity(tuple(routes), refused, tuple(logs), caveats=tuple(_apart(groups)))
 

@@ -175,7 +175,7 @@ def too_few(found: Estimate, series: np.ndarray) -> str:
         return ""
     else:
         why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
-    return f"{why}; a longer run, or without events samples at shorter times, would give one"
+    return f"{why}; use a longer run or, without events, more frequent samples"
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:

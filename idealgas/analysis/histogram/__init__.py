@@ -161,7 +161,7 @@ class HistogramAnalysis(Analysis):
         notes = (
             describe(result.window),
             *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
-            *([f"No law here: {result.no_law}."] if result.no_law else []),
+            *([f"Theory gives no distribution: {result.no_law}."] if result.no_law else []),
         )
         tables = [estimates(f"Mean {_in_words(result.quantity)} ({result.unit})", means, notes)]
         cumulants = [
@@ -179,7 +179,7 @@ class HistogramAnalysis(Analysis):
     def summary(result: Histogram) -> str:
         """Return the mean of each species and the laws that its values follow."""
         sentences = [_follows(result, distribution) for distribution in result.distributions]
-        return " ".join([*sentences, *([f"No law here: {result.no_law}."] if result.no_law else [])])
+        return " ".join([*sentences, *([f"Theory gives no distribution: {result.no_law}."] if result.no_law else [])])
 
     @staticmethod
     def text(result: Histogram) -> str:

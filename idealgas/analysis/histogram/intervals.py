@@ -78,7 +78,7 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Pr
     blocks = slice(window.first, len(tally.counts))
     why_not = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
-        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
+        why_not = why_not or f"the law is for many discs, and this gas has {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
@@ -91,7 +91,7 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
     In equilibrium velocities do not depend on positions, so that the distribution is uniform at any density.
     """
     if not log.has_positions:
-        raise NotApplicableError(f"{log.path}: discs without positions have no impact parameters")
+        raise NotApplicableError(f"{log.path}: impact parameters require discs with positions")
     tally = ImpactParameters(log.periodic, BINS, max(STRIDE, len(log) // 2 // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     why_not = expectation(log, start, end).why_not
@@ -109,9 +109,9 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
     discs = classes(log.discs)
     _, rates, errors, _, why_not = free_flight_rates(log, discs, start, end)
     if len(discs.mass) > 1:
-        why_not = why_not or "it is known for equal discs"
+        why_not = why_not or "it is known only for equal discs"
     if log.has_positions and log.discs.packing_fraction > DENSEST_COUNTS:
-        why_not = why_not or f"above φ = {DENSEST_COUNTS:g} none is known for numbers of collisions"
+        why_not = why_not or f"above φ = {DENSEST_COUNTS:g} it is not known for numbers of collisions"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
     rate = discs.shares @ per_disc
     fewest, most = 64, max(len(log), 64)  # at most one interval per row of the log, even if most are empty

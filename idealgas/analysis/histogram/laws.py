@@ -148,11 +148,11 @@ def free_flight_rates(
     known = expectation(log, start, end)
     why_not = known.why_not
     if uneven := log.scene.lacking("uniform"):
-        why_not = why_not or f"the gas is not the same everywhere ({', '.join(uneven)})"
+        why_not = why_not or f"the gas is not uniform ({', '.join(uneven)})"
     if log.scene.properties.thermostat_rate:
         why_not = why_not or "a heat bath changes velocities in flight"
     if known.ensemble and known.ensemble.dof < 2 * FEW:
-        why_not = why_not or f"the law is that of many discs, and here are {len(log.discs)}"
+        why_not = why_not or f"the law is for many discs, and this gas has {len(log.discs)}"
     if known.ensemble and not why_not:
         gas = known.ensemble
         theory = theory_of(log) if log.has_positions else None

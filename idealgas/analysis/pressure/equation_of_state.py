@@ -90,7 +90,7 @@ class EquationOfState(Result):
         """Check that Z agrees with theory in every state that has a theory."""
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
-        why_not = f"there is none for a gas of packing fraction {self.states[0].packing_fraction:.5g}"
+        why_not = f"no equation of state is known for a packing fraction of {self.states[0].packing_fraction:.5g}"
         return check_theory(((n, s.source, s.infinite) for n, s in zip(names, self.states, strict=True)), why_not)
 
     @property
@@ -117,8 +117,8 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     """
     if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
         raise UserError(
-            f"{mixed.path}: no equation of state of a {mixed.kind}: its Z does not follow from φ alone; `idealgas "
-            "pressure` of the single log has its theory"
+            f"{mixed.path}: an equation of state requires equal discs, as Z of a {mixed.kind} does not follow from φ "
+            "alone; use `idealgas pressure` on the single log to compare it with theory"
         )
     states = tuple(_state(kind, runs) for kind, runs in by_state(samples))
     b2, b3 = _virial_coefficients(states)

@@ -142,7 +142,7 @@ def pressure(
         UserError: if no disc moves, or if there are no events or too few samples in the window.
     """
     if not log.has_positions:
-        raise NotApplicableError(f"{log.path}: discs without positions have no pressure")
+        raise NotApplicableError(f"{log.path}: the pressure requires discs with positions")
     equilibrium = known_ensemble(log)
     if equilibrium is None or not becomes_uniform(log, start):
         return _without_theory(log, start, end, progress)

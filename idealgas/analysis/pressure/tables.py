@@ -44,7 +44,7 @@ def _of_walls(result: Pressure, mechanical: Mechanical) -> list[Table]:
         describe(result.window),
         f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, kinetic "
         f"energy per disc {result.temperature:.6g}, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
-        f"No theory here: {result.no_theory}.",
+        f"Theory is not available: {result.no_theory}.",
     ]
     if mechanical.unsteady:
         notes.append(f"Never stationary, as {mechanical.unsteady}: means over the window; `evolution` shows P(t).")
@@ -71,7 +71,7 @@ def _of_log(result: Pressure) -> list[Table]:
         (name if theory.value in exact else f"{name}, N → ∞", *with_error(theory.value, theory.error))
         for name, theory in result.known_theories.items()
     ]
-    missing = (f"No theory here: {result.no_theory}.",) if result.no_theory else ()
+    missing = (f"Theory is not available: {result.no_theory}.",) if result.no_theory else ()
     return [
         estimates(
             "Z = PA/NT (no unit)",

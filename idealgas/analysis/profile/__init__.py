@@ -146,7 +146,7 @@ class ProfileAnalysis(Analysis):
             UserError: without events or positions, or if the window is empty.
         """
         if not log.has_positions:
-            raise UserError(f"{log.path}: discs of this method have no positions")
+            raise UserError(f"{log.path}: a profile requires discs with positions")
         axis = natural_axis(log) if along is None else "xy".index(along)
         reach = 0.0 if log.periodic[axis] else log.discs.radius.min()
         window, edges = measure(log, [], start, end), np.linspace(reach, log.box[axis] - reach, bins + 1)
@@ -298,9 +298,9 @@ def _limits(
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if not expected.dilute:
         if expected.layers.max() > LAYERED:
-            yield "Discs of a dense gas lie in layers at walls; the uniform density is that of strips away from them."
+            yield "Discs of a dense gas lie in layers at walls; the density is uniform only in strips away from walls."
     elif densest > DILUTE:
-        yield f"The theory is that of a dilute gas; here the packing fraction of a strip reaches {densest:.2g}."
+        yield f"The theory assumes a dilute gas; the packing fraction of a strip reaches {densest:.2g}."
 
 
 def _of_species(

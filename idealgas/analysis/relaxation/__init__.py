@@ -270,7 +270,7 @@ def _caveats(
             f"most (kurtosis {kurtosis[0]:.3g}, in equilibrium 2), and chance decides how soon they meet others."
         )
     if number < FEW:
-        yield f"The error of the relaxation time was calibrated with 200 and 500 discs; here are {number}."
+        yield f"The error of the relaxation time was calibrated with 200 and 500 discs; this gas has {number}."
     if late:
         yield "The error of the relaxation time is that of a start with equal speeds; later curves scatter more."
 

@@ -48,7 +48,10 @@ def check_steady(log: Log) -> None:
     """
     log.require_events()
     if restless := log.scene.lacking("conserves_motion"):
-        raise UserError(f"{log.path}: the kinetic energy of its discs is not constant: {', '.join(restless)}")
+        raise UserError(
+            f"{log.path}: relaxation requires constant kinetic energy; use `idealgas evolution` for a gas with "
+            f"{', '.join(restless)}"
+        )
     if not log.discs.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
 

@@ -135,7 +135,7 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     elif not is_ergodic(scene, gas):
         sentences.append(
             "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
-            "temperatures along x and y may differ indefinitely. Give them velocities of their own."
+            "temperatures along x and y may differ indefinitely. Give them different speeds."
         )
     velocity = centre_of_mass_velocity(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:

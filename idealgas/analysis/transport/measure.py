@@ -127,7 +127,7 @@ def transport(
         window, impacts = sampled(log, start, end, needs)
         flow = impacts.flow
         if not impacts.collisions.size:
-            most = f"no collisions by species (kept for up to {MOST_PAIRED} of them)"
+            most = f"collisions by species (kept for up to {MOST_PAIRED} of them)"
             raise UserError(f"{log.path}: has neither events nor {most}")
     gas, discs, box = log.discs, composition(log.discs), theory_of(log)
     expected, enskogs = expected_rates(gas.box, equilibrium, box), enskog(log, discs, equilibrium)

@@ -137,7 +137,7 @@ def test_a_run_counts_once(name):
 
 def test_one_seed_in_different_scenes_is_said():
     logs = made("scene.seed=1"), made("scene.seed=1", "species.gas.temperature=2")
-    sentence = only(combined("heat-capacity", *logs), "one seed (1)")
+    sentence = only(combined("heat-capacity", *logs), "the same seed (1)")
     assert all(str(log.path) in sentence for log in logs)
 
 
@@ -191,7 +191,7 @@ def test_the_equation_of_state_says_which_gases():
 
 def test_what_does_not_combine():
     mixture = "[{name='a', count=20, radius=0.2, temperature=1}, {name='b', count=20, radius=0.1, temperature=1}]"
-    of_mixture = r"no equation of state of a mixture \(0.5 of radius 1, 0.5 of radius 2\)"
+    of_mixture = r"requires equal discs, as Z of a mixture \(0.5 of radius 1, 0.5 of radius 2\)"
     raised(of_mixture, combined, "pressure", made(), made(f"species={mixture}"))
     raised("^histogram: does not combine several logs$", combined, "histogram", made(), made("scene.seed=9"))
 

@@ -54,7 +54,7 @@ def test_a_hole_of_many_mean_free_paths_has_no_theory():
     found = measured(HOLE.replace("until = 12", "until = 0.5") + discs)
     assert found.per_path.theory is None
     (sentence,) = found.caveats
-    assert sentence.startswith("No theory: the holes are ")
+    assert sentence.startswith("Theory is not available: the holes are ")
     assert sentence.endswith(" mean free paths long, not small.")
 
 
@@ -72,7 +72,8 @@ def test_discs_that_meet_are_no_billiard():
     found = measured(text.replace("until = 12", "until = 7.5"))
     assert found.escaped == 1
     assert found.caveats == (
-        "No theory of the number left: discs neither keep their speeds nor come to equilibrium before they leave.",
+        "Theory of the number left is not available: discs neither keep their speeds nor come to equilibrium before "
+        "they leave.",
     )
 
 

@@ -30,7 +30,7 @@ def test_no_law_and_why(override, make):
     assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["no_law"] == found.no_law
     (table,) = found.analysis.tables(found)
-    assert f"No law here: {found.no_law}." in table.notes
+    assert f"Theory gives no distribution: {found.no_law}." in table.notes
     assert found.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
 
 
@@ -73,7 +73,7 @@ def test_discs_that_start_at_rest_fall(make):
 
 def test_free_flights_in_a_gas_that_is_not_uniform(make):
     found = histogram(make("gravity.acceleration=[0, -0.3]"), "free-time")
-    assert found.no_law == "the gas is not the same everywhere (gravity)"
+    assert found.no_law == "the gas is not uniform (gravity)"
     assert found.distributions[0].tests == ()
     assert 0.5 < found.distributions[0].mean.value < 10
     raised(
@@ -120,7 +120,7 @@ def test_numbers_of_collisions_have_a_theory_for_equal_discs(make):
         f"{{ name = '{name}', count = 20, radius = {r}, temperature = 1.5 }}" for name, r in (("a", 0.1), ("b", 0.2))
     ]
     found = histogram(make(f"species=[{', '.join(two)}]"), "collisions")
-    assert found.no_law == "it is known for equal discs"
+    assert found.no_law == "it is known only for equal discs"
     for each in found.distributions:
         assert (each.tests, each.mean.theory) == ((), None)
         assert each.cumulants["variance_over_mean"].theory is None

@@ -46,7 +46,7 @@ def test_effects_are_not_ignored(log, monkeypatch):
     raised("no answer for a gas with magnets", transport, log)
     found = pressure(log)
     assert (found.routes, found.no_theory) == ((), "no equation of state holds under magnets")
-    assert histogram(log, "free-time").no_law == "the gas is not the same everywhere (magnets)"
+    assert histogram(log, "free-time").no_law == "the gas is not uniform (magnets)"
 
 
 def test_check_fails_when_theory_is_off(log):
@@ -61,7 +61,7 @@ def test_check_fails_when_theory_is_off(log):
     unknown = tuple(
         replace(r, compressibility_factor=replace(r.compressibility_factor, theory=None)) for r in result.routes
     )
-    assert str(replace(result, routes=unknown, no_theory="why").check()) == "No theory here: why."
+    assert str(replace(result, routes=unknown, no_theory="why").check()) == "Theory is not available: why."
     pairs = replace(result.routes[-1].compressibility_factor, standard_error=math.nan)
     checked = replace(result, routes=(replace(result.routes[-1], compressibility_factor=pairs),)).check()
     assert checked.agrees is None

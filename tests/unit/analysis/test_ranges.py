@@ -39,7 +39,7 @@ SAID = [
     ("lie in layers at walls", "profile", {"start": 0.0}, ("species.gas.radius=0.4", "run.collisions_per_disc=20"), ()),
     ("lie in layers at walls", "profile", {"start": 0.0, "bins": 40}, ("species.gas.count=120",), None),
     ("strips hold a disc of gas in fewer than 32 frames", "profile", {"start": 0.0}, STEEP, ()),
-    ("The theory is that of a dilute gas; here the packing fraction of a strip reaches 0.", "profile",
+    ("The theory assumes a dilute gas; the packing fraction of a strip reaches 0.", "profile",
      {"start": 0.0, "bins": 4}, (*COLUMN, "species.gas.radius=0.2"),
      (*COLUMN, "species.gas.radius=0.02", "run.collisions_per_disc=5")),
     ("of the mean speed of the discs, but the law is that of a slow one", "evolution", {}, pushed(-0.5), pushed(-0.05)),
@@ -60,7 +60,7 @@ SAID = [
     ("Discs hardly collide with each other (0 times each", "temperature", {}, POINTS, ()),
     ("Discs hardly collide", "temperature", {}, None, (*POINTS, "box={size=[8, 8], left={thermal=1}}")),
     ("to the ends of its wall", "pressure", {"start": 0.0}, (*PLATE, "log.events=false"), PLATE),
-    ("there is plate.", "effusion", {}, [part.replace("wall=[", "wall=[{name='plate', from=[5, 3], to=[5, 5]}, ")
+    ("these contain plate.", "effusion", {}, [part.replace("wall=[", "wall=[{name='plate', from=[5, 3], to=[5, 5]}, ")
                                          for part in SLIT], SLIT),
 ]  # fmt: skip
 """Words of a caveat, an analysis and its options, a gas of which they are said, and one of which they are not.
@@ -81,9 +81,9 @@ def test_a_caveat_is_said_where_it_holds(words, name, options, scene, other):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        (SLIT[2], "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]", "beside it is a gap of 3"),
-        ("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}", "beside it is a gap of 0.5"),
-        ("to=[4, 3]}", "to=[4, 3], closes_at=100}", "beside it is a gap of 3"),
+        (SLIT[2], "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]", "beside the gate is a gap of 3"),
+        ("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}", "beside the gate is a gap of 0.5"),
+        ("to=[4, 3]}", "to=[4, 3], closes_at=100}", "beside the gate is a gap of 3"),
         ("wall=[", "wall=[{from=[4, 4.5], to=[4, 3]}, ", "a wall stands in the gate"),
         (SLIT[2], WHOLE[1], "opens the box from side to side, so that the gas expands freely"),
     ],
@@ -95,7 +95,7 @@ def test_effusion_takes_a_wall_that_divides_the_box(old, new, words):
 
 def test_effusion_takes_no_periodic_sides():
     log = made(*SLIT, 'box={size=[8, 8], left="periodic", right="periodic"}')
-    raised("discs pass through the periodic sides", registry.analyse, log, "effusion")
+    raised("discs also pass through the periodic sides", registry.analyse, log, "effusion")
 
 
 def test_effusion_takes_a_gate_in_line_with_its_walls():
@@ -147,7 +147,7 @@ def test_fourier_s_law_takes_many_mean_free_paths():
 def test_laws_of_many_discs_take_many():
     few = ("species.gas.count=10", PERIODIC)
     path = analysed("histogram", *few, quantity="free-path")
-    assert path.no_law == "the law is that of many discs, and here are 10"
+    assert path.no_law == "the law is for many discs, and this gas has 10"
     many = analysed("histogram", PERIODIC, quantity="free-path")
     assert many.no_law is None
     assert many.distributions[0].mean.theory == pytest.approx(analysed("transport", PERIODIC).free_paths[0].path.theory)

@@ -192,7 +192,7 @@ def test_a_report_shows_every_section_or_says_why_not(make):
     assert order == "the packing fraction is below 0.5"
     without_positions = make_sections(make('run.method="monte_carlo"', "run.v_ref=5"))
     left_out = {section.title: section.left_out for section in without_positions if section.left_out}
-    assert left_out["Profile"] == "discs of this method have no positions"
+    assert left_out["Profile"] == "a profile requires discs with positions"
     assert "Evolution" not in left_out
 
 

@@ -118,7 +118,7 @@ def test_a_disc_falls_on_the_parabolas_of_its_gravities(tmp_path):
         assert flights.displacement.tolist() == [[0, 1], [0, 1], [0, 0.5], [0, -0.5], [0.25, -1], [0.75, -1]]
         assert flights.end_velocity.tolist() == [[0, 1], [0, 1], [0, 0], [0, -1], [0.5, -1], [1, -1]]
         assert log.observables["step_energy"][1][-1] == 4 - 5  # -m Δg·r
-        with pytest.raises(NotApplicableError, match="not applicable to a gas whose gravity changes in time"):
+        with pytest.raises(NotApplicableError, match="constant gravity is required, but gravity changes in time"):
             assert log.gravity
     assert summary.energy_drift == 0
 

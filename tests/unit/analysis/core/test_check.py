@@ -67,7 +67,7 @@ def test_a_check_reports_what_it_compares():
     assert row["allowed"] == pytest.approx(0.08 * stats.t.isf(FALSE_ALARM / 2, 5))
     rows = [line.split() for line in as_text(many.tables()).splitlines()[-2:]]
     assert [(row[0], row[-1]) for row in rows] == [("few", "agrees"), ("many", "differs")]
-    assert str(check_theory([("a", None, Estimate(1.0, 0.1, 10.0))], "why")) == "No theory here: why."
+    assert str(check_theory([("a", None, Estimate(1.0, 0.1, 10.0))], "why")) == "Theory is not available: why."
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_rows_are_counted():
         ([Estimate(1.1, 0.02, math.inf, 1.0)], "differs from the law (1, +5.0σ)"),
         ([Estimate(1.1, 0.02, 5.0, 1.0)], "agrees with the law (1, +5.0σ of 5 samples)"),  # up to 8.6σ
         ([Estimate(1.0, math.nan, 0.0, 2.0)], "no error bar to compare it with the law (2)"),
-        ([Estimate(1.0, 0.1, 9.0)], "no theory here: why"),
+        ([Estimate(1.0, 0.1, 9.0)], "theory is not available: why"),
         ([Estimate(5, 2, 3.0, 12)], "too few samples to tell whether it agrees with the law (12, −3.5σ of 3 samples)"),
         ([Estimate(1.0, 0.1, 99.0, z) for z in (1.1, 1.2)], "both agree with the law (largest deviation −2.0σ, 1)"),
         ([Estimate(1.0, 0.1, 99.0, z) for z in (1, 3, 2)], "2 of 3 differ from the law (largest deviation −20.0σ, 1)"),

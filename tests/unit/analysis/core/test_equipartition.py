@@ -32,7 +32,7 @@ SHARED = {
 def test_slow_exchange_is_no_equilibrium(name, seed):
     log, why = (
         log_of(SLOW[name], f"scene.seed={seed}"),
-        r"no equilibrium, as (m v.² .* in equilibrium|it still changes)",
+        r"requires equilibrium, but (m v.² .* in equilibrium|the gas still changes)",
     )
     raised(why, analyse, log, "pressure", error=NotApplicableError)
 

@@ -82,7 +82,7 @@ def test_a_dense_mixture_in_equilibrium_is_kept():
 def test_gas_that_is_never_in_equilibrium(overrides):
     log = log_of(GAS, *overrides)
     for analysis in ("temperature", "profile"):
-        raised(r"no equilibrium, as .*evolution.*--from", analyse, log, analysis, error=NotApplicableError)
+        raised(r"requires equilibrium, but .*evolution.*--from", analyse, log, analysis, error=NotApplicableError)
         assert analyse(log, analysis, start=1.0).as_dict()["window"]["start"] == 1.0
 
 

@@ -108,7 +108,7 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston():
     refused, of_energy = result.refused, result.refused["fluctuations of the kinetic energy"]
     assert "independent samples of the energy are too few (128 needed)" in of_energy
     assert "it requires" not in of_energy
-    assert refused["γ"].startswith("no heat capacity of the gas with the piston was measured")
+    assert refused["γ"].startswith("the heat capacity of the gas with the piston was not measured")
     assert refused["Var(E)/T²"].startswith("it requires thermal walls")
     rows = [label.get_text() for label in HeatCapacityAnalysis.figure(result).axes[0].get_yticklabels()]
     assert rows == ["no dE/dT", "no E/T", "no Var(E)/T²", "no fluctuations", "no γ"]

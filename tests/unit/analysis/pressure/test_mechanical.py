@@ -41,7 +41,7 @@ def test_every_effect_has_a_pressure_of_its_walls(override, make):
     assert [wall["wall"] for wall in known["walls"]] == list(walls)
     assert known["forces"][-1]["wall"] == "all walls"
     tables = pressure_tables(found)
-    assert f"No theory here: {found.no_theory}." in tables[0].notes
+    assert f"Theory is not available: {found.no_theory}." in tables[0].notes
     assert len(tables[0].rows) == len(walls)
     assert [label.get_text() for label in pressure_figure(found).axes[0].get_yticklabels()] == list(walls)[::-1]
 
