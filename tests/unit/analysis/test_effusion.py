@@ -67,10 +67,10 @@ def test_one_disc_passes(turned):
 def test_windows_are_those_of_the_open_gate():
     closing = SCENE.replace("opens_at = 1", "opens_at = 1, closes_at = 7")
     assert measured(closing, start=2.0).time[[0, -1]].tolist() == [2.0, 7.0]
-    raised("the gate is open from t = 1 to 7", measured, closing, start=8.0)
+    raised("the gate is open only from t = 1 to 7", measured, closing, start=8.0)
     wide = SCENE.replace("[8, 4]", "[8, 0.05]").replace("[8, 6]", "[8, 9.95]")
     raised("the gate opens the box from side to side", measured, wide)
-    raised("beside it is a gap of 1", measured, SCENE.replace("to = [8, 4] }, ", "to = [8, 3] }, "))
+    raised("beside the gate is a gap of 1", measured, SCENE.replace("to = [8, 4] }, ", "to = [8, 3] }, "))
 
 
 def test_two_chambers_become_even():

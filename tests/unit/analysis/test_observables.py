@@ -43,7 +43,7 @@ def test_windows_without_events_are_refused(log):
 
 def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "active_effects", (ActiveEffect("magnets", (), Properties(uniform=False)),))
-    raised("no answer for a gas with magnets", transport, log)
+    raised("requires a gas without magnets", transport, log)
     found = pressure(log)
     assert (found.routes, found.no_theory) == ((), "no equation of state holds under magnets")
     assert histogram(log, "free-time").no_law == "the gas is not uniform (magnets)"
