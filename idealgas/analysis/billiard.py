@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 UNMIXED = (
-    "Discs hardly meet: theory needs walls that mix all paths, such as those of Sinai's billiard or of a stadium; in a "
-    "circle or a rectangle each path has a mean of its own."
+    "Discs hardly ever collide. Theory then requires walls that mix all paths, such as those of Sinai's billiard or of "
+    "a stadium; in a circle or a rectangle the mean differs from path to path."
 )
 """Caveat for discs that only walls deflect."""
 
@@ -154,7 +154,7 @@ def _theory(log: Log) -> tuple[Theory, Reach]:
     if np.ptp(gas.radius) > 0:
         raise NoTheoryError("the discs have several radii")
     if not (properties.straight_flight and properties.fixed_walls):
-        raise NoTheoryError("discs fall, or walls move")
+        raise NoTheoryError("gravity acts on the discs, or walls move")
     if properties.dissipative or properties.spins or properties.varies or len(properties.temperatures) > 1:
         raise NoTheoryError("the gas is not in equilibrium")
     if log.escapes or any(wall.absences or wall.is_permeable for wall in log.scene.walls):

@@ -186,7 +186,7 @@ class EffusionAnalysis(Analysis):
         """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
         first, *_ = found.together.values()
         verdict = agreement(found.together.items(), "⟨v⟩/π of kinetic theory")
-        return f"{format_estimate(first)} n discs pass per time and length of the slit at the density n; {verdict}."
+        return f"The flux per density is {format_estimate(first)}; {verdict}."
 
     @staticmethod
     def figure(found: Effusions) -> "Figure":

@@ -34,8 +34,8 @@ RARE, OFTEN = 0.1, 10.0
 """Collisions of a disc per escape up to which speeds persist, and from which on the gas is in equilibrium."""
 
 BILLIARD = (
-    "Discs hardly meet: theory then needs walls that bring every path to the hole, such as ones that bulge inwards; a "
-    "circle or a rectangle does not."
+    "Discs hardly ever collide. Theory then requires walls that lead every path to the hole, such as walls that bulge "
+    "inwards; those of a circle or a rectangle do not."
 )
 """Caveat for discs that only walls deflect."""
 
@@ -195,7 +195,7 @@ def _theory(log: Log, number: float) -> Theory:
     if np.ptp(gas.radius) > 0:
         raise NoTheoryError("discs have several radii")
     if not (scene.properties.straight_flight and scene.properties.fixed_walls):
-        raise NoTheoryError("discs fall, or walls move")
+        raise NoTheoryError("gravity acts on the discs, or walls move")
     if any(wall.absorbing and (wall.absences or wall.is_permeable) for wall in scene.walls):
         raise NoTheoryError("a hole opens or closes, or lets discs pass")
     reach = reach_of(log, radius)
@@ -215,8 +215,8 @@ def _expected(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean and standard deviation of the number of discs left, (INSTANTS,), from speeds (N,) at time 0.
 
-    Discs that hardly meet keep their speeds. Discs of a gas in equilibrium leave at the rate of its mean speed. Without
-    heat from outside the gas cools, as each disc that leaves carries 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
+    Discs that hardly ever collide keep their speeds. Discs of a gas in equilibrium leave at the rate of its mean speed.
+    Without heat from outside the gas cools, as each disc that leaves carries 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
 
     Raises:
         NoTheoryError: if theory does not apply.
@@ -230,7 +230,7 @@ def _expected(
             "while discs leave, the temperature is not known for mixtures, or with energy losses or spins"
         )
     if not mixes and (properties.temperatures or lossy):
-        raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly meet")
+        raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly ever collide")
     if mixes:
         temperature = next(iter(properties.temperatures), float(mass * (speed**2).mean() / 2))
         speed = np.array([math.sqrt(math.pi * temperature / (2 * mass))])

@@ -118,7 +118,7 @@ class LyapunovAnalysis(Analysis):
         steps = list(_steps(log, window, exponents, progress))[ALIGNMENT:]
         if len(steps) < FEWEST:
             raise UserError(
-                f"{log.path}: too short for Lyapunov exponents, which take {ALIGNMENT + FEWEST} events per disc"
+                f"{log.path}: too short for Lyapunov exponents, which require {ALIGNMENT + FEWEST} events per disc"
             )
         durations, logs, shares, collisions = (np.array(column) for column in zip(*steps, strict=True))
         spectrum = tuple(ratio(logs[:, k], durations) for k in range(exponents))
@@ -146,7 +146,7 @@ class LyapunovAnalysis(Analysis):
     def tables(result: Lyapunov) -> list[Table]:
         """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
         exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(result.exponents, 1)]
-        notes = [describe(result.window), "theory: none for any density; the largest exponent grows with N"]
+        notes = [describe(result.window), "theory is not available at any density; the largest exponent grows with N"]
         chaos = [
             ("digits lost per collision of a disc (no unit)", result.digits),
             ("fraction of the discs in the leading deviation (no unit)", result.localisation),

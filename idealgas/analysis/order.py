@@ -186,7 +186,7 @@ class OrderAnalysis(Analysis):
         """Return the hexagonal order of all discs, from 0 to 1, for which theory is not available."""
         return (
             f"|Ψ₆| of all discs is {format_estimate(result.whole)} (0 without order, 1 in a perfect crystal), and "
-            f"{100 * result.hexagons.value:.0f} % have six neighbours; there is no theory of either."
+            f"{100 * result.hexagons.value:.0f} % have six neighbours; theory is not available for either."
         )
 
     @staticmethod

@@ -167,7 +167,7 @@ def shear(
     series = [reduced] if heats else [reduced, temperatures]
     first = _first(log, edges, series) if start is None else 0
     memory = memory_time(values[first:] for values in series) * block
-    slowest = Exchange(memory, "the flow and its temperature forget their values")
+    slowest = Exchange(memory, "the flow and its temperature lose memory of earlier values")
     window = Window(edges, first, start is None, kind_of_state(log), slowest)
     p, t = pressure[first:], temperatures[first:]
     temperature = mean(t)
@@ -250,9 +250,9 @@ def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: 
     before, after = float(temperatures[:quarter].mean()), float(temperatures[-quarter:].mean())
     if abs(after - before) > DRIFT * temperatures.mean():
         reason = ", as shear heats the gas" if heats else ""
-        which = "that at the mean temperature, as" if heats else "that of one state only if"
+        which = "is that at the mean temperature, as" if heats else "describes a single state only if"
         sentences.append(
-            f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity is {which} "
+            f"The temperature changes from {before:.4g} to {after:.4g} in the window{reason}: the viscosity {which} "
             "it is proportional to √T."
         )
     if reduced_rate > FAST:

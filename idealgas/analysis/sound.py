@@ -308,11 +308,11 @@ def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
     short = max(diameter, hard_discs.mean_free_path(diameter, len(gas) / gas.area, gas.packing_fraction))
     if k * short > HYDRODYNAMIC:
         yield (
-            f"The waves along {wave.axes} are {wave.wavelength / short:.3g} mean free paths or diameters long; a fluid "
-            f"takes {2 * math.pi / HYDRODYNAMIC:.3g}."
+            f"The waves along {wave.axes} are {wave.wavelength / short:.3g} mean free paths or diameters long; "
+            f"hydrodynamics requires {2 * math.pi / HYDRODYNAMIC:.3g}."
         )
     if fluid.damping * k > fluid.speed:
-        yield f"The waves along {wave.axes} die out within a period: they hardly are sound."
+        yield f"The waves along {wave.axes} decay within a period and are hardly sound waves."
     if (part := wave.speed.standard_error / wave.speed.value) > ROUGH:
         yield (
             f"The speed of sound along {wave.axes} is known to {100 * part:.2g} %; above {100 * ROUGH:g} % error bars "
@@ -320,5 +320,6 @@ def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
         )
     if (number := window.duration * fluid.damping * k**2) < FEWEST_DECAYS:
         yield (
-            f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars take {FEWEST_DECAYS}."
+            f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars require "
+            f"{FEWEST_DECAYS}."
         )

@@ -91,13 +91,13 @@ def test_a_hole_in_a_box(until, wall, length, area):
 
 @pytest.mark.usefixtures("uncompiled")
 def test_speeds_that_walls_or_a_heat_bath_change():
-    """Discs that hardly meet: the rate per path is known, but neither the number left nor the mean time."""
+    """Discs that hardly ever collide: the rate per path is known, but neither the number left nor the mean time."""
     scene = ROUND.format(until=200, count=10, radius=1e-6).replace("temperature = 2", "speed = 1")
     found = escape_of(scene + "[thermostat]\ntemperature = 2\nrate = 0.1")
     assert found.per_path.theory is not None
     assert found.expected is None
     assert found.mean_time.theory is None
-    reason = "walls or a heat bath change the speeds of discs that hardly meet"
+    reason = "walls or a heat bath change the speeds of discs that hardly ever collide"
     assert f"Theory of the number left is not available: {reason}." in found.caveats
 
 
@@ -118,7 +118,7 @@ def test_falling_discs_have_no_path():
     found = escape_of(ROUND.format(until=20, count=40, radius=0.2), "gravity.acceleration=[0, -0.1]")
     assert found.per_path is None
     assert found.mean_time.value > 0
-    assert found.caveats == ("Theory is not available: discs fall, or walls move.",)
+    assert found.caveats == ("Theory is not available: gravity acts on the discs, or walls move.",)
 
 
 @pytest.mark.slow

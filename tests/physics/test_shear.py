@@ -50,7 +50,7 @@ def test_what_a_heat_bath_does_to_the_theory():
 def test_a_temperature_that_changes():
     """Inelastic discs cool from a hot start, though the shear heats them."""
     log = log_of(GOLDEN, "run.events=300", "restitution.normal=0.5")
-    assert "in the window: the viscosity is that of one state only if" in " ".join(shear(log, start=0).caveats)
+    assert "in the window: the viscosity describes a single state only if" in " ".join(shear(log, start=0).caveats)
 
 
 @pytest.mark.parametrize(

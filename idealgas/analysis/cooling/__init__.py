@@ -58,7 +58,7 @@ SPREAD = 1.0
 In 24 runs each it is 0.50 with e = 0.95 (300 discs, down to e⁻³·⁴ T₀), 0.53 with 100 discs, and 0.86 with e = 0.8.
 """
 
-UNTESTED = f"There is no theory of collisions that lose more than those with e = {granular.TESTED_FROM:g}."
+UNTESTED = f"Theory is not available below e = {granular.TESTED_FROM:g}."
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ class CoolingAnalysis(Analysis):
         rows += [
             ("scatter of numbers in cells, first tenth", result.first_scatter),
             ("scatter of numbers in cells, last tenth", result.last_scatter),
-            ("square of momenta of cells over chance, last tenth", result.last_flow),
+            ("mean square momentum of cells, relative to independent discs, last tenth", result.last_flow),
         ]
         notes = (
             f"window: t = {result.start:.6g} to {result.end:.6g}",

@@ -41,8 +41,8 @@ def nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[s
 
     The relative standard error of the scatter of a single state is √(2/(M - 1)), and that of the flow 1/√M.
     """
-    end = "and the laws are those of a uniform gas."
+    end = "theory assumes a uniform gas."
     if late > early * (1 + SIGNIFICANT * math.sqrt(4 / (cells - 1))):
-        yield f"Clusters form: numbers of discs in cells scatter {late / early:.3g} times as much as before, {end}"
+        yield f"Clusters form: numbers of discs in cells scatter {late / early:.3g} times as much as before; {end}"
     if flow > 1 + SIGNIFICANT / math.sqrt(cells):
-        yield f"Discs move together: momenta of cells have {flow:.3g} times the square of independent discs, {end}"
+        yield f"Discs move together: momenta of cells have {flow:.3g} times the mean square of independent discs; {end}"

@@ -109,7 +109,7 @@ def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
         if (first := runs.setdefault(origin.run, origin)) is not origin:
             if origin.path == first.path:
                 raise UserError(f"{origin.path}: given twice")
-            raise UserError(f"{origin.path}: the run of {first.path} again, with the same scene and seed")
+            raise UserError(f"{origin.path}: the same run as {first.path} (same scene and seed)")
         if origin.seed is not None:
             seeds.setdefault(origin.seed, []).append(origin.path)
     return tuple(

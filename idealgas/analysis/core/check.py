@@ -225,7 +225,7 @@ def agreement(
         return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"
     undecided = ", ".join(row.name for row in few) if len(few) <= NAMED else f"{len(few)} of them"
     number = f"{len(agreeing)} of {len(rows)} {'agrees' if len(agreeing) == 1 else 'agree'}"
-    return f"{number} with {theory} ({most}), too few samples to tell for {undecided}"
+    return f"{number} with {theory} ({most}), too few samples for a verdict on {undecided}"
 
 
 class _Row(NamedTuple):

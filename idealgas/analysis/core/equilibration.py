@@ -241,12 +241,12 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
     if first is not None and first > len(series) // 10:
         return (
             f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
-            "It takes a later start or a longer run.",
+            "Use a later start or a longer run.",
         )
     if first is None or samples < FEWEST_SAMPLES:
         return (
-            f"{name} changes as slowly as the window is long: its mean and error may be those of one fluctuation, or "
-            "of a change that is not over. It takes a longer run.",
+            f"{name} changes too slowly for this window: its mean and error may describe a single fluctuation, or "
+            "a change that is not over. Use a longer run.",
         )
     return ()
 

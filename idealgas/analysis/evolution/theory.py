@@ -151,7 +151,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
-    caveat = "Haff's law is that of a uniform gas; `idealgas cooling` shows whether this one remains so."
+    caveat = "Haff's law assumes a uniform gas; `idealgas cooling` checks this."
     return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(caveat,))
 
 
@@ -234,7 +234,9 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
     fastest = float(np.abs(speeds).max())
     at_first = _kinetic(log) / len(log.discs)
     share = fastest / hard_discs.mean_speed(at_first, float(log.discs.mass[0]))
-    caveat = f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the law is that of a slow one."
+    caveat = (
+        f"The piston moves at up to {share:.2g} of the mean speed of the discs, but the adiabat assumes a slow piston."
+    )
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
     area = lengths * log.box[1 - log.scene.piston[0].axis]
     return Law(text, at_first * np.exp(exponent), caveats=(caveat,) if share > SLOW else (), area=area)

@@ -97,7 +97,7 @@ class HeatCapacityAnalysis(Analysis):
         if BATH in kinds:
             (bath,) = properties.temperatures
             temperature = Estimate(bath, 0.0, math.inf)
-            thermometer = "the walls' own" if properties.bath is None else "the heat bath's own"
+            thermometer = "thermal walls" if properties.bath is None else "heat bath"
             route, fluctuating = "Var(E)/T²", series.energy
             capacity_of_route = bath_fluctuations(series.energy, n, bath, of_piston, capacity)
         else:
@@ -136,7 +136,7 @@ class HeatCapacityAnalysis(Analysis):
         tables = []
         if len(result.logs) <= MANY:
             rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]
-            rows += [(f"{log.path}: T by {log.thermometer}", log.temperature) for log in result.logs]
+            rows += [(f"{log.path}: T from {log.thermometer}", log.temperature) for log in result.logs]
             tables.append(estimates("Logs (energy)", rows))
         routes = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
         refused = [f"no {name}: {why}" for name, why in result.refused.items()]
@@ -147,7 +147,7 @@ class HeatCapacityAnalysis(Analysis):
         """Return the heat capacity per disc by the first route, and whether all routes agree with theory."""
         rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
         if not rows:
-            return "No route gives a heat capacity here, so that there is nothing to compare with theory."
+            return "No route gives a heat capacity for these logs."
         name, estimate = rows[0]
         return (
             f"C = {format_estimate(estimate)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."

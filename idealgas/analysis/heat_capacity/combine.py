@@ -128,7 +128,7 @@ def _apart(groups: Groups) -> Iterator[str]:
     for kind in dict.fromkeys(kind for kind, _ in groups):
         if len(gases := [gas for kind_of_gas, gas in groups if kind_of_gas == kind]) > 1:
             words = "; ".join(gases)
-            yield f"Different gases ({kind}) are kept apart, each with a slope dE/dT and means of its own: {words}."
+            yield f"Different gases ({kind}) are analysed separately, each with its slope dE/dT and its means: {words}."
 
 
 def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:

@@ -85,7 +85,7 @@ def expectation(log: Log, start: float | None, end: float | None) -> Expectation
         return Expectation(ensemble, ensemble.temperature, "")
     why_not = nonequilibrium_reason(log)
     if len(log.discs) == 1 and not why_not:
-        why_not = "a single disc shares its energy with no other"
+        why_not = "a single disc cannot share its energy"
     scale, baths = _highest(log, start, end), log.scene.properties.temperatures
     if why_not or not baths:
         return Expectation(None, scale, why_not)

@@ -125,7 +125,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     result = EquationOfState(states, b2, b3)
     if len(result.kinds) == 1:
         return result
-    sentence = f"The states are of different gases, each in a row of its own: {'; '.join(result.kinds)}."
+    sentence = f"The states are of different gases, each in a separate row: {'; '.join(result.kinds)}."
     return replace(result, caveats=(sentence,))
 
 

@@ -183,7 +183,7 @@ def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[
     """Return caveats for a dense gas, which changes slowly or is ordered."""
     if gas.packing_fraction <= hard_discs.HIGHEST:
         return ()
-    ordered = "Discs this dense order, and a run may keep one arrangement of them: the errors are those of that one."
+    ordered = "At this density discs order, and a run may keep a single arrangement: the errors are those of it alone."
     drifting = unsteady("The virial of the pairs", window.of(impacts.pair_virial), window.edges[window.first : -1])
     return (ordered,) * (gas.packing_fraction >= FREEZING) + drifting
 
@@ -231,7 +231,7 @@ def _ends(log: Log) -> tuple[str, ...]:
     """Return a caveat on walls inside the box if no events distinguish the ends of a wall from its faces."""
     if log.has_events or not walls_inside(log.scene):
         return ()
-    return ("Without events the pressure on a face has also what discs give to the ends of its wall.",)
+    return ("Without events the pressure on a face includes the momentum that discs give to the ends of its wall.",)
 
 
 def _chambers(log: Log, window: Window) -> tuple[str, ...]:

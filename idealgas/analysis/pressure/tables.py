@@ -52,7 +52,7 @@ def _of_walls(result: Pressure, mechanical: Mechanical) -> list[Table]:
     along = [(wall.name, wall.stress) for wall in mechanical.walls if wall.stress]
     return [
         estimates("P on each wall (energy/length²)", [(wall.name, wall.pressure) for wall in mechanical.walls], notes),
-        estimates("Force of the discs (energy/length)", forces),
+        estimates("Force of the discs on walls (energy/length)", forces),
         *([estimates("Stress along walls (energy/length²)", along)] if along else []),
     ]
 

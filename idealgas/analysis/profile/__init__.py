@@ -120,7 +120,7 @@ class ProfileAnalysis(Analysis):
         Option(
             "along",
             str,
-            "Axis of the profile.  [default: across a flow, that of gravity, or of two thermal sides; else x]",
+            "Axis of the profile. By default across a flow, along gravity, or between two thermal sides; otherwise x.",
             choices=("x", "y"),
         ),
         Option("bins", int, "Number of strips.", default=BINS, least=1, most=1000),

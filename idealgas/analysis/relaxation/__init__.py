@@ -230,10 +230,15 @@ class RelaxationAnalysis(Analysis):
         times = [
             f"{log.number} discs in {format_estimate(log.in_collisions)}" for log in found.logs if log.in_collisions
         ]
-        theory = f"Theory: {LINEAR:g} near equilibrium; none for the whole way from equal speeds, which takes longer."
+        theory = (
+            f"Theory: {LINEAR:g} near equilibrium; not available for the whole relaxation from equal speeds, which is "
+            "slower."
+        )
         if not times:
             return f"No relaxation is seen: the velocities are those of equilibrium from the start. {theory}"
-        return f"Velocities relax to Maxwell–Boltzmann's: {', '.join(times)} collisions per disc. {theory}"
+        return (
+            f"Velocities relax to the Maxwell–Boltzmann distribution: {', '.join(times)} collisions per disc. {theory}"
+        )
 
     @staticmethod
     def figure(found: Relaxations) -> "Figure":
@@ -261,8 +266,8 @@ def _caveats(
         return
     if collisions[-1] < fit.value:
         yield (
-            f"The log is followed for {collisions[-1]:.2g} collisions per disc, less than the relaxation time that was "
-            f"fitted, {fit.value:.2g}: that is an extrapolation."
+            f"The log is followed for {collisions[-1]:.2g} collisions per disc, less than the fitted relaxation time "
+            f"{fit.value:.2g}, which is therefore an extrapolation."
         )
     if kurtosis[0] > MAXWELLIAN:
         yield (

@@ -331,4 +331,4 @@ def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[s
     shear = hard_discs.enskog_viscosity(diameter, density, temperature, mass, chi) / (mass * density)
     rate = min(min(fluid.damping, fluid.spreading, shear) * k**2, k * math.sqrt(temperature / mass))
     if (number := window.duration * rate) < FEWEST_DECAYS:
-        yield f"The window has {number:.2g} decay times of the longest wave; its error bars take {FEWEST_DECAYS:g}."
+        yield f"The window has {number:.2g} decay times of the longest wave; its error bars require {FEWEST_DECAYS:g}."

@@ -85,7 +85,7 @@ class Forecast:
 KNOWN = ("uniform", "conserves_energy")
 """Properties that theory requires of a scene, besides heat sources of at most one temperature."""
 
-PARTED = "walls inside the box may part the gas, and each part then keeps its own temperature"
+PARTED = "walls inside the box may divide the gas, and each part then keeps its own temperature"
 
 SLOW_BATH = 10.0
 """Number of thermostat collisions of a disc in a run below which a forecast reports a slow heat bath."""
@@ -172,7 +172,7 @@ def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...
     if abs(gas.temperature / bath - 1) < NEARLY:
         return ()
     return (
-        f"The heat bath takes some {1 / rate:.3g} of time to make the gas as hot as itself; until then rates are "
+        f"The heat bath needs a time of about {1 / rate:.3g} to bring the gas to its temperature; until then rates are "
         f"those of the start, with T = {gas.temperature:.3g}.",
     )
 

@@ -219,7 +219,7 @@ def box_theory(
         if not ergodic and number.sum() > 1:
             raise NoTheoryError("two equal discs that start without momentum do not reach all states between walls")
         if math.pi * float((number * radius**2).sum()) / (box[0] * box[1]) < THINNEST:
-            raise NoTheoryError(f"the packing fraction is below {THINNEST:g}, where rounding takes the digits of Z - 1")
+            raise NoTheoryError(f"the packing fraction is below {THINNEST:g}, where Z - 1 loses its digits to rounding")
         if number.sum() == 2:
             return _two(radius, number, box, periodic)
         if len(radius) > 1 and np.ptp(radius) > 0:

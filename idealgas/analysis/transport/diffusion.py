@@ -246,8 +246,9 @@ def diffusion_caveats(entry: Diffusion, limits: Limits) -> Iterator[str]:
         far = math.sqrt(entry.displacement[entry.lag <= limits.needed][-1])
         width = math.sqrt(4 * limits.friction_d * limits.needed) / FREE_SHARE
         yield (
-            f"Walls reflect discs of {name}, which move {far:.3g} in the time of {limits.needed:.3g} that a diffusion "
-            f"coefficient takes; none in this box. Periodic sides give one, or a box about {width:.2g} wide and high."
+            f"Walls reflect discs of {name}, which move {far:.3g} in the time {limits.needed:.3g} that a diffusion "
+            "coefficient requires: it cannot be measured in this box. Use periodic sides, or a box about "
+            f"{width:.2g} wide and high."
         )
     elif entry.plateau is None:
         yield (
@@ -257,10 +258,10 @@ def diffusion_caveats(entry: Diffusion, limits: Limits) -> Iterator[str]:
     elif longest * limits.rate < LEAST_LAG:
         yield (
             f"The window is short: {name} is followed for {longest * limits.rate:.2g} mean free times at most; its "
-            f"diffusion coefficient and velocity correlation time take {LEAST_LAG:g}."
+            f"diffusion coefficient and velocity correlation time require {LEAST_LAG:g}."
         )
     elif longest < limits.needed:
         yield (
-            f"{name} is followed for {longest:.3g}, and keeps its velocity for a time: its diffusion coefficient and "
-            f"velocity correlation time take {limits.needed:.3g}, by a larger --lag."
+            f"{name} is followed for only {longest:.3g}, while its velocity remains correlated: its diffusion "
+            f"coefficient and velocity correlation time require {limits.needed:.3g}. Use a larger --lag."
         )

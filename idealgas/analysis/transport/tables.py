@@ -88,7 +88,7 @@ def _rows(name: str, coefficient: Coefficient) -> list[tuple[str, Estimate]]:
     if coefficient.difference is not None:
         first_route, second_route = coefficient.routes
         rows += [(f"   by {route}", value) for route, value in coefficient.routes.items()]
-        rows.append((f"   {first_route} less {second_route}", coefficient.difference))
+        rows.append((f"   {first_route} minus {second_route}", coefficient.difference))
     return rows
 
 

@@ -113,8 +113,8 @@ def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
     weight = np.exp(-(one.work - one.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ {one.name} is as good as that of {effective:.3g} strokes; below {FEWEST_EFFECTIVE:g} its "
-            "error may be too small."
+            f"⟨exp(−W/T)⟩ {one.name} has an effective number of only {effective:.3g} strokes; below "
+            f"{FEWEST_EFFECTIVE:g} its error may be too small."
         )
 
 

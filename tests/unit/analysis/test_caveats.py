@@ -80,7 +80,7 @@ def test_discs_that_order_may_keep_an_arrangement():
     for radius, said in ((0.44, 0), (0.45, 1)):
         discs = f"species=[{{name='gas', count=72, radius={radius}, temperature=1, placement='lattice'}}]"
         found = analysed("pressure", PERIODIC, discs)
-        assert sum("one arrangement" in sentence for sentence in found.caveats) == said
+        assert sum("single arrangement" in sentence for sentence in found.caveats) == said
 
 
 # ── motion of the gas as a whole ──
@@ -114,7 +114,7 @@ def test_time_steps_are_said():
     """By analyses, as the displacement of two discs in a step; and before a run, by the speeds that a scene has."""
     by_steps = (PERIODIC, "run.method='time_driven'", "run.dt=0.01")
     steps = made(*by_steps)
-    far = r"0\.0[89]\d* diameters relative to each other at the start, Z - 1 is too small"
+    far = r"0\.0[89]\d* diameters relative to each other per step: Z - 1 is too small"
     assert re.search(far, only(registry.analyse(steps, "pressure"), "time steps"))
     assert "time steps" in "".join(status(steps).caveats)
     assert silent(analysed("pressure", PERIODIC), "time steps")
@@ -131,7 +131,7 @@ def test_a_run_counts_once(name):
     log = made(*scene)
     raised(r"\.h5: given twice$", combined, name, log, log)
     again = made(*scene, f"scene.seed={log.scene.scene.seed}", "log.compression=none")
-    raised(r"\d\.h5: the run of .*\d\.h5 again, with the same scene and seed", combined, name, log, again)
+    raised(r"\d\.h5: the same run as .*\d\.h5 \(same scene and seed\)", combined, name, log, again)
     assert silent(combined(name, log, made(*scene, "scene.seed=7")), "seed")
 
 
@@ -152,7 +152,7 @@ def test_a_sweep_counts_once():
     found = analysis.analyse(log)
     point = analysis.restored(found.as_dict(), "a point", caveats.origin_of(log.scene, "sweep, point 0"))
     assert (point.caveats, point.energy) == ((), found.energy)
-    raised(r"sweep, point 0: the run of .* again", analysis.combined, [found, point])
+    raised(r"sweep, point 0: the same run as ", analysis.combined, [found, point])
     stored = analysis.restored(found.as_dict() | {"caveats": ["a sentence."]}, "a point")
     assert stored.caveats == ("a sentence.",)
 
@@ -163,7 +163,7 @@ def test_a_sweep_counts_once():
 def test_heat_capacities_of_different_gases_are_kept_apart():
     logs = [made(f"species.gas.temperature={t}", f"species.gas.count={n}") for n, t in ((40, 1), (40, 3), (60, 2))]
     found = combined("heat-capacity", *logs)
-    sentence = only(found, "Different gases (closed box) are kept apart")
+    sentence = only(found, "Different gases (closed box) are analysed separately")
     gases = ["N = 40 in 8 × 8, equal discs, reflecting box", "N = 60 in 8 × 8, equal discs, reflecting box"]
     assert all(gas in sentence for gas in gases)
     assert [(r.name, r.gas) for r in found.routes] == [("dE/dT", gases[0]), ("E/T", gases[0]), ("E/T", gases[1])]
@@ -179,7 +179,7 @@ def test_the_equation_of_state_says_which_gases():
     walls, periodic = made("species.gas.radius=0.2"), made(PERIODIC, "species.gas.radius=0.2")
     found = combined("pressure", walls, periodic)
     assert "equal discs, periodic sides; equal discs, reflecting box" in only(
-        found, "different gases, each in a row of its own"
+        found, "different gases, each in a separate row"
     )
     assert len(found.states) == 2
     heads = registry.find("pressure").tables(found)[0].heads

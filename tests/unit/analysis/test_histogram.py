@@ -97,7 +97,7 @@ def test_mean_free_path_without_positions(make):
 
 def test_a_single_disc_has_no_law(make):
     found = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
-    assert found.no_law == "a single disc shares its energy with no other"
+    assert found.no_law == "a single disc cannot share its energy"
 
 
 def test_figure_of_values_outside_all_bins(make):

@@ -42,14 +42,15 @@ SAID = [
     ("The theory assumes a dilute gas; the packing fraction of a strip reaches 0.", "profile",
      {"start": 0.0, "bins": 4}, (*COLUMN, "species.gas.radius=0.2"),
      (*COLUMN, "species.gas.radius=0.02", "run.collisions_per_disc=5")),
-    ("of the mean speed of the discs, but the law is that of a slow one", "evolution", {}, pushed(-0.5), pushed(-0.05)),
-    ("that is an extrapolation", "relaxation", {}, (EQUAL % (400, 0.05), "run.collisions_per_disc=1"),
+    ("of the mean speed of the discs, but the adiabat assumes a slow piston", "evolution", {}, pushed(-0.5),
+     pushed(-0.05)),
+    ("is therefore an extrapolation", "relaxation", {}, (EQUAL % (400, 0.05), "run.collisions_per_disc=1"),
      (EQUAL % (400, 0.05), "run.collisions_per_disc=20")),
-    ("that is an extrapolation", "relaxation", {}, None, (EQUAL % (10, 0.5),)),
+    ("is therefore an extrapolation", "relaxation", {}, None, (EQUAL % (10, 0.5),)),
     ("a few discs are faster than most", "relaxation", {}, (FAST,), (EQUAL % (200, 0.05),)),
     ("later curves scatter more", "relaxation", {"start": 0.2}, (EQUAL % (200, 0.05),), None),
     ("later curves", "relaxation", {}, None, (EQUAL % (200, 0.05),)),
-    ("Periodic sides give one, or a box", "transport", {}, (), (PERIODIC,)),
+    ("Use periodic sides, or a box", "transport", {}, (), (PERIODIC,)),
     ("The window is short: gas is followed for", "transport", {"part": 1 / 40}, LONG, None),
     ("currents are followed for", "transport", {"part": 1 / 40}, LONG, None),
     ("followed for", "transport", {}, None, LONG),
@@ -186,7 +187,7 @@ def test_a_heat_bath_takes_time():
     hot = "species=[{name='gas', count=40, radius=0.1, temperature=100}]"
     for bath, rate, slow in ((1, 0.001, True), (1, 10.0, False), (100, 0.001, False)):
         scene = parse_scene(GAS, overrides=(hot, f"thermostat={{temperature={bath}, rate={rate}}}"))
-        assert any("heat bath takes some" in said for said in forecast(scene, make_gas(scene)).caveats) == slow
+        assert any("heat bath needs a time" in said for said in forecast(scene, make_gas(scene)).caveats) == slow
 
 
 def test_laws_of_cooling_end_at_strong_losses():
@@ -196,12 +197,12 @@ def test_laws_of_cooling_end_at_strong_losses():
     known = found(0.9).loss
     assert known.theory_error / known.theory == pytest.approx(np.hypot(0.015, 1 / 78))
     assert known.theory == pytest.approx(cooling_per_collision(GranularParameters(0.9)) * 40 / 39)
-    assert silent(found(0.9), "no theory of collisions that lose more")
+    assert silent(found(0.9), "Theory is not available below e")
     assert (found(0.6).loss.theory, found(0.6).haff.theory, found(0.6).fourth.theory) == (None, None, None)
-    only(found(0.6), "no theory of collisions that lose more than those with e = 0.8")
+    only(found(0.6), "Theory is not available below e = 0.8.")
     course = {e: analysed("evolution", PERIODIC, f"restitution.normal={e}") for e in (0.9, 0.6)}
     assert "Haff" in course[0.9].law.text
-    only(course[0.9], "Haff's law is that of a uniform gas")
+    only(course[0.9], "Haff's law assumes a uniform gas")
     assert course[0.6].law is None
 
 

@@ -50,7 +50,7 @@ OTHERS = [
     ("heat-capacity", "16 needed", ("rotation.roughness=1", SUMS), {"start": 0.0}),
     ("histogram", "no event between|no disc moves", REST, {"quantity": "speed"}),
     ("lyapunov", r"exponents: 6 discs have 24 \(got 25\)", SIX, {"exponents": 25}),
-    ("lyapunov", "too short for Lyapunov exponents, which take 52 events per disc", SIX, {"start": 0.0}),
+    ("lyapunov", "too short for Lyapunov exponents, which require 52 events per disc", SIX, {"start": 0.0}),
     ("order", "has no events", (PERIODIC, SUMS), {}),
     ("pressure", "has no events", (SUMS,), {}),
     ("pressure", "has no events, and samples do not follow a piston", (HELD, SUMS, "log.pressure=true"), {}),

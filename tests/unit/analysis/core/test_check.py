@@ -112,7 +112,7 @@ def test_rows_are_counted():
         ([Estimate(1.0, 0.1, 99.0, z) for z in (1, 3, 2)], "2 of 3 differ from the law (largest deviation −20.0σ, 1)"),
         (
             [Estimate(1.0, 0.1, 99.0, 1.1), Estimate(1.0, 0.5, 2.0, 1.5)],
-            "1 of 2 agrees with the law (largest deviation −1.0σ, 0), too few samples to tell for 1",
+            "1 of 2 agrees with the law (largest deviation −1.0σ, 0), too few samples for a verdict on 1",
         ),
         ([Estimate(1.0, 0.5, 2.0, 1.5)] * 2, "too few samples to tell whether they agree with the law"),
         (
