@@ -1,5 +1,7 @@
 """Runs whose events do not come end, runs that have an end in time reach it, and neither fills a disk on the way."""
 
+import math
+
 import numpy as np
 import pytest
 from helpers.log_compare import differences
@@ -8,6 +10,7 @@ from helpers.support import gas_of
 
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.run import stall
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
@@ -41,7 +44,10 @@ def few(monkeypatch):
 def test_collisions_are_expected_of_the_discs_that_are_left():
     position, velocity = np.array([[1.0, 1], [3, 3], [np.nan] * 2]), np.array([[1.0, 0], [0, 1], [0, 0]])
     holes = np.ones(1, bool)
-    expected = stall._expected_collisions(gas_of((10, 10), position[:2], velocity[:2], 0.2), 7.0)
+    gas = gas_of((10, 10), position[:2], velocity[:2], 0.2)
+    expected = stall._expected_collisions(gas, 7.0)  # each disc has the speed √½, and one collision is of two discs
+    per_length = disc_collisions_per_length(2, 0.4, gas.packing_fraction, (10, 10))
+    assert expected == pytest.approx(per_length * math.sqrt(0.5) * 7.0, rel=1e-14)
     assert stall._expected_collisions(gas_of((10, 10), position, velocity, 0.2), 7.0, holes) == expected > 0
     assert stall._expected_collisions(gas_of((10, 10), position[2:], velocity[2:], 0.2), 7.0, holes) == 0
 
