@@ -17,7 +17,7 @@ from ._tables import print_tables
 from ._terminal import data, echo, written
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.analysis import Analysis, Option
+    from idealgas.analysis.analysis import Analysis, Option
     from idealgas.log import Log
 
 
@@ -152,7 +152,7 @@ def _analyse(
     except NotApplicableError as error:
         if not check or figures or as_csv:
             raise
-        from idealgas.analysis.core.check import CheckResult
+        from idealgas.analysis.check import CheckResult
 
         inapplicable = CheckResult(why_not=str(error))
         if as_json:
@@ -165,7 +165,7 @@ def _analyse(
     for path, sentence in missing.items():
         echo(f"{path}: {sentence}", err=True)
     for path, draw in figures.items():
-        from idealgas.analysis.core.style import add_title, save
+        from idealgas.presentation.style import add_title, save
 
         figure = draw(result)
         if missing:
@@ -175,7 +175,7 @@ def _analyse(
         unchecked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (checked.as_dict() if checked else unchecked))
     elif as_csv:
-        from idealgas.analysis.core.quantities import as_csv as csv_of
+        from idealgas.presentation.quantities import as_csv as csv_of
 
         for sentence in result.caveats:
             echo(f"caveat: {sentence}", err=True)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.segment import Segment
     from rich.text import Text
 
-    from idealgas.analysis.core.tables import Number, Table
+    from idealgas.presentation.tables import Number, Table
 
 MANY_COLUMNS = 8
 """Largest number of columns of a table with lines between the columns; wider tables have no lines."""
@@ -34,14 +34,14 @@ def print_tables(tables: "Iterable[Table]") -> None:
 
 def shown(text: str) -> "Number":
     """Return a cell with a number that is already formatted: it is aligned to the right and never broken."""
-    from idealgas.analysis.core.tables import Number
+    from idealgas.presentation.tables import Number
 
     return Number(None, absent=text)
 
 
 def facts(title: str, values: Mapping[str, str]) -> "Table":
     """Return a table with a row for each name and value."""
-    from idealgas.analysis.core.tables import Table
+    from idealgas.presentation.tables import Table
 
     return Table(title, ("", ""), [(name, shown(value)) for name, value in values.items()])
 

@@ -15,7 +15,7 @@ from ._terminal import echo, quiet, written
 
 if TYPE_CHECKING:
     from idealgas.accuracy.orbit import OrbitStudy, Survival
-    from idealgas.analysis.core.tables import Cell, Number
+    from idealgas.presentation.tables import Cell, Number
 
 
 @click.command(epilog="Example: idealgas accuracy gas.toml -o accuracy")
@@ -81,7 +81,7 @@ def accuracy(
 
 
 def _print_rows(rows: Sequence[dict[str, Any]]) -> None:
-    from idealgas.analysis.core.tables import Table
+    from idealgas.presentation.tables import Table
 
     averages = [
         (
@@ -125,7 +125,7 @@ def _percent(row: dict[str, Any], name: str) -> "Number":
 
 
 def _print_orbit(orbit: "OrbitStudy") -> None:
-    from idealgas.analysis.core.tables import Number, Table
+    from idealgas.presentation.tables import Number, Table
 
     def cells(s: "Survival") -> tuple["Cell", ...]:
         least, most = (Number(f(s.times) if s.times else None, ".4g") for f in (min, max))

@@ -71,8 +71,8 @@ def bench(
         return
     result = _measure([int(n) for n in numbers], fractions, [int(number) for number in threads], collisions, repeats)
     if plot:
-        from idealgas.analysis.core.style import save
         from idealgas.bench.figure import bench_figure
+        from idealgas.presentation.style import save
 
         save(bench_figure(result), plot, force)
     _show(result, as_json)
@@ -96,7 +96,7 @@ def _measure(numbers: list[int], fractions: list[float], threads: list[int], col
 
 
 def _show(result: "Bench", as_json: bool) -> None:
-    from idealgas.analysis.core.tables import Number, Table
+    from idealgas.presentation.tables import Number, Table
 
     if as_json:
         rows = [row._asdict() for row in result.rows]
@@ -120,8 +120,8 @@ def _show(result: "Bench", as_json: bool) -> None:
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:
-    from idealgas.analysis.core.tables import Number, Table
     from idealgas.bench.effects import bench_effects
+    from idealgas.presentation.tables import Number, Table
 
     console = terminal(err=True)
     with console.status("compiling") as status:

@@ -12,10 +12,10 @@ from ._tables import print_tables, shown
 from ._terminal import data, echo
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.tables import Number, Table
-    from idealgas.analysis.theory.forecast import Forecast
+    from idealgas.presentation.tables import Number, Table
     from idealgas.scene import RestingDisc, Scene
     from idealgas.scene.lattice import TriangularLattice
+    from idealgas.theory.forecast import Forecast
 
 LEAST_STRAIN = 1e-9
 """Smallest strain of a lattice that is not attributed to rounding of the numbers in a scene."""
@@ -39,9 +39,9 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
     from idealgas.toml.dump import dump_document
 
     scene = load_scene(path, overrides)
-    from idealgas.analysis.theory.forecast import forecast
     from idealgas.initial.build import make_gas
     from idealgas.run.simulate import threads_of
+    from idealgas.theory.forecast import forecast
 
     gas = make_gas(scene)
     expected, threads, lattice = forecast(scene, gas), threads_of(scene, gas), scene.lattice
@@ -109,7 +109,7 @@ def _number(value: float | None, digits: str = ".5g", rough: str = "") -> "Numbe
 
 
 def _species_table(expected: "Forecast") -> "Table":
-    from idealgas.analysis.core.tables import Cell, Number, Table
+    from idealgas.presentation.tables import Cell, Number, Table
 
     spread = any(s.polydispersity for s in expected.species)
     rows: list[Sequence[Cell]] = [
@@ -129,7 +129,7 @@ def _species_table(expected: "Forecast") -> "Table":
 
 
 def _walls_table(scene: "Scene") -> "Table":
-    from idealgas.analysis.core.tables import Cell, Table
+    from idealgas.presentation.tables import Cell, Table
     from idealgas.scene.walls import number_walls
 
     rows: list[Sequence[Cell]] = [
@@ -142,7 +142,7 @@ def _walls_table(scene: "Scene") -> "Table":
 def _gas_table(expected: "Forecast", until: float | None) -> "Table":
     from rich.filesize import decimal
 
-    from idealgas.analysis.core.tables import Number, Table
+    from idealgas.presentation.tables import Number, Table
 
     rough, ends = expected.rough, "" if expected.duration == until else expected.rough
     size = "not known" if expected.bytes is None else f"{'about ' * bool(rough)}{decimal(int(expected.bytes))}"

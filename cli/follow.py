@@ -56,7 +56,7 @@ def follow(path: str, once: bool) -> None:
 def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group":
     from rich.console import Group
 
-    from idealgas.analysis.core.tables import format_estimate
+    from idealgas.presentation.tables import format_estimate
 
     rows = {
         "time": f"{seen.time:.6g}",
@@ -73,7 +73,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 def _histogram(seen: "Status") -> str:
     """Return a text histogram of the speeds, with a mark at the Maxwell-Boltzmann density on each line."""
-    from idealgas.analysis.core.tables import bars
+    from idealgas.presentation.tables import bars
 
     if seen.density is None:
         return "nothing moves"

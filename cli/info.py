@@ -10,7 +10,7 @@ from ._tables import print_tables
 from ._terminal import echo
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.tables import Table
+    from idealgas.presentation.tables import Table
 
 
 @click.command(epilog="Example: idealgas info gas.h5")
@@ -34,7 +34,7 @@ def info(path: str, as_json: bool) -> None:
 
 
 def _table(title: str, values: dict[str, Any]) -> "Table":
-    from idealgas.analysis.core.tables import Table
+    from idealgas.presentation.tables import Table
 
     return Table(title, ("", ""), [(key.replace("_", " "), _text(value)) for key, value in values.items()])
 

@@ -115,7 +115,7 @@ def sweep(
             raise SystemExit(interrupted())
     _print_json(outcomes, as_json)
     if plot:
-        from idealgas.analysis.core.style import save
+        from idealgas.presentation.style import save
         from idealgas.sweep.figure import sweep_figure
         from idealgas.sweep.published import published_figure
 
@@ -187,7 +187,7 @@ def _run(
 
 def _list_quantities() -> None:
     from idealgas.analysis import registry
-    from idealgas.analysis.core.quantities import names
+    from idealgas.presentation.quantities import names
 
     for analysis in registry.analyses():
         data("\n".join(names(analysis.results[0], (analysis.name,))))
@@ -197,7 +197,7 @@ def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> di
     """Print the points of a sweep and their cost unless JSON is requested, and return them as plain values."""
     from rich.filesize import decimal
 
-    from idealgas.analysis.core.tables import Cell, Number, Table
+    from idealgas.presentation.tables import Cell, Number, Table
     from idealgas.sweep.cost import estimate_cost, total_seconds
 
     workers = workers or os.cpu_count() or 1

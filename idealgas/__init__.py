@@ -39,8 +39,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin while the
 
 _HOMES = {
     "idealgas.accuracy.study": ("study_accuracy",),
-    "idealgas.analysis.core.deviations": ("sensitivity",),
-    "idealgas.analysis.core.statistics": ("Estimate",),
+    "idealgas.tallies.tangent_space": ("sensitivity",),
+    "idealgas.statistics.estimates": ("Estimate",),
     "idealgas.analysis.registry": ("analyse", "combine"),
     "idealgas.errors": ("OutputError", "UserError"),
     "idealgas.columns": ("EventBatch", "Kind"),

@@ -4,8 +4,6 @@ from idealgas._version import __version__ as __version__
 from idealgas.accuracy.study import study_accuracy as study_accuracy
 from idealgas.analysis.billiard import BilliardAnalysis
 from idealgas.analysis.cooling import CoolingAnalysis
-from idealgas.analysis.core.deviations import sensitivity as sensitivity
-from idealgas.analysis.core.statistics import Estimate as Estimate
 from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.analysis.entropy import EntropyAnalysis
 from idealgas.analysis.escape import EscapeAnalysis
@@ -47,8 +45,10 @@ from idealgas.scene import Scene as Scene
 from idealgas.scene import SceneError as SceneError
 from idealgas.scene import load_scene as load_scene
 from idealgas.scene import parse_scene as parse_scene
+from idealgas.statistics.estimates import Estimate as Estimate
 from idealgas.sweep.plan import load_sweep as load_sweep
 from idealgas.sweep.run import run_sweep as run_sweep
+from idealgas.tallies.tangent_space import sensitivity as sensitivity
 
 billiard = takes_path(BilliardAnalysis.measure)
 cooling = takes_path(CoolingAnalysis.measure)

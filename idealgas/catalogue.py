@@ -4,7 +4,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 
 FOLDER = Path(__file__).parent / "analysis"
-OTHERS = ("core", "info", "registry", "status", "theory")
+OTHERS = ("analysis", "caveats", "check", "info", "registry", "result", "status")
 """Modules in the folder of the analyses that are not analyses."""
 
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from string import Template
 
-from idealgas.analysis.core.tables import escape
 from idealgas.errors import UserError, unknown
 from idealgas.examples import SCENE, TEMPLATE, load_example, names, path_of
 from idealgas.files import check_output, written
+from idealgas.presentation.tables import escape
 from idealgas.report.page import description_html, text_of
 
 SCENES = tuple(name for name in names() if name != TEMPLATE)

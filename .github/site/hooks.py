@@ -122,7 +122,7 @@ def _analyses() -> Iterator[str]:
 
 def _keys(result: type) -> Iterator[str]:
     """Yield the JSON keys of the fields of a result, except fields whose values are inlined or omitted."""
-    from idealgas.analysis.core.fields import INLINE, OMITTED, Key
+    from idealgas.fields import INLINE, OMITTED, Key
 
     for field in fields(result):
         marks = getattr(field.type, "__metadata__", ())

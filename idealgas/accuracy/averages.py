@@ -6,7 +6,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.histogram import HistogramAnalysis
 from idealgas.analysis.pressure.measure import PAIRS, WALLS, Pressure, pressure
 from idealgas.errors import UserError
@@ -14,6 +13,7 @@ from idealgas.log import Log, open_log
 from idealgas.log.summary import Summary
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
+from idealgas.statistics.estimates import Estimate
 
 
 @dataclass(frozen=True)

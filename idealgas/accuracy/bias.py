@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.statistics.estimates import Estimate
 
 LARGEST = 0.1  # largest bias that is included in a fit
 FEWEST = 3  # smallest number of time steps to which a law is fitted

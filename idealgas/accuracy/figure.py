@@ -9,7 +9,7 @@ from matplotlib.ticker import PercentFormatter
 from idealgas.accuracy.orbit import OrbitStudy
 from idealgas.accuracy.report import flat_row, nearest
 from idealgas.accuracy.study import Accuracy
-from idealgas.analysis.core.style import COLOURS, GREY, Panel, add_title, panels
+from idealgas.presentation.style import COLOURS, GREY, Panel, add_title, panels
 
 AVERAGES = {
     "pressure, pairs (relative)": "z_pairs_bias",

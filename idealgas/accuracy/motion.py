@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from idealgas.accuracy.cases import Case, Start
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.columns import Kind, empty_batch
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.multiprecision import PreciseBruteForce, make_columns, turn_back
 from idealgas.engine.simulation import NO_STOP, Simulation
 from idealgas.run.layout import row_columns
 from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate
 
 STARTS = 200  # largest number of starts from which collisions are compared
 ENOUGH = 5_000  # number of compared collisions that is sufficient

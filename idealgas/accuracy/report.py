@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 from idealgas.accuracy.bias import BiasLaw, bias_law
 from idealgas.accuracy.study import Accuracy, Row
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import save
 from idealgas.files import check_output, storage_error, written
+from idealgas.presentation.style import save
+from idealgas.statistics.estimates import Estimate
 
 TARGET = 0.01  # relative error whose cost is given in a sentence
 LOST = 0.1  # rms distance beyond which a trajectory is considered lost, diameters

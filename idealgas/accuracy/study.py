@@ -13,12 +13,12 @@ from idealgas.accuracy.averages import Averages, measure_averages
 from idealgas.accuracy.bias import BiasLaw, rate_biases
 from idealgas.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
-from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
 from idealgas.log.summary import Summary
 from idealgas.scene import Scene
 from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate, mean
 
 SHORTEST_TIMING = 0.1  # shortest timed run, CPU seconds
 RATE_SECONDS = 30.0  # total length of the runs for the collision rates, CPU seconds

@@ -10,17 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.check import CheckResult, agreement, check_theory
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.reach import Reach, reach_of
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, ratio
-from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
-from idealgas.analysis.theory.values import NoTheoryError, Theory
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import CheckResult, agreement, check_theory
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.presentation.tables import Number, Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, ratio
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.reach import Reach, reach_of
+from idealgas.tallies.stream import ReadProgress
+from idealgas.theory.values import NoTheoryError, Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,7 +75,7 @@ class BilliardAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Billiard:
         """Measure the mean path of discs between two wall hits, and compare it with π A/P.
 
@@ -111,7 +112,7 @@ class BilliardAnalysis(Analysis):
     @staticmethod
     def tables(result: Billiard) -> list[Table]:
         """Return the tables of the mean path, and of the area and perimeter from which its theory follows."""
-        notes = [describe(result.window), f"{result.hits:,} wall hits"]
+        notes = [str(result.window), f"{result.hits:,} wall hits"]
         if result.reason:
             notes.append(f"Theory is not available: {result.reason}.")
         tables = [estimates("Paths between walls", [(ROW, result.path)], notes)]
@@ -132,7 +133,7 @@ class BilliardAnalysis(Analysis):
     @staticmethod
     def figure(result: Billiard) -> "Figure":
         """Draw the mean path up to each time, with theory."""
-        from idealgas.analysis.core.style import COLOURS, panels
+        from idealgas.presentation.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
         ax.plot(result.time, result.series, color=COLOURS[0], label="mean up to this time")

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.caveats import must_be_one_gas
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.fields import INLINE, OMITTED
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
-from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates, format_estimate
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import composition
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.caveats import must_be_one_gas
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import INLINE, OMITTED
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate
 from idealgas.scene.walls import NumberedWall, walls_inside
+from idealgas.statistics.estimates import Estimate, mean_of_replicates
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.stream import ReadProgress, frames, span
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import composition
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -100,7 +100,7 @@ class EffusionAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Effusion:
         """Measure how fast discs pass through a slit that opens between two chambers, and compare it with n⟨v⟩/π.
 
@@ -191,7 +191,7 @@ class EffusionAnalysis(Analysis):
     @staticmethod
     def figure(found: Effusions) -> "Figure":
         """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
-        from idealgas.analysis.core.style import GREY, curve_style, panels
+        from idealgas.presentation.style import GREY, curve_style, panels
 
         groups, together = found.groups, found.together
         figure, (course, flux) = panels(2)

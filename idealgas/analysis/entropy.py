@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import becomes_uniform, known_ensemble, nonstationary_reason
-from idealgas.analysis.core.equilibration import detect_equilibration
-from idealgas.analysis.core.observables import Observable
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Ensemble, composition
-from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate, time_series
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.equilibration import detect_equilibration
+from idealgas.tallies.equilibrium import becomes_uniform, known_ensemble, nonstationary_reason
+from idealgas.tallies.observables import Observable
+from idealgas.tallies.stream import ReadProgress, frames, span
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import Ensemble, composition
+from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -94,7 +94,7 @@ class EntropyAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Entropy:
         """Follow Boltzmann's H of the velocities and the entropy of the positions, per disc.
 
@@ -164,7 +164,7 @@ class EntropyAnalysis(Analysis):
     @staticmethod
     def figure(result: Entropy) -> "Figure":
         """Draw H and the entropy of the positions against time, with their equilibrium values dashed."""
-        from idealgas.analysis.core.style import curve_style, panels
+        from idealgas.presentation.style import curve_style, panels
 
         has_positions = any(entropy.positions is not None for entropy in result.species)
         figure, axes = panels(1 + has_positions)

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.reach import NEAR, reach_of
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, parts_of
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import agreement
 from idealgas.analysis.effusion import LAW_OFF_PER_PATH
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import NoTheoryError, Theory
+from idealgas.analysis.result import Result
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate, time_series
+from idealgas.statistics.estimates import Estimate, parts_of
+from idealgas.tallies.reach import NEAR, reach_of
+from idealgas.tallies.stream import ReadProgress, span
+from idealgas.theory import hard_discs
+from idealgas.theory.values import NoTheoryError, Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,7 +78,7 @@ class EscapeAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Escape:
         """Measure how fast discs leave the gas through absorbing walls.
 
@@ -141,7 +141,7 @@ class EscapeAnalysis(Analysis):
     @staticmethod
     def figure(result: Escape) -> "Figure":
         """Draw the number of discs in the gas with its theory, on a logarithmic scale if less than a tenth is left."""
-        from idealgas.analysis.core.style import COLOURS, panels
+        from idealgas.presentation.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
         ax.step(result.time, result.left, where="post", color=COLOURS[0], label="discs in the gas")
@@ -155,7 +155,9 @@ class EscapeAnalysis(Analysis):
         return figure
 
 
-def _flights(log: Log, first: float, last: float, progress: Progress | None) -> tuple[np.ndarray, float, float, int]:
+def _flights(
+    log: Log, first: float, last: float, progress: ReadProgress | None
+) -> tuple[np.ndarray, float, float, int]:
     """Return the times of the escapes in order, the total time and path of all discs, and the number of collisions.
 
     A collision of two discs is counted twice, once for each.

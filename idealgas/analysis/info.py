@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
 from idealgas.analysis.registry import shown
-from idealgas.analysis.theory.ensemble import composition
 from idealgas.log import Log
+from idealgas.theory.conserved import centre_of_mass_energy, centre_of_mass_velocity
+from idealgas.theory.ensemble import composition
 
 
 def info(log: Log) -> dict[str, Any]:
     """Describe the file, the scene, the discs and the run of a log as nested plain values, ready for JSON."""
-    gas, discs, frame = log.discs, composition(log.discs), centre_of_mass_velocity(log)
+    gas, discs, frame = log.discs, composition(log.discs), centre_of_mass_velocity(log.scene, log.discs)
     frame = np.where(np.abs(frame) > 1e-12 * np.abs(gas.velocity).max(), frame, 0.0)  # remove rounding errors
     left, bottom, right, top = log.scene.room
     species = zip(discs.name, discs.number.tolist(), discs.radius.tolist(), discs.mass.tolist(), strict=True)
@@ -37,7 +37,7 @@ def info(log: Log) -> dict[str, Any]:
             "packing_fraction": gas.packing_fraction * gas.area / ((right - left) * (top - bottom) - gas.solid_area),
             "kinetic_energy": gas.kinetic_energy,
             "common_motion": frame.tolist(),
-            "temperature": (gas.kinetic_energy - centre_of_mass_energy(log)) / len(gas),
+            "temperature": (gas.kinetic_energy - centre_of_mass_energy(log.scene, log.discs)) / len(gas),
             "species": [
                 {"name": name, "number": number, "radius": radius, "mass": mass}
                 for name, number, radius, mass in species

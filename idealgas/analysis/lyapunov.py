@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.deviations import MOST_NUMBERS, Deviations, must_have_tangent_map
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.tables import SHOWN_ROWS, Number, Table, describe, estimates, format_estimate
+from idealgas.analysis.analysis import Analysis, Option, Section
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import OMITTED
 from idealgas.log import Log
+from idealgas.presentation.tables import SHOWN_ROWS, Number, Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, mean, ratio
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.stream import ReadProgress
+from idealgas.tallies.tangent_space import MOST_NUMBERS, TangentVectors, must_have_tangent_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -95,7 +96,7 @@ class LyapunovAnalysis(Analysis):
         log: Log,
         start: float | None = None,
         end: float | None = None,
-        progress: Progress | None = None,
+        progress: ReadProgress | None = None,
         exponents: int = 1,
     ) -> Lyapunov:
         """Measure Lyapunov exponents between two times of a log.
@@ -146,7 +147,7 @@ class LyapunovAnalysis(Analysis):
     def tables(result: Lyapunov) -> list[Table]:
         """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
         exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(result.exponents, 1)]
-        notes = [describe(result.window), "theory is not available at any density; the largest exponent grows with N"]
+        notes = [str(result.window), "theory is not available at any density; the largest exponent grows with N"]
         chaos = [
             ("digits lost per collision of a disc (no unit)", result.digits),
             ("fraction of the discs in the leading deviation (no unit)", result.localisation),
@@ -174,7 +175,7 @@ class LyapunovAnalysis(Analysis):
     @staticmethod
     def figure(result: Lyapunov) -> "Figure":
         """Draw the growth of the leading deviation, and all exponents if there are several."""
-        from idealgas.analysis.core.style import BLACK, COLOURS, GREY, panels
+        from idealgas.presentation.style import BLACK, COLOURS, GREY, panels
 
         figure, axes = panels(1 + (len(result.exponents) > 1))
         largest = result.exponents[0].value
@@ -204,7 +205,7 @@ def _scaled(estimate: Estimate, factor: float) -> Estimate:
 
 
 def _steps(
-    log: Log, window: Window, exponents: int, progress: Progress | None
+    log: Log, window: Window, exponents: int, progress: ReadProgress | None
 ) -> Iterator[tuple[float, np.ndarray, float, int]]:
     """Yield intervals of N event rows with their duration, the growth of deviations, localisation and collisions.
 
@@ -218,7 +219,7 @@ def _steps(
     else:
         start = np.linalg.qr(np.random.default_rng(0).normal(size=(4 * number, exponents)))[0]
     weight = np.repeat(np.sqrt(masses), 4)[:, None]
-    followed = Deviations(log, window.start, (start / weight).reshape(number, 4, exponents))
+    followed = TangentVectors(log, window.start, (start / weight).reshape(number, 4, exponents))
     begun, collisions = window.start, 0
     for now, pairs in followed.until(window.end, number, progress):
         collisions += pairs

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.bond_order import DENSE, FOLD, bond_order
-from idealgas.analysis.core.equilibration import Window, measure, unsteady
-from idealgas.analysis.core.fields import OMITTED, Key
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import sampled
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import frames
-from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate, with_error
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError, UserError
+from idealgas.fields import OMITTED, Key
 from idealgas.log import Log
+from idealgas.presentation.tables import Number, Table, estimates, format_estimate, with_error
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.bond_order import DENSE, FOLD, bond_order
+from idealgas.tallies.equilibration import Window, measure, unsteady
+from idealgas.tallies.samples import sampled
+from idealgas.tallies.stream import ReadProgress, frames
+from idealgas.theory import hard_discs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,7 +115,7 @@ class OrderAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Order:
         """Measure how well the discs of a gas are ordered between two times of its log.
 
@@ -167,7 +167,7 @@ class OrderAnalysis(Analysis):
             ("N |Ψ₆|²", result.square),
             ("share of discs with six neighbours", result.hexagons),
         ]
-        notes = [f"{describe(result.window)}, {result.frames} frames"]
+        notes = [f"{result.window}, {result.frames} frames"]
         correlation = result.distance, result.correlation, result.correlation_error
         functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
         if (structure := result.structure) is None:
@@ -192,7 +192,7 @@ class OrderAnalysis(Analysis):
     @staticmethod
     def figure(result: Order) -> "Figure":
         """Draw |Ψ₆| against time, g₆ against distance and, in a periodic box, S against wave number and wave vector."""
-        from idealgas.analysis.core.style import COLOURS, GREY, panels
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(1 if result.structure is None else 2, 2)
         series, correlation = axes[:2]

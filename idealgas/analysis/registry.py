@@ -14,10 +14,11 @@ from idealgas.catalogue import FOLDER, commands, names
 from idealgas.errors import UserError, unknown
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.analysis import Analysis, Progress
-    from idealgas.analysis.core.result import Result
+    from idealgas.analysis.analysis import Analysis
+    from idealgas.analysis.result import Result
     from idealgas.log import Log
     from idealgas.scene import Scene
+    from idealgas.tallies.stream import ReadProgress
 
 MAIN = ("pressure", "temperature", "histogram")
 """Analyses that come first for a gas in equilibrium without effects."""
@@ -53,7 +54,7 @@ def find(name: str) -> "type[Analysis]":
     module = name.replace("-", "_")
     if module not in names():
         raise unknown("analysis", name, commands())
-    from idealgas.analysis.core.analysis import FOUND
+    from idealgas.analysis.analysis import FOUND
 
     import_module(f"idealgas.analysis.{module}")
     return FOUND[module]
@@ -84,7 +85,7 @@ def analyse(
     name: str,
     start: float | None = None,
     end: float | None = None,
-    progress: "Progress | None" = None,
+    progress: "ReadProgress | None" = None,
     **options: Any,
 ) -> Any:
     """Analyse a log and return the result, a dataclass with `as_dict()`.

@@ -7,34 +7,24 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import (
-    centre_of_mass_velocity,
-    kind_of_state,
-    nonstationary_reason,
-    not_steady,
-)
-from idealgas.analysis.core.equilibration import (
-    Observable,
-    Window,
-    after_changes,
-    detect_equilibration,
-    memory_time,
-)
-from idealgas.analysis.core.exchange import Exchange
-from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, estimate, mean, ratio
-from idealgas.analysis.core.stream import add_to, block_edges, frames, stream
-from idealgas.analysis.core.stress import PassedOn
-from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import Theory, enskog_error, fluid
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError
+from idealgas.fields import OMITTED
 from idealgas.log import Flights, Log
 from idealgas.physics.shear import flow_at
+from idealgas.presentation.tables import Table, estimates, format_estimate
 from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate, estimate, mean, ratio
+from idealgas.tallies.equilibration import Observable, Window, after_changes, detect_equilibration, memory_time
+from idealgas.tallies.equilibrium import kind_of_state, nonstationary_reason, not_steady
+from idealgas.tallies.exchange import Exchange
+from idealgas.tallies.stream import add_to, block_edges, frames, stream
+from idealgas.tallies.stress import PassedOn
+from idealgas.theory import hard_discs
+from idealgas.theory.conserved import centre_of_mass_velocity
+from idealgas.theory.values import Theory, enskog_error, fluid
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -154,7 +144,7 @@ def shear(
             f"{log.path}: shear requires sheared sides, box.bottom and box.top = {{ shear = rate }}"
         )
     edges = block_edges(log, start, end)
-    carried = Carried(rate, height, float(centre_of_mass_velocity(log)[1]))
+    carried = Carried(rate, height, float(centre_of_mass_velocity(log.scene, log.discs)[1]))
     passed_on = PassedOn(1, np.array([0.0, height]), log.periodic, rate)
     stream(log, edges, [carried, passed_on], progress)
     block = edges[1] - edges[0]
@@ -231,7 +221,7 @@ def _profile(log: Log, times: np.ndarray) -> np.ndarray:
     It is relative to the flow in the middle of the box.
     """
     momentum, mass = np.zeros((2, STRIPS))
-    (common, drift), rate = centre_of_mass_velocity(log), log.scene.properties.shear
+    (common, drift), rate = centre_of_mass_velocity(log.scene, log.discs), log.scene.properties.shear
     for state in frames(log, times, None):
         strip = np.clip(state.position[:, 1] / log.box[1] * STRIPS, 0, STRIPS - 1).astype(np.intp)
         relative = state.velocity[:, 0] - common + rate * drift * state.time
@@ -290,7 +280,7 @@ class ShearAnalysis(Analysis):
     def tables(result: ShearFlow) -> list[Table]:
         """Return the table of viscosity, temperature, pressure, normal stress and flow."""
         notes = (
-            f"{describe(result.window)}; shear rate {result.rate:.6g}, {result.reduced_rate:.3g} of the collision rate",
+            f"{result.window}; shear rate {result.rate:.6g}, {result.reduced_rate:.3g} of the collision rate",
             "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
         )
         return [estimates("Shear flow, velocities relative to the flow", _rows(result), notes)]
@@ -305,7 +295,7 @@ class ShearAnalysis(Analysis):
     @staticmethod
     def figure(result: ShearFlow) -> "Figure":
         """Draw viscosity and temperature against time, and the profile of the flow."""
-        from idealgas.analysis.core.style import COLOURS, GREY, panels
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, (above, middle, below) = panels(3)
         viscosity, edges = result.viscosity, result.window.edges

@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.stream import trajectories
-from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import composition
-from idealgas.analysis.theory.waves import Decay, Fluid, fit, sound_of_discs
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.caveats import narrow
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import OMITTED
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.stream import ReadProgress, trajectories
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import composition
+from idealgas.theory.waves import Decay, Fluid, fit, sound_of_discs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,7 +121,7 @@ class SoundAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Sound:
         """Measure the speed and the damping of sound between two times of a log.
 
@@ -168,7 +168,7 @@ class SoundAnalysis(Analysis):
             for wave in result.waves
         ]
         notes = (
-            f"{describe(result.window)}, {result.frames} instants",
+            f"{result.window}, {result.frames} instants",
             "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal "
             "conductivity",
         )
@@ -191,7 +191,7 @@ class SoundAnalysis(Analysis):
     @staticmethod
     def figure(result: Sound) -> "Figure":
         """Draw the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
-        from idealgas.analysis.core.style import COLOURS, GREY, panels
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(result.waves))
         for ax, wave in zip(axes, result.waves, strict=True):
@@ -247,7 +247,7 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
     return step, lags
 
 
-def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Progress | None) -> np.ndarray:
+def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: ReadProgress | None) -> np.ndarray:
     """Return Σ exp(-ikx) over all discs at G times, (A, G), complex, for the longest wave along each of A axes."""
     amplitudes = np.empty((len(axes), len(times)), complex)
     for instants, places, _ in trajectories(log, times, progress):

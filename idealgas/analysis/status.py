@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.caveats import of_log
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.statistics import Estimate, ks_distance
+from idealgas.analysis.caveats import of_log
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
 from idealgas.log import DamageError, Log
+from idealgas.statistics.estimates import Estimate, ks_distance
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 ROWS = 2**20
 """Largest number of event rows that are read for the state, and again for the pressure."""
@@ -56,7 +56,7 @@ def status(log: Log) -> Status:
     """Return the status of a log, from its latest state and a bounded number of its latest events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
-    squares = (mass * ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1))[state.inside]
+    squares = (mass * ((state.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1))[state.inside]
     temperature = float(squares.mean() / 2) if len(squares) else 0.0
     edges = np.linspace(0, HIGHEST, BINS + 1)
     speeds = np.sqrt(squares / temperature) if temperature > 0 else None

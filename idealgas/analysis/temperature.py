@@ -7,28 +7,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Section
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import (
-    column_temperature,
-    conserved_momentum,
-    known_ensemble,
-    nonequilibrium_reason,
-    nonstationary_reason,
-)
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.exchange import with_pistons
-from idealgas.analysis.core.fields import OMITTED, reported
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate
-from idealgas.analysis.theory.barometric import DENSEST, column_rates
-from idealgas.analysis.theory.conserved import is_ergodic
-from idealgas.analysis.theory.ensemble import Ensemble, composition, ensemble_at
-from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError
+from idealgas.fields import OMITTED, reported
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import column_temperature, known_ensemble, nonequilibrium_reason, nonstationary_reason
+from idealgas.tallies.exchange import with_pistons
+from idealgas.tallies.flights import Moments
+from idealgas.theory.barometric import DENSEST, column_rates
+from idealgas.theory.conserved import conserved_momentum, is_ergodic
+from idealgas.theory.ensemble import Ensemble, composition, ensemble_at
+from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -168,7 +162,7 @@ def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
         source = "of a dilute column at fixed energy"
     elif math.isinf(equilibrium.dof):
         source = "of the walls" if log.scene.properties.bath is None else "of the heat bath"
-    conserved = [letter for letter, kept in zip("xy", conserved_momentum(log), strict=True) if kept]
+    conserved = [letter for letter, kept in zip("xy", conserved_momentum(log.scene), strict=True) if kept]
     along = f", T(1 - m/M) along {' and '.join(conserved)}" if conserved else ""
     return f"T = {equilibrium.temperature:.6g} ({source}){along}"
 
@@ -184,7 +178,7 @@ def _rows(result: Temperature) -> list[tuple[str, Estimate]]:
 
 def temperature_tables(result: Temperature) -> list[Table]:
     """Return the table with the temperature of each direction of motion of each species."""
-    notes = (describe(result.window), f"theory: {result.law or 'none for this scene'}")
+    notes = (str(result.window), f"theory: {result.law or 'none for this scene'}")
     return [estimates("Temperatures (energy, k_B = 1)", _rows(result), notes)]
 
 
@@ -196,7 +190,7 @@ def temperature_summary(result: Temperature) -> str:
 
 def temperature_figure(result: Temperature) -> "Figure":
     """Draw the temperature of each species, or along x and y, against time; the time before the window is shaded."""
-    from idealgas.analysis.core.style import GREY, curve_style, panels
+    from idealgas.presentation.style import GREY, curve_style, panels
 
     figure, (ax,) = panels(1)
     edges = result.window.edges

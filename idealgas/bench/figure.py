@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import COLOURS, GREY, panels
 from idealgas.bench.bench import Bench
+from idealgas.presentation.style import COLOURS, GREY, panels
 
 MARKERS = "osD^vP"
 MILLION, MICRO = 1e-6, 1e6

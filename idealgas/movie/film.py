@@ -13,14 +13,15 @@ from typing import IO, Unpack
 import numpy as np
 from PIL import Image
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity, tends_to_equilibrium
-from idealgas.analysis.core.stream import span
 from idealgas.errors import OutputError, UserError, install
 from idealgas.files import check_output, written
 from idealgas.log import Log, LogState, takes_path
 from idealgas.movie.gif import GifWriter
 from idealgas.movie.painter import CROSSING, Colouring, Look, Painter
 from idealgas.movie.piston_track import piston_tracks
+from idealgas.tallies.equilibrium import tends_to_equilibrium
+from idealgas.tallies.stream import span
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
@@ -190,7 +191,7 @@ def speeds(log: Log, states: Sequence[LogState]) -> tuple[float, float]:
     """Return the largest rms speed of states, and the same relative to a conserved motion of the whole gas."""
     typical, thermal = (
         max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in states)
-        for u in (0.0, centre_of_mass_velocity(log))
+        for u in (0.0, centre_of_mass_velocity(log.scene, log.discs))
     )
     return float(typical), float(thermal)
 

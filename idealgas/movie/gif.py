@@ -7,7 +7,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 from PIL import GifImagePlugin, Image
 
-from idealgas.analysis.core.style import COLOURS, GREY
+from idealgas.presentation.style import COLOURS, GREY
 
 COLOUR_MAP = "cividis"
 SAME = 255

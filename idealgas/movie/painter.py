@@ -23,18 +23,18 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 
-from idealgas.analysis.core.bond_order import bond_order
-from idealgas.analysis.core.style import COLOURS, GRID, disable_mathtext
-from idealgas.analysis.theory.conserved import centre_of_mass_velocity
 from idealgas.errors import UserError
 from idealgas.log import LogState
 from idealgas.movie.layout import LEFT, LETTER, TOP, Rectangle, frame_size, layout, lengths, view
 from idealgas.movie.order_colours import order_colours
 from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, Panel, SidesPanel, SpeedPanel
 from idealgas.movie.piston_track import PistonTrack
+from idealgas.presentation.style import COLOURS, GRID, disable_mathtext
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
+from idealgas.tallies.bond_order import bond_order
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 COLOUR_MAP = "cividis"
 """Colour map of speeds, readable for colour-blind viewers: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""

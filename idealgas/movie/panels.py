@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 
-from idealgas.analysis.core.style import COLOURS
-from idealgas.analysis.theory.distributions import SpeedLaw
-from idealgas.analysis.theory.ensemble import classes
 from idealgas.log import LogState
+from idealgas.presentation.style import COLOURS
 from idealgas.scene import Scene
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
+from idealgas.theory.distributions import SpeedLaw
+from idealgas.theory.ensemble import classes
 
 BINS = 36
 

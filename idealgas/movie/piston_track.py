@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import piston_names
 from idealgas.columns import Kind
 from idealgas.log import Log
 from idealgas.scene import Scene
+from idealgas.tallies.chambers import piston_names
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,9 @@ from matplotlib.patches import Patch
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Transform
 
-from idealgas.analysis.core.style import BLACK, COLOURS, GREY, GRID, LABEL_CHARACTERS, Panel
-from idealgas.analysis.core.tables import escape
 from idealgas.errors import plain
+from idealgas.presentation.style import BLACK, COLOURS, GREY, GRID, LABEL_CHARACTERS, Panel
+from idealgas.presentation.tables import escape
 
 POINT = 72
 """Units of an SVG per inch."""

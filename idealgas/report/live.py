@@ -18,18 +18,18 @@ from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
-from idealgas.analysis.core.tables import escape
 from idealgas.analysis.evolution.theory import expected_law
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
 from idealgas.examples import first_sentence
 from idealgas.log import DamageError, Log
+from idealgas.presentation.style import BLACK, COLOURS, curve_style, panels
+from idealgas.presentation.tables import escape
 from idealgas.report.page import SCRIPTS, description_html, player_html, text_of
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, crossing, player
+from idealgas.statistics.estimates import Estimate
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 HOST = "127.0.0.1"
 
@@ -200,7 +200,7 @@ class Live:
 def _temperature(log: Log, at: float) -> float:
     """Return the kinetic energy per disc at a time, excluding a conserved motion of the whole gas."""
     state = log.state_at(at)
-    velocity = state.velocity - centre_of_mass_velocity(log)
+    velocity = state.velocity - centre_of_mass_velocity(log.scene, log.discs)
     return state.mean(log.discs.mass * (velocity**2).sum(axis=1)) / 2
 
 

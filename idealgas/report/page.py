@@ -9,12 +9,12 @@ from pathlib import Path
 from string import Template
 
 from idealgas.analysis import registry
-from idealgas.analysis.core.tables import Number, Table, escape, html_table
 from idealgas.analysis.info import info
 from idealgas.errors import UserError
 from idealgas.examples import first_sentence
 from idealgas.files import check_output, written
 from idealgas.log import Log, takes_path
+from idealgas.presentation.tables import Number, Table, escape, html_table
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, Player, player
 from idealgas.report.sections import Section, make_sections

@@ -10,8 +10,8 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from idealgas.analysis.core.style import Panel, disable_mathtext
-from idealgas.analysis.core.tables import escape
+from idealgas.presentation.style import Panel, disable_mathtext
+from idealgas.presentation.tables import escape
 from idealgas.report.drawing import NAMES, POINT, Frame, draw, is_drawable
 
 MARGIN = 0.06

@@ -12,11 +12,6 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from idealgas.analysis.core.bond_order import DENSE, bond_order
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity, tends_to_equilibrium
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.style import COLOURS
-from idealgas.analysis.theory.ensemble import classes
 from idealgas.columns import Kind
 from idealgas.errors import UserError
 from idealgas.log import Log, LogState
@@ -24,7 +19,13 @@ from idealgas.movie.order_colours import order_colours
 from idealgas.movie.painter import COLOUR_MAP, CROSSING, PALEST
 from idealgas.movie.panels import BRIGHTEST, FASTEST
 from idealgas.movie.piston_track import piston_tracks
+from idealgas.presentation.style import COLOURS
 from idealgas.scene.walls import NumberedWall, walls_inside
+from idealgas.tallies.bond_order import DENSE, bond_order
+from idealgas.tallies.equilibrium import tends_to_equilibrium
+from idealgas.tallies.stream import span
+from idealgas.theory.conserved import centre_of_mass_velocity
+from idealgas.theory.ensemble import classes
 
 MOST_ROWS = 600_000
 """Largest number of event rows in a page, which take about 10 MB."""
@@ -81,7 +82,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
         (cut,) = log.chunks(("time",), row + rows, row + rows + 1)
         last = float(np.nextafter(cut.time[0], first))
     state = log.state_at(first)
-    flow = centre_of_mass_velocity(log)
+    flow = centre_of_mass_velocity(log.scene, log.discs)
     moving = state.velocity[state.inside]
     thermal = _rms_speed(moving - flow)
     kinds = classes(gas)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from matplotlib.figure import Figure
 
 from idealgas.analysis import registry
-from idealgas.analysis.core.tables import Table
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import DamageError, Log
+from idealgas.presentation.tables import Table
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from idealgas.analysis.registry import analyse
-from idealgas.analysis.theory.forecast import BYTES_A_ROW, Forecast, forecast
 from idealgas.errors import UserError
 from idealgas.files import beside
 from idealgas.initial.build import make_gas
@@ -18,6 +17,7 @@ from idealgas.jit import compile_seconds
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep
+from idealgas.theory.forecast import BYTES_A_ROW, Forecast, forecast
 
 TRIAL_EVENTS = 20_000  # number of events of a short run, which measures the speed
 MOST_TRIALS = 32  # largest number of short runs; combinations without a short run are given the speed of the last one

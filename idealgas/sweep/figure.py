@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.analysis import registry
-from idealgas.analysis.core.quantities import identifier
-from idealgas.analysis.core.style import add_title, curve_style, panels
 from idealgas.errors import UserError, unknown
+from idealgas.presentation.quantities import identifier
+from idealgas.presentation.style import add_title, curve_style, panels
 from idealgas.sweep.results import RESULT, average, missing_runs, result_rows
 from idealgas.sweep.tables import PHI
 

@@ -6,8 +6,8 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from idealgas.analysis.core.tables import Number, Table, with_error
 from idealgas.errors import unknown
+from idealgas.presentation.tables import Number, Table, with_error
 from idealgas.sweep.plan import Sweep
 from idealgas.sweep.results import average, read_points, rows_of
 from idealgas.sweep.tables import Published
@@ -87,7 +87,7 @@ def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[T
 
 def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> "Figure":
     """Return a figure of the deviations from published values, a row per paper. sweeps: sweeps with their folders."""
-    from idealgas.analysis.core.style import COLOURS, GREY, WIDTH, name_rows, panels
+    from idealgas.presentation.style import COLOURS, GREY, WIDTH, name_rows, panels
 
     papers: dict[str, list[Comparison]] = {}
     for sweep, folder in sweeps:

@@ -15,12 +15,12 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from idealgas.analysis.core.caveats import origin_of
-from idealgas.analysis.core.quantities import ESTIMATE, rows
-from idealgas.analysis.core.result import Origin
+from idealgas.analysis.caveats import origin_of
+from idealgas.analysis.result import Origin
 from idealgas.errors import UserError
 from idealgas.files import replacing
 from idealgas.locks import regular
+from idealgas.presentation.quantities import ESTIMATE, rows
 from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sweep.point import points_folder, result_path
 

@@ -142,11 +142,11 @@ def test_check_of_several_logs_without_a_theory_says_so(tmp_path):
 
 def test_check_that_fails_exits_with_one_and_of_too_few_samples_with_two(path, monkeypatch):
     with monkeypatch.context() as patch:
-        patch.setattr("idealgas.analysis.core.check.FALSE_ALARM", 2.0)
+        patch.setattr("idealgas.analysis.check.FALSE_ALARM", 2.0)
         result = called("pressure", path, "--check")
     assert result.returncode == 1
     assert "do not agree" in result.stdout
-    monkeypatch.setattr("idealgas.analysis.core.check.FEWEST", 1e6)
+    monkeypatch.setattr("idealgas.analysis.check.FEWEST", 1e6)
     result = called("pressure", path, "--check")
     assert result.returncode == 2
     assert result.stdout.splitlines()[-1].startswith("Too few samples to tell whether measurement and theory agree.")

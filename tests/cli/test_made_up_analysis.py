@@ -17,11 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Option, Section
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.style import panels
-from idealgas.analysis.core.tables import estimates
+from idealgas.analysis.analysis import Analysis, Option, Section
+from idealgas.analysis.result import Result
+from idealgas.statistics.estimates import Estimate
+from idealgas.presentation.style import panels
+from idealgas.presentation.tables import estimates
 from idealgas.errors import UserError
 
 

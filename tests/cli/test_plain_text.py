@@ -12,9 +12,9 @@ from helpers.support import ROOT, called, error_of
 from idealgas_cli._tables import print_tables
 from idealgas_cli._terminal import echo, terminal
 
-from idealgas.analysis.core.style import disable_mathtext, name_rows, panels, save
-from idealgas.analysis.core.tables import Number, Table
 from idealgas.errors import plain
+from idealgas.presentation.style import disable_mathtext, name_rows, panels, save
+from idealgas.presentation.tables import Number, Table
 from idealgas.report.page import escape
 
 NASTY = "[/red] $\\frac{$ :smile: </script><b> \x1b]0;owned\x07\x9b31m \u202e\udcff"

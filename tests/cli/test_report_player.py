@@ -12,9 +12,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-from idealgas.analysis.core.bond_order import bond_order
 from idealgas.log import open_log
 from idealgas.movie.piston_track import piston_tracks
+from idealgas.tallies.bond_order import bond_order
 
 pytestmark = pytest.mark.slow
 

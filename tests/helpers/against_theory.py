@@ -8,7 +8,7 @@ from scipy import stats
 from tools.calibration_estimates import estimates, of
 
 from idealgas import Log
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.statistics.estimates import Estimate
 
 STANDARD_ERRORS = 4
 LEAST_P = 0.001

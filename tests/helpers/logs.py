@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from helpers.support import ROOT
-from idealgas.analysis.core.stream import stream
 from idealgas.columns import SIDES
 from idealgas.errors import UserError
 from idealgas.log import Log, open_log
 from idealgas.run.simulate import simulate
 from idealgas.scene import load_scene, parse_scene
+from idealgas.tallies.stream import stream
 
 FOLDER = tempfile.TemporaryDirectory(prefix="idealgas-logs-", ignore_cleanup_errors=True)
 NUMBER = count()

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.impacts import Impacts
 from idealgas.columns import IMAGES, OUTWARD, POSITIONS, SIDES, empty_batch, event_columns
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
@@ -17,6 +16,7 @@ from idealgas.log import Flights, LogState
 from idealgas.log.join import Join
 from idealgas.physics.periodic import Periodic
 from idealgas.state import Gas
+from idealgas.tallies.impacts import Impacts
 
 
 class Virials(NamedTuple):

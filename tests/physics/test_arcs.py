@@ -7,8 +7,8 @@ import pytest
 from helpers.logs import log_of, streamed
 
 from idealgas import evolution
-from idealgas.analysis.core.walls import WallImpulses
 from idealgas.columns import Kind
+from idealgas.tallies.walls import WallImpulses
 
 
 def test_chords_of_a_round_box():

@@ -10,10 +10,10 @@ from helpers.logs import log_of
 from scipy import stats
 
 from idealgas import evolution, profile
-from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.statistics import estimate, mean, ratio
 from idealgas.analysis.evolution.theory import expected_law, piston_force
-from idealgas.analysis.theory import hard_discs
+from idealgas.statistics.autoregression import inefficiency
+from idealgas.statistics.estimates import estimate, mean, ratio
+from idealgas.theory import hard_discs
 
 pytestmark = pytest.mark.slow
 

@@ -14,8 +14,8 @@ from idealgas import histogram
 from idealgas.analysis.heat_capacity import HeatCapacityAnalysis
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.temperature import temperature
-from idealgas.analysis.theory import hard_discs
 from idealgas.columns import SIDES
+from idealgas.theory import hard_discs
 
 
 def scene(number, packing_fraction, collisions_per_disc, seed, temperature=1.0):

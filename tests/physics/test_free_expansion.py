@@ -6,8 +6,8 @@ import pytest
 from helpers.logs import log_of
 
 from idealgas import evolution, pressure
-from idealgas.analysis.core.tables import as_text
 from idealgas.analysis.pressure.routes import PAIRS, WALLS
+from idealgas.presentation.tables import as_text
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,9 @@ from scipy import integrate
 
 from idealgas import evolution, pressure
 from idealgas.analysis import registry
-from idealgas.analysis.core.statistics import estimate, mean
-from idealgas.analysis.theory.adiabatic_piston import heat_flow, relaxation
 from idealgas.columns import Kind
+from idealgas.statistics.estimates import estimate, mean
+from idealgas.theory.adiabatic_piston import heat_flow, relaxation
 
 ADIABATIC = ROOT / "configs" / "adiabatic-piston.toml"
 HANDS = """

@@ -12,8 +12,8 @@ from helpers.against_theory import LEAST_P, STANDARD_ERRORS
 from helpers.logs import log_of
 
 from idealgas import evolution, histogram
-from idealgas.analysis.core.equilibration import measure
 from idealgas.analysis.pressure.measure import pressure
+from idealgas.tallies.equilibration import measure
 
 SCENE = "scene.seed = 11\nbox.size = [10, 10]\nrun.until = 1"
 

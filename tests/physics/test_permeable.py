@@ -9,8 +9,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from idealgas import evolution, pressure
-from idealgas.analysis.theory.hard_discs import compressibility_factor, fluid_contact_value
 from idealgas.columns import Kind
+from idealgas.theory.hard_discs import compressibility_factor, fluid_contact_value
 
 
 def rows_of(text):

@@ -8,8 +8,8 @@ from helpers.logs import gas, log_of
 
 from idealgas import histogram
 from idealgas.analysis.pressure.measure import pressure
-from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.measure import transport
+from idealgas.theory import hard_discs
 
 SPREAD = 0.2 * math.sqrt(3)
 """Half the width of a uniform distribution of standard deviation 0.2."""

@@ -11,12 +11,12 @@ import pytest
 from helpers.logs import gas, log_of
 from helpers.support import ROOT
 
-from idealgas.analysis.core.impacts import Impacts
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.routes import PAIRS, WALLS
 from idealgas.columns import SIDES
 from idealgas.errors import UserError
 from idealgas.scene import load_scene
+from idealgas.tallies.impacts import Impacts
 
 LARGEST_ERROR = 0.004
 """Standard error of Z - 1, relative, with which 2 % of it must be found."""

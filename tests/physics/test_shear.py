@@ -9,7 +9,6 @@ from helpers.support import ROOT, gas_of, record, same_rows, within
 
 from idealgas import load_scene, shear, transport
 from idealgas.analysis import registry
-from idealgas.analysis.theory.values import enskog_error
 from idealgas.columns import SIDES, Kind
 from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
@@ -23,6 +22,7 @@ from idealgas.physics.exact_sum import values as values_of
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.shear import flow_at, make_shear
 from idealgas.run.effects import make_effects
+from idealgas.theory.values import enskog_error
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
 

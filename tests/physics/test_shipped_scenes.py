@@ -13,10 +13,10 @@ from helpers.logs import log_of
 from scipy import stats
 
 from idealgas import effusion, evolution, profile, sound
-from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.statistics import mean
-from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.measure import transport
+from idealgas.statistics.autoregression import inefficiency
+from idealgas.statistics.estimates import mean
+from idealgas.theory import hard_discs
 
 pytestmark = pytest.mark.slow
 

@@ -11,9 +11,9 @@ import pytest
 from helpers.against_theory import STANDARD_ERRORS
 from helpers.virials import mean_and_error, virials
 
-from idealgas.analysis.theory.hard_discs import finite_speed_factor
-from idealgas.analysis.theory.two_discs import two_discs
-from idealgas.analysis.theory.values import FRACTIONS, NUMBERS, box_theory
+from idealgas.theory.hard_discs import finite_speed_factor
+from idealgas.theory.two_discs import two_discs
+from idealgas.theory.values import FRACTIONS, NUMBERS, box_theory
 
 HARD, PERIODIC, CHANNEL = (False, False), (True, True), (True, False)
 

@@ -11,8 +11,8 @@ import pytest
 from helpers.logs import gas, log_of, species
 
 from idealgas import sound
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
 from idealgas.analysis.transport.measure import Transport, transport
+from idealgas.statistics.estimates import Estimate, mean_of_replicates
 
 STANDARD_ERRORS = 3
 """Largest difference between two directions, in its standard errors."""

@@ -6,8 +6,8 @@ from helpers.against_theory import agrees
 from helpers.logs import log_of
 
 from idealgas import evolution
-from idealgas.analysis.core.statistics import mean
-from idealgas.analysis.theory import hard_discs
+from idealgas.statistics.estimates import mean
+from idealgas.theory import hard_discs
 
 HANDS = """
 box.size = [12, 2]

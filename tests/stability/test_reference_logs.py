@@ -18,8 +18,8 @@ from helpers.support import ROOT
 
 import idealgas
 from idealgas import Log, load_scene, open_log, simulate
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.log.digest import digest
+from idealgas.statistics.estimates import Estimate
 
 TABLE = ROOT / "configs" / "reference.csv"
 STANDARD_ERRORS = 4

@@ -25,9 +25,9 @@ from tools.calibration_cases import CASES, Case
 from tools.calibration_estimates import estimates
 
 from idealgas import Log, open_log, parse_scene, simulate
-from idealgas.analysis.core.caveats import of_window
-from idealgas.analysis.core.equilibration import measure as read_window
+from idealgas.analysis.caveats import of_window
 from idealgas.errors import NotApplicableError
+from idealgas.tallies.equilibration import measure as read_window
 
 PART = 50
 """Number of seeds that are stored together."""

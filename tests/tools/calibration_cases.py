@@ -9,9 +9,9 @@ from tools import calibration_estimates as estimates
 from tools.calibration_estimates import Of, of
 
 from idealgas import Log, profile, scattering, shear, transport
-from idealgas.analysis.core.caveats import of_window
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.analysis.caveats import of_window
 from idealgas.columns import SIDES
+from idealgas.statistics.estimates import Estimate
 
 
 class Case(NamedTuple):

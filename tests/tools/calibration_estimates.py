@@ -9,8 +9,8 @@ from typing import Any, Literal, NamedTuple
 
 from idealgas import Log, shear
 from idealgas.analysis import registry
-from idealgas.analysis.core.quantities import rows
-from idealgas.analysis.core.statistics import Estimate
+from idealgas.presentation.quantities import rows
+from idealgas.statistics.estimates import Estimate
 
 
 class Of(NamedTuple):

@@ -7,8 +7,11 @@ from pathlib import Path
 import pytest
 from helpers.support import ROOT
 
-FREE = {"_version", "errors", "catalogue", "columns", "files", "locks", "pairs", "system", ""}
+FREE = {"_version", "errors", "catalogue", "columns", "fields", "files", "locks", "pairs", "system", ""}
 """Version, errors, names of analyses, files, locks, near pairs, systems, columns and numbers of walls are for all."""
+
+ROOMS = {"theory", "statistics", "presentation", "tallies"}
+"""What analyses are built of."""
 
 ALLOWED = {
     "jit": set(),
@@ -21,18 +24,23 @@ ALLOWED = {
     "engine": {"effects", "jit", "state", "initial", "physics"},
     "log": {"jit", "state", "toml", "initial", "scene", "physics"},  # states between two events are free flight
     "run": {"effects", "jit", "state", "toml", "scene", "physics", "initial", "engine", "log"},
-    "analysis": {"jit", "state", "scene", "physics", "initial", "log"},
-    "movie": {"state", "scene", "log", "analysis"},
-    "report": {"state", "scene", "log", "analysis", "movie", "examples"},
-    "sweep": {"toml", "scene", "initial", "run", "log", "analysis"},
-    "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
-    "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis"},
+    "theory": {"state", "scene", "physics"},
+    "statistics": {"jit", "theory"},
+    "presentation": {"statistics"},
+    "tallies": {"jit", "state", "scene", "physics", "initial", "log", "theory", "statistics", "presentation"},
+    "analysis": {"jit", "state", "scene", "physics", "initial", "log", *ROOMS},
+    "movie": {"state", "scene", "log", "analysis", *ROOMS},
+    "report": {"state", "scene", "log", "analysis", *ROOMS, "movie", "examples"},
+    "sweep": {"toml", "scene", "initial", "run", "log", "analysis", *ROOMS},
+    "accuracy": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis", *ROOMS},
+    "bench": {"effects", "state", "toml", "scene", "physics", "initial", "engine", "log", "run", "analysis", *ROOMS},
     "examples": {"scene"},
-    "gallery": {"examples", "initial", "log", "analysis", "movie", "report"},
+    "gallery": {"examples", "initial", "log", "analysis", *ROOMS, "movie", "report"},
     "_version": set(),
     "errors": set(),
     "catalogue": set(),
     "columns": set(),
+    "fields": set(),
     "files": set(),
     "locks": set(),
     "pairs": set(),
@@ -44,7 +52,13 @@ ALLOWED = {
 OF_COMMANDS = {"idealgas.__main__"}
 """What of the package may import the commands: `python -m idealgas` is one."""
 
-WITHIN_ANALYSIS = {"core": {"theory"}, "theory": set(), "registry": {"core"}}
+WITHIN_ANALYSIS = {
+    "analysis": {"caveats", "result"},
+    "caveats": {"result"},
+    "check": set(),
+    "result": set(),
+    "registry": {"analysis", "result"},
+}
 """What parts of the analyses may import of each other: every analysis these two, and what is named in FROM_ANALYSES."""
 
 FROM_ANALYSES = {"heat_capacity": {"pressure"}, "status": {"pressure"}, "info": {"registry"}}
@@ -119,7 +133,7 @@ def test_the_package_imports_one_way(name):
 def test_analyses_stand_side_by_side(name):
     own = part(name, 2)
     used = {part(other, 2) for other in GRAPH[name] if part(other) == "analysis"} - {own, ""}
-    common = WITHIN_ANALYSIS.get(own, {"core", "theory"})
+    common = WITHIN_ANALYSIS.get(own, {"analysis", "caveats", "check", "result"})
     assert used <= common | FROM_ANALYSES.get(own, set())
 
 

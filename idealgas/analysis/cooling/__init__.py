@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.caveats import narrow
+from idealgas.analysis.check import agreement
 from idealgas.analysis.cooling.uniformity import cells_of, nonuniform, scatter_of
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.collisions import collisions_per_disc
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity, degrees_of_freedom
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, estimate, mean, mean_of_part, parts_of, ratio
-from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates, format_estimate, time_series
-from idealgas.analysis.theory import granular, hard_discs
-from idealgas.analysis.theory.granular import GranularParameters
-from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log, LogState
+from idealgas.presentation.tables import Table, estimates, format_estimate, time_series
+from idealgas.statistics.estimates import Estimate, estimate, mean, mean_of_part, parts_of, ratio
+from idealgas.tallies.collisions import collisions_per_disc
+from idealgas.tallies.stream import ReadProgress, frames, span
+from idealgas.theory import granular, hard_discs
+from idealgas.theory.conserved import centre_of_mass_velocity, degrees_of_freedom
+from idealgas.theory.granular import GranularParameters
+from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -129,7 +129,7 @@ class CoolingAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Cooling:
         """Measure how a gas of equal discs cools by its collisions, and compare it with the theory of a uniform gas.
 
@@ -137,7 +137,7 @@ class CoolingAnalysis(Analysis):
             NotApplicableError: if anything but collisions of equal discs changes the energy, or if the log is too
                 short.
         """
-        parameters, dof, number = _parameters(log), degrees_of_freedom(log), len(log.discs)
+        parameters, dof, number = _parameters(log), degrees_of_freedom(log.scene, log.discs), len(log.discs)
         first, last = span(log, None, end)
         t0, s0, _ = _moments(log, log.state_at(log.start_time), dof)
         contacts = hard_discs.box_contacts(log.discs.radius[:1], [number], log.box, log.periodic)[0, 0]
@@ -268,7 +268,7 @@ class CoolingAnalysis(Analysis):
     @staticmethod
     def figure(result: Cooling) -> "Figure":
         """Draw the temperature against time, and the other series against collisions per disc."""
-        from idealgas.analysis.core.style import COLOURS, GREY, panels
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
         means = [("a₂ (no unit)", result.cumulant, result.fourth)]
         if result.spin is not None and result.temperature_ratio is not None:
@@ -342,7 +342,7 @@ def _moments(log: Log, state: LogState, dof: int) -> tuple[float, float, float]:
 
     The bias of a₂ for few discs is removed: at fixed energy a₂ of Gaussian velocities is -2/(D + 2) on average.
     """
-    square = ((state.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)
+    square = ((state.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1)
     spin = 0.0
     if log.inertia is not None and state.angular_velocity is not None:
         spin = float((log.inertia * state.angular_velocity**2).mean())

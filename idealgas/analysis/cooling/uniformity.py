@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
 from idealgas.log import Log, LogState
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 DISCS_PER_CELL = 8
 """Approximate mean number of discs in a cell."""
@@ -28,7 +28,7 @@ def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, flo
     The scatter is the variance over the mean. The momentum is taken per mass, from sums of velocities, and relative to
     that of discs that move independently.
     """
-    velocity, cells = state.velocity - centre_of_mass_velocity(log), int(shape.prod())
+    velocity, cells = state.velocity - centre_of_mass_velocity(log.scene, log.discs), int(shape.prod())
     at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)
     cell = at[:, 0] * shape[1] + at[:, 1]
     counts = np.bincount(cell, minlength=cells)

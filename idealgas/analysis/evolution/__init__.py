@@ -12,14 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.chambers import beside_pistons, piston_names
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, centre_of_mass_velocity
-from idealgas.analysis.core.fields import OPTIONAL, reported
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.stream import frames, span
-from idealgas.analysis.core.tables import Table, estimates, time_series
+from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.evolution.account import Series, account
 from idealgas.analysis.evolution.means import (
     adiabatic_exponent,
@@ -31,8 +24,15 @@ from idealgas.analysis.evolution.means import (
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.summary import evolution_summary
 from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import OPTIONAL, reported
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, time_series
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.chambers import beside_pistons, piston_names
+from idealgas.tallies.stream import ReadProgress, frames, span
+from idealgas.theory.conserved import centre_of_mass_energy, centre_of_mass_velocity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -132,7 +132,7 @@ class EvolutionAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Evolution:
         """Follow temperature, pressure, energies, pistons and discs beyond a wall in time.
 
@@ -228,7 +228,7 @@ class EvolutionAnalysis(Analysis):
 
         With a piston the last panel shows pressure against area, with the isotherm and the adiabat through the start.
         """
-        from idealgas.analysis.core.style import BLACK, COLOURS, curve_style, panels
+        from idealgas.presentation.style import BLACK, COLOURS, curve_style, panels
 
         series, law, has_piston = result.pressure, result.law, result.track is not None
         states = series is not None and has_piston and np.ptp(series.area) > 0
@@ -311,12 +311,12 @@ def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]],
     n = np.maximum(n, 1)
     if "rotational_energy" in observables:
         spin = 2 * observables["rotational_energy"][1][inside] / n
-    return time[inside], (kinetic - centre_of_mass_energy(log))[inside] / n, spin, {}, {}
+    return time[inside], (kinetic - centre_of_mass_energy(log.scene, log.discs))[inside] / n, spin, {}, {}
 
 
-def _frames(log: Log, first: float, last: float, progress: Progress | None) -> Frames:
+def _frames(log: Log, first: float, last: float, progress: ReadProgress | None) -> Frames:
     """Return the evolution at evenly spaced times, from the events of a log."""
-    gas, frame, inertia = log.discs, centre_of_mass_velocity(log), log.inertia
+    gas, frame, inertia = log.discs, centre_of_mass_velocity(log.scene, log.discs), log.inertia
     wall = first_passable(log)
     number = np.bincount(gas.species)
     time = np.linspace(first, last, INSTANTS)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import piston_names
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
+from idealgas.tallies.chambers import piston_names
 
 HEAT_BATH, STEPS = "the heat bath", "changes in time"
 """Names of sources of energy besides walls; pistons have the names of `piston_names`."""

@@ -4,16 +4,16 @@ import math
 
 import numpy as np
 
-from idealgas.analysis.core.autoregression import error_of_mean
-from idealgas.analysis.core.chambers import outward
-from idealgas.analysis.core.equilibration import detect_equilibration
-from idealgas.analysis.core.observables import Observable
-from idealgas.analysis.core.statistics import Estimate, mean
 from idealgas.analysis.evolution.account import Series
 from idealgas.analysis.evolution.pressure_series import PressureSeries
 from idealgas.analysis.evolution.theory import STEPS, Law, is_crowded, room, work_integral
-from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log
+from idealgas.statistics.autoregression import error_of_mean
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.chambers import outward
+from idealgas.tallies.equilibration import detect_equilibration
+from idealgas.tallies.observables import Observable
+from idealgas.theory.values import Theory
 
 LEAST_CHANGE = 0.05
 """Smallest change of the logarithm of the area for which an adiabatic exponent is given."""

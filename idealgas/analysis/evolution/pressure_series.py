@@ -8,17 +8,17 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import special
 
-from idealgas.analysis.core.chambers import piston_names
-from idealgas.analysis.core.fields import OMITTED, Key
-from idealgas.analysis.core.statistics import ratio
-from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.walls import WallGauge
 from idealgas.analysis.evolution.theory import Law, StateLines, state_lines
 from idealgas.columns import FIRST_SEGMENT
+from idealgas.fields import OMITTED, Key
 from idealgas.log import Log
+from idealgas.statistics.estimates import ratio
+from idealgas.tallies.chambers import piston_names
+from idealgas.tallies.stream import stream
+from idealgas.tallies.walls import WallGauge
 
 if TYPE_CHECKING:
-    from idealgas.analysis.core.style import Panel
+    from idealgas.presentation.style import Panel
 
 BLOCKS = 2048
 """Number of blocks of time; a bin consists of several blocks, whose scatter gives its error bar."""
@@ -142,7 +142,7 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
 
 def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
     """Draw pressure against time, with the external pressure on a free piston or the adiabat of a driven one."""
-    from idealgas.analysis.core.style import BLACK, COLOURS
+    from idealgas.presentation.style import BLACK, COLOURS
 
     for name, colour in zip(series.shown, COLOURS, strict=False):
         p, error = series.pressure[name], series.error[name]
@@ -160,7 +160,7 @@ def draw_state(ax: "Panel", series: PressureSeries, rest_start: float | None) ->
 
     From the time `rest_start` on, if it is given, the piston only fluctuates: all later bins are merged into one point.
     """
-    from idealgas.analysis.core.style import COLOURS, GREY
+    from idealgas.presentation.style import COLOURS, GREY
 
     moves = int(np.searchsorted(series.middles, math.inf if rest_start is None else rest_start))
     on_the_way, rest = np.arange(moves), np.arange(moves, len(series.area))

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.tables import format_estimate
+from idealgas.analysis.check import agreement
+from idealgas.presentation.tables import format_estimate
 
 if TYPE_CHECKING:
     from idealgas.analysis.evolution import Evolution

@@ -7,21 +7,16 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import beside_pistons, outward
-from idealgas.analysis.core.ensemble import (
-    becomes_uniform,
-    centre_of_mass_velocity,
-    column_temperature,
-    degrees_of_freedom,
-    known_ensemble,
-)
-from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.theory import granular, hard_discs
-from idealgas.analysis.theory.adiabatic_piston import relaxation
-from idealgas.analysis.theory.ensemble import composition
+from idealgas.fields import OMITTED
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.chambers import beside_pistons, outward
+from idealgas.tallies.equilibrium import becomes_uniform, column_temperature, known_ensemble
+from idealgas.theory import granular, hard_discs
+from idealgas.theory.adiabatic_piston import relaxation
+from idealgas.theory.conserved import centre_of_mass_velocity, degrees_of_freedom
+from idealgas.theory.ensemble import composition
 
 SLOW = 0.05
 """Largest speed of a piston, relative to the mean speed of the discs, for which the adiabat is accurate."""
@@ -147,7 +142,7 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
     if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
         return None
-    n, share = len(gas), degrees_of_freedom(log) / (2 * len(gas))
+    n, share = len(gas), degrees_of_freedom(log.scene, log.discs) / (2 * len(gas))
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
@@ -158,7 +153,9 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
 def _kinetic(log: Log) -> float:
     """Return the initial kinetic energy, relative to the centre of mass along axes where momentum is conserved."""
     gas = log.discs
-    return float((gas.mass * ((gas.velocity - centre_of_mass_velocity(log)) ** 2).sum(axis=1)).sum() / 2)
+    return float(
+        (gas.mass * ((gas.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1)).sum() / 2
+    )
 
 
 def _track(log: Log) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom, nonequilibrium_reason
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.tables import Table, estimates, format_estimate
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.check import agreement
 from idealgas.analysis.heat_capacity.combine import (
     BATH,
     CLOSED,
@@ -37,6 +34,11 @@ from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.routes import WALLS
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.equilibrium import nonequilibrium_reason
+from idealgas.tallies.stream import ReadProgress
+from idealgas.theory.conserved import centre_of_mass_energy, degrees_of_freedom
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,7 +59,7 @@ class HeatCapacityAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Measured:
         """Measure the heat capacity per disc, in units of k_B, by every route that one log allows.
 
@@ -91,7 +93,7 @@ class HeatCapacityAnalysis(Analysis):
         kinds = [kind for kind, there in present.items() if there]
         if not kinds:
             return _closed_box(log, start, end, progress)
-        series, dof = energy_series(log, start, end), degrees_of_freedom(log)
+        series, dof = energy_series(log, start, end), degrees_of_freedom(log.scene, log.discs)
         capacity, excess = expected_capacity(log, series)
         of_piston = 1.5 if has_piston else 0.0
         if BATH in kinds:
@@ -156,7 +158,7 @@ class HeatCapacityAnalysis(Analysis):
     @staticmethod
     def figure(result: HeatCapacity) -> "Figure":
         """Draw C per disc (and γ) by every route with its error bar and its theory."""
-        from idealgas.analysis.core.style import COLOURS, name_rows, panels
+        from idealgas.presentation.style import COLOURS, name_rows, panels
 
         figure, (ax,) = panels(1)
         names = [] if result.routes else [f"no {name}" for name in result.refused]
@@ -186,7 +188,7 @@ def _mean_energy(energy: np.ndarray) -> Estimate:
     return mean(energy)
 
 
-def _closed_box(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Measured:
+def _closed_box(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Measured:
     """Return the heat capacity E/T of a gas in a closed box.
 
     Hard discs have no energy scale, so that E is proportional to T.
@@ -199,8 +201,8 @@ def _closed_box(log: Log, start: float | None, end: float | None, progress: Prog
         )
     temperature, relative = measured.temperature, walls.theory_error / walls.theory
     t = replace(walls.times(temperature / walls.theory), theory=temperature)  # Z was computed with E/N as temperature
-    n, expected = measured.number, degrees_of_freedom(log) / (2 * measured.number)
-    energy = (log.discs.kinetic_energy - centre_of_mass_energy(log)) / n
+    n, expected = measured.number, degrees_of_freedom(log.scene, log.discs) / (2 * measured.number)
+    energy = (log.discs.kinetic_energy - centre_of_mass_energy(log.scene, log.discs)) / n
     error = energy * t.standard_error / t.value**2
     routes = {"E/T": Estimate(energy / t.value, error, t.independent_samples, expected, relative * expected)}
     exact, how, theory = Estimate(energy, 0.0, math.inf), "pressure on the walls", (expected, None, relative * expected)

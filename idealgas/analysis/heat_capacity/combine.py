@@ -8,9 +8,9 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.fields import OPTIONAL, Key
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates, mean_theory
+from idealgas.analysis.result import Result
+from idealgas.fields import OPTIONAL, Key
+from idealgas.statistics.estimates import Estimate, mean_of_replicates, mean_theory
 
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
 

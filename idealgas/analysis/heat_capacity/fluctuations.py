@@ -10,16 +10,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, degrees_of_freedom
-from idealgas.analysis.core.equilibration import equilibrated_from, measure
-from idealgas.analysis.core.observables import Observable
-from idealgas.analysis.core.statistics import Estimate, estimate, mean
-from idealgas.analysis.theory import hard_discs, values
-from idealgas.analysis.theory.values import Theory
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.piston import piston_energy
+from idealgas.statistics.autoregression import inefficiency
+from idealgas.statistics.estimates import Estimate, estimate, mean
+from idealgas.tallies.equilibration import equilibrated_from, measure
+from idealgas.tallies.observables import Observable
+from idealgas.theory import hard_discs, values
+from idealgas.theory.conserved import centre_of_mass_energy, degrees_of_freedom
+from idealgas.theory.values import Theory
 
 FEWEST = 16
 """Smallest number of samples from which fluctuations can be measured."""
@@ -89,7 +89,7 @@ def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
             inner[k] -= gas.mass @ (state.position @ np.array(log.gravity))
         if log.inertia is not None and state.angular_velocity is not None:
             inner[k] += log.inertia @ state.angular_velocity**2 / 2
-    kinetic -= centre_of_mass_energy(log)
+    kinetic -= centre_of_mass_energy(log.scene, log.discs)
     return EnergySeries(kinetic, kinetic + inner, None, float(times[0]))
 
 
@@ -107,7 +107,7 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
         grid = np.arange(first_time, end + 1e-9 * step, step)
         at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample may be off the grid by rounding
         at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(end, "right"))]
-    common = centre_of_mass_energy(log)
+    common = centre_of_mass_energy(log.scene, log.discs)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
     position = None
     if scene.piston and scene.piston[0].mass:
@@ -186,7 +186,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
     fixed energy this is off by a fraction of order 1/N. A piston contributes Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
     """
     scene, gas, part = log.scene, log.discs, 0.0
-    motion = degrees_of_freedom(log) / (2 * len(gas))
+    motion = degrees_of_freedom(log.scene, log.discs) / (2 * len(gas))
     per_disc = motion + (0.5 if scene.properties.spins else 0.0)
     pull = np.array(log.gravity)
     mixture = len(gas.species_names) > 1 or bool(gas.unlike)

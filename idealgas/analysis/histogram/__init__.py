@@ -10,14 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.check import VERDICTS
-from idealgas.analysis.core.ensemble import degrees_of_freedom, nonstationary_reason
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
-from idealgas.analysis.core.tables import Cell, Number, Table, bars, describe, estimates, format_estimate
+from idealgas.analysis.analysis import Analysis, Option, Section
+from idealgas.analysis.check import VERDICTS
 from idealgas.analysis.histogram.distribution import ALL_DISCS, BINS, Distribution, distribution_of
 from idealgas.analysis.histogram.intervals import (
     Found,
@@ -28,8 +22,16 @@ from idealgas.analysis.histogram.intervals import (
 )
 from idealgas.analysis.histogram.laws import expectation, velocity_laws
 from idealgas.analysis.histogram.samples import independent_samples
-from idealgas.analysis.theory.ensemble import composition, ensemble_at
+from idealgas.analysis.result import Result
 from idealgas.log import Log
+from idealgas.presentation.tables import Cell, Number, Table, bars, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, mean, mean_of_flux
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import nonstationary_reason
+from idealgas.tallies.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
+from idealgas.tallies.stream import ReadProgress
+from idealgas.theory.conserved import degrees_of_freedom
+from idealgas.theory.ensemble import composition, ensemble_at
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -119,7 +121,7 @@ class HistogramAnalysis(Analysis):
         quantity: Quantity = "speed",
         start: float | None = None,
         end: float | None = None,
-        progress: Progress | None = None,
+        progress: ReadProgress | None = None,
     ) -> Histogram:
         """Measure a distribution between two times of a log, species by species, and test it against theory.
 
@@ -159,7 +161,7 @@ class HistogramAnalysis(Analysis):
                 )
         means = [(distribution.name, distribution.mean) for distribution in result.distributions]
         notes = (
-            describe(result.window),
+            str(result.window),
             *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
             *([f"Theory gives no distribution: {result.no_law}."] if result.no_law else []),
         )
@@ -202,7 +204,7 @@ class HistogramAnalysis(Analysis):
     @staticmethod
     def figure(result: Histogram) -> "Figure":
         """Draw the measured density with its error bars and the laws, in one panel for each species."""
-        from idealgas.analysis.core.style import COLOURS, GREY, panels
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(result.distributions))
         for ax, distribution in zip(axes, result.distributions, strict=True):
@@ -250,7 +252,9 @@ def _follows(result: Histogram, distribution: Distribution) -> str:
     return f"{'; '.join([mean, *verdicts])}."
 
 
-def _velocities(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
+def _velocities(
+    log: Log, quantity: str, start: float | None, end: float | None, progress: ReadProgress | None
+) -> Found:
     gas, discs, known = log.discs, composition(log.discs), expectation(log, start, end)
     lightest = np.full(len(discs.mass), np.inf)
     np.minimum.at(lightest, gas.species, gas.mass)
@@ -266,7 +270,7 @@ def _velocities(log: Log, quantity: str, start: float | None, end: float | None,
     measured = None
     if moments:
         energy = float(window.of(moments[0].flights)[:, :, 1:3].sum(axis=(1, 2)).mean())  # twice the kinetic energy
-        measured = ensemble_at(log.scene, gas, energy / degrees_of_freedom(log), np.inf)
+        measured = ensemble_at(log.scene, gas, energy / degrees_of_freedom(log.scene, log.discs), np.inf)
     parts = np.split(tally.snapshots[window.first :], np.cumsum([len(ids) for ids in members])[:-1], axis=1)
     confined = quantity in ("vx", "vy") and log.has_positions and not log.periodic["xy".index(quantity[1])]
     sums, densities, histograms = window.of(tally.sums), window.of(tally.counts), []

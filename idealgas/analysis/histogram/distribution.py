@@ -6,11 +6,11 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.check import PValue
-from idealgas.analysis.core.fields import OMITTED, OPTIONAL, Key, reported
-from idealgas.analysis.core.statistics import Estimate, ks_distance, ks_p_value, ratio
-from idealgas.analysis.theory import distributions
+from idealgas.analysis.check import PValue
 from idealgas.errors import UserError
+from idealgas.fields import OMITTED, OPTIONAL, Key, reported
+from idealgas.statistics.estimates import Estimate, ks_distance, ks_p_value, ratio
+from idealgas.theory import distributions
 
 BINS = 120
 """Number of bins of a quantity that is not a whole number."""

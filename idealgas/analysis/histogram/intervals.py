@@ -5,13 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Progress
-from idealgas.analysis.core.collision_statistics import CollisionCounts, ImpactParameters
-from idealgas.analysis.core.ensemble import nonstationary_reason
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.intervals import FreeFlights, Intervals, WaitingTimes
-from idealgas.analysis.core.statistics import estimate, of_events, ratio
-from idealgas.analysis.core.stream import span
 from idealgas.analysis.histogram.distribution import ALL_DISCS, BINS, Distribution, distribution_of
 from idealgas.analysis.histogram.laws import (
     DENSEST_COUNTS,
@@ -22,12 +15,18 @@ from idealgas.analysis.histogram.laws import (
     expectation,
     free_flight_rates,
 )
-from idealgas.analysis.theory import distributions
-from idealgas.analysis.theory.collision_counts import CollisionCountLaw
-from idealgas.analysis.theory.ensemble import classes
-from idealgas.analysis.theory.values import Theory
 from idealgas.errors import NotApplicableError
 from idealgas.log import Log
+from idealgas.statistics.estimates import estimate, of_events, ratio
+from idealgas.tallies.collision_statistics import CollisionCounts, ImpactParameters
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import nonstationary_reason
+from idealgas.tallies.intervals import FreeFlights, Intervals, WaitingTimes
+from idealgas.tallies.stream import ReadProgress, span
+from idealgas.theory import distributions
+from idealgas.theory.collision_counts import CollisionCountLaw
+from idealgas.theory.ensemble import classes
+from idealgas.theory.values import Theory
 
 INTERVALS = 10_000  # approximate number of intervals that are tested
 STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
@@ -43,7 +42,9 @@ Found = tuple[Window, list[Distribution], str]
 """Window, distributions, and the reason if theory gives no law (empty if it does)."""
 
 
-def free_flights(log: Log, quantity: str, start: float | None, end: float | None, progress: Progress | None) -> Found:
+def free_flights(
+    log: Log, quantity: str, start: float | None, end: float | None, progress: ReadProgress | None
+) -> Found:
     """Measure the distribution of the free paths or free times of each species."""
     discs, path = classes(log.discs), quantity == "free-path"
     temperature, rates, errors, speed, why_not = free_flight_rates(log, discs, start, end)
@@ -70,7 +71,7 @@ def free_flights(log: Log, quantity: str, start: float | None, end: float | None
     return window, by_species, why_not
 
 
-def waiting_times(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+def waiting_times(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
     """Measure the distribution of the times between events of the whole gas."""
     longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
     tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
@@ -85,7 +86,7 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Pr
     return window, [_intervals(ALL_DISCS, tally, 0, blocks, longest, possible, None, error)], why_not
 
 
-def impact_parameters(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+def impact_parameters(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
     """Measure the distribution of |b| over the sum of the radii in collisions of all discs.
 
     In equilibrium velocities do not depend on positions, so that the distribution is uniform at any density.
@@ -104,7 +105,7 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
     )
 
 
-def collision_counts(log: Log, start: float | None, end: float | None, progress: Progress | None) -> Found:
+def collision_counts(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
     """Measure the distribution of the number of collisions of a disc in a given time, and its cumulants."""
     discs = classes(log.discs)
     _, rates, errors, _, why_not = free_flight_rates(log, discs, start, end)

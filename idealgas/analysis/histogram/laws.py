@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import expected_rates, theory_of
-from idealgas.analysis.core.ensemble import centre_of_mass_energy, known_ensemble, nonequilibrium_reason
-from idealgas.analysis.theory import distributions
-from idealgas.analysis.theory.ensemble import Composition, Ensemble, ensemble_at
-from idealgas.analysis.theory.hard_discs import mean_speed
 from idealgas.errors import UserError
 from idealgas.log import Log
+from idealgas.tallies.collisions import expected_rates, theory_of
+from idealgas.tallies.equilibrium import known_ensemble, nonequilibrium_reason
+from idealgas.theory import distributions
+from idealgas.theory.conserved import centre_of_mass_energy
+from idealgas.theory.ensemble import Composition, Ensemble, ensemble_at
+from idealgas.theory.hard_discs import mean_speed
 
 MAXWELL = "Maxwell-Boltzmann"
 
@@ -97,7 +98,7 @@ def _highest(log: Log, start: float | None, end: float | None) -> float:
     time, kinetic = log.observables["kinetic_energy"]
     first, last = log.start_time if start is None else start, log.end_time if end is None else end
     inside = (time >= first) & (time <= last)
-    highest = (float(kinetic[inside].max(initial=0.0)) - centre_of_mass_energy(log)) / len(log.discs)
+    highest = (float(kinetic[inside].max(initial=0.0)) - centre_of_mass_energy(log.scene, log.discs)) / len(log.discs)
     highest = max(highest, log.discs.temperature) if not inside.any() else highest
     if not highest > 0:
         raise UserError(f"{log.path}: no disc moves")

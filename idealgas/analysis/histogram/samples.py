@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from idealgas.analysis.core.autoregression import inefficiency
-from idealgas.analysis.core.ensemble import ROUNDING
+from idealgas.statistics.autoregression import inefficiency
+from idealgas.tallies.equilibrium import ROUNDING
 
 GROUPS = 16
 """Number of groups of discs that are sampled in turn.

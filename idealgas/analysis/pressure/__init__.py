@@ -9,7 +9,7 @@ per time and length.
 
 from typing import TYPE_CHECKING, Any
 
-from idealgas.analysis.core.analysis import Analysis, Section
+from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
 from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample
 from idealgas.analysis.pressure.measure import Pressure, pressure

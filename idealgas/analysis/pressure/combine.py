@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample, equation_of_state, sample_of
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.errors import UserError
+from idealgas.statistics.estimates import Estimate
 
 
 def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:

@@ -6,16 +6,16 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.caveats import by_state, name_of_state, seeds_of
-from idealgas.analysis.core.check import CheckResult, check_theory
-from idealgas.analysis.core.fields import Key
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
+from idealgas.analysis.caveats import by_state, name_of_state, seeds_of
+from idealgas.analysis.check import CheckResult, check_theory
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.routes import PAIRS
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import SOLID, crystal
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import Key
+from idealgas.statistics.estimates import Estimate, mean_of_replicates
+from idealgas.theory import hard_discs
+from idealgas.theory.values import SOLID, crystal
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""

@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BAND, BLACK, COLOURS, GREY, LINES, name_rows, panels
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
 from idealgas.analysis.pressure.measure import IDEAL, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
+from idealgas.presentation.style import BAND, BLACK, COLOURS, GREY, LINES, name_rows, panels
+from idealgas.theory import hard_discs
+from idealgas.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
 
 
 def pressure_figure(result: Pressure | EquationOfState) -> Figure:

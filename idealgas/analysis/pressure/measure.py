@@ -13,31 +13,29 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.chambers import Chambers, outward
-from idealgas.analysis.core.check import CheckResult, check_theory
-from idealgas.analysis.core.collisions import (
-    CollisionRate,
-    FreePath,
-    collision_rates,
-    expected_rates,
-    free_paths,
-    theory_of,
-)
-from idealgas.analysis.core.currents import Currents, pressure_tensor
-from idealgas.analysis.core.ensemble import becomes_uniform, known_ensemble, nonstationary_reason
-from idealgas.analysis.core.equilibration import Window, measure, unsteady
-from idealgas.analysis.core.fields import INLINE, OMITTED, Key, reported
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import SampledImpacts, sampled
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.walls import SampledWalls, WallGauge
+from idealgas.analysis.check import CheckResult, check_theory
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
 from idealgas.analysis.pressure.routes import PAIRS, WALLS, Route, bulk_in_events, bulk_in_samples, routes_of
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, composition
-from idealgas.analysis.theory.values import (
+from idealgas.analysis.result import Result
+from idealgas.columns import SIDES, axis_of
+from idealgas.errors import NotApplicableError, UserError, unknown
+from idealgas.fields import INLINE, OMITTED, Key, reported
+from idealgas.log import Log
+from idealgas.scene.walls import walls_inside
+from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.chambers import Chambers, outward
+from idealgas.tallies.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths, theory_of
+from idealgas.tallies.currents import Currents, pressure_tensor
+from idealgas.tallies.equilibration import Window, measure, unsteady
+from idealgas.tallies.equilibrium import becomes_uniform, known_ensemble, nonstationary_reason
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.samples import SampledImpacts, sampled
+from idealgas.tallies.walls import SampledWalls, WallGauge
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import Composition, composition
+from idealgas.theory.values import (
     FREEZING,
     MIXTURE,
     SOLID,
@@ -48,11 +46,6 @@ from idealgas.analysis.theory.values import (
     fluid,
     mixture_error,
 )
-from idealgas.columns import SIDES, axis_of
-from idealgas.errors import NotApplicableError, UserError, unknown
-from idealgas.log import Log
-from idealgas.scene.walls import walls_inside
-from idealgas.state import Gas
 
 IDEAL = "ideal gas"
 """Name of the theory of the ideal gas, Z = 1."""

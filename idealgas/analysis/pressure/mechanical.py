@@ -6,12 +6,13 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import conserved_momentum, nonstationary_reason
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.fields import OMITTED, Key
-from idealgas.analysis.core.statistics import Estimate, mean_of_flux, mean_of_replicates, ratio
-from idealgas.analysis.core.walls import Face, WallGauge, wall_name
+from idealgas.fields import OMITTED, Key
 from idealgas.log import Log
+from idealgas.statistics.estimates import Estimate, mean_of_flux, mean_of_replicates, ratio
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.equilibrium import nonstationary_reason
+from idealgas.tallies.walls import Face, WallGauge, wall_name
+from idealgas.theory.conserved import conserved_momentum
 
 SEGMENTS = 8
 """Number of segments of the window that are averaged separately if the state of the gas changes all the time."""
@@ -118,7 +119,7 @@ def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[
 
 def _carried(log: Log) -> np.ndarray:
     """Return whether walls alone balance the weight along x and y, (2,) bool; a heat bath would carry a part of it."""
-    return ~conserved_momentum(log) & (log.scene.properties.bath is None)
+    return ~conserved_momentum(log.scene) & (log.scene.properties.bath is None)
 
 
 def _weight(log: Log) -> np.ndarray:
@@ -169,7 +170,7 @@ def _forces(log: Log, gauge: WallGauge, window: Window, balances: np.ndarray | N
     given = window.of(gauge.impulses.given)
     hits = gauge.impulses.hits[window.first :].sum(axis=0)
     by_wall = [(wall_name(k, wall.name), given[:, k]) for k, wall in enumerate(log.walls) if hits[k]]
-    all_time, known = np.ones(len(given)), ~conserved_momentum(log) & (balances is not None)
+    all_time, known = np.ones(len(given)), ~conserved_momentum(log.scene) & (balances is not None)
     weight = [float(force) if balanced else None for force, balanced in zip(_weight(log), known, strict=True)]
     bounded = _carried(log)
 

@@ -11,15 +11,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.fields import OMITTED, Key
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.samples import SampledImpacts
-from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
-from idealgas.analysis.theory.values import BoxTheory, Theory
 from idealgas.columns import OUTWARD, SIDES, axis_of
+from idealgas.fields import OMITTED, Key
 from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate, mean, mean_of_flux
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.samples import SampledImpacts
+from idealgas.theory.values import BoxTheory, Theory
 
 WALLS, PAIRS = "walls, virial", "pairs, virial"
 """Beginnings of the names of the routes that `Pressure.check` compares with theory.

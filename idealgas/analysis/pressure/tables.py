@@ -3,22 +3,13 @@
 import math
 from collections.abc import Sequence
 
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.tables import (
-    Cell,
-    Number,
-    Table,
-    collision_tables,
-    describe,
-    estimates,
-    format_estimate,
-    pressure_table,
-    with_error,
-)
+from idealgas.analysis.check import agreement
 from idealgas.analysis.pressure.equation_of_state import FITTED, FREE_TERMS, EquationOfState
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical, WallPressure
 from idealgas.analysis.pressure.routes import PAIRS
+from idealgas.presentation.tables import Cell, Number, Table, estimates, format_estimate, pressure_table, with_error
+from idealgas.tallies.collisions import collision_tables
 
 CLEAR = 5.0
 """Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
@@ -41,7 +32,7 @@ def _of_walls(result: Pressure, mechanical: Mechanical) -> list[Table]:
     """Return the tables of the mechanical pressure on every wall, and of the forces on the walls."""
     ideal = result.number * result.temperature / result.area
     notes = [
-        describe(result.window),
+        str(result.window),
         f"N = {result.number}, A = {result.area:.6g}, φ = {result.packing_fraction:.5g}, kinetic "
         f"energy per disc {result.temperature:.6g}, ideal gas N T/A = {ideal:.6g} in all of A (means over the window)",
         f"Theory is not available: {result.no_theory}.",
@@ -76,7 +67,7 @@ def _of_log(result: Pressure) -> list[Table]:
         estimates(
             "Z = PA/NT (no unit)",
             [(route.name, route.compressibility_factor) for route in result.routes],
-            (describe(result.window), *gas, WALLS_AND_VIRIAL),
+            (str(result.window), *gas, WALLS_AND_VIRIAL),
         ),
         Table("Z by theory (no unit)", ("", "value", "± error"), theories, missing),
         estimates(

@@ -13,28 +13,29 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.check import PValue, agreement
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.exchange import across
-from idealgas.analysis.core.fields import OMITTED, OPTIONAL
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean, ratio
-from idealgas.analysis.core.tables import Number, Table, describe, estimates, format_estimate
+from idealgas.analysis.analysis import Analysis, Option, Section
+from idealgas.analysis.check import PValue, agreement
 from idealgas.analysis.profile.flow import LAW, expected_flow
 from idealgas.analysis.profile.heat import heat_flow, heat_of_walls
 from idealgas.analysis.profile.stress import pressure_of_strips
 from idealgas.analysis.profile.strips import FEWEST_FRAMES, StripTest, collect, gradient, strip_test
 from idealgas.analysis.profile.theory import Expected, expected_profile, flow_axis, natural_axis
-from idealgas.analysis.theory.ensemble import composition
-from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import OMITTED, OPTIONAL
 from idealgas.log import Log
+from idealgas.presentation.tables import Number, Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate, mean, ratio
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.exchange import across
+from idealgas.tallies.stream import ReadProgress
+from idealgas.theory.ensemble import composition
+from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from idealgas.analysis.core.style import Panel
+    from idealgas.presentation.style import Panel
 
 BINS = 20
 """Default number of strips."""
@@ -134,7 +135,7 @@ class ProfileAnalysis(Analysis):
         bins: int = BINS,
         start: float | None = None,
         end: float | None = None,
-        progress: Progress | None = None,
+        progress: ReadProgress | None = None,
     ) -> Profile:
         """Measure density, temperature and pressure in strips across an axis, and the heat of walls, between two times.
 
@@ -198,7 +199,7 @@ class ProfileAnalysis(Analysis):
         if result.heat_flow:
             flow = [(f"along {axis}, mean of both sides", result.heat_flow)]
             tables.append(estimates("Heat flow between the thermal sides (energy/time)", flow))
-        notes = (f"{describe(result.window)}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
+        notes = (f"{result.window}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
         return [replace(tables[0], notes=notes), *tables[1:]]
 
     @staticmethod
@@ -232,7 +233,7 @@ class ProfileAnalysis(Analysis):
     @staticmethod
     def figure(result: Profile) -> "Figure":
         """Draw density, temperature, pressure and flow, theory dashed, the spin temperature as crosses."""
-        from idealgas.analysis.core.style import BLACK, Strips, curve_style, panels
+        from idealgas.presentation.style import BLACK, Strips, curve_style, panels
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
             value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.profile.theory import JUMP, POINTS
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.columns import sides_across
 from idealgas.log import Log
+from idealgas.tallies.equilibration import Window
+from idealgas.theory import hard_discs
+from idealgas.theory.values import Theory, enskog_error
 
 LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
 """Name of the law."""

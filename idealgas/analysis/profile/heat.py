@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.statistics import Estimate, ratio
 from idealgas.analysis.profile.theory import conduction
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.columns import sides_across
 from idealgas.log import Log
 from idealgas.physics.collision_rates import contact_value
+from idealgas.statistics.estimates import Estimate, ratio
+from idealgas.tallies.equilibration import Window
+from idealgas.theory import hard_discs
+from idealgas.theory.values import Theory, enskog_error
 
 SHEARED_SIDES = "bottom and top"
 """Name of both sheared sides together, as only the sum of their energies has a meaning."""

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Progress
-from idealgas.analysis.core.ensemble import conserved_momentum
-from idealgas.analysis.core.statistics import Estimate, mean, mean_of_flux
-from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.stress import PassedOn
 from idealgas.log import Log
+from idealgas.statistics.estimates import Estimate, mean, mean_of_flux
+from idealgas.tallies.stream import ReadProgress, stream
+from idealgas.tallies.stress import PassedOn
+from idealgas.theory.conserved import conserved_momentum
 
 
 def pressure_of_strips(
@@ -17,7 +16,7 @@ def pressure_of_strips(
     times: np.ndarray,
     carried: np.ndarray,
     stored: np.ndarray,
-    progress: Progress | None,
+    progress: ReadProgress | None,
 ) -> dict[str, tuple[Estimate, ...]]:
     """Return the components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
@@ -43,7 +42,7 @@ def pressure_of_strips(
     pressure = ((carried[1:] + carried[:-1]) / 2 + rates) / area
     strips = range(len(edges) - 1)
     components = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
-    if not log.periodic[axis] and conserved_momentum(log)[1 - axis]:
+    if not log.periodic[axis] and conserved_momentum(log.scene)[1 - axis]:
         lost = -np.diff(stored, axis=0) / np.diff(times)[:, None] / log.box[1 - axis]
         shear = pressure[..., 2]  # minus the loss, only the scatter of single instants remains
         components["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Progress
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import frames
 from idealgas.analysis.profile.theory import Expected
-from idealgas.analysis.theory.values import Theory
 from idealgas.log import Log
 from idealgas.physics.shear import flow_at
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.stream import ReadProgress, frames
+from idealgas.theory.conserved import centre_of_mass_velocity
+from idealgas.theory.values import Theory
 
 FEWEST_FRAMES = 32
 """Smallest number of frames with a disc in a strip for which its temperature is estimated."""
@@ -36,7 +35,7 @@ class StripTest:
 
 
 def collect(
-    log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: Progress | None
+    log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: ReadProgress | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sum the discs of each strip at F times.
 
@@ -49,7 +48,7 @@ def collect(
         stored: (F, K), momentum perpendicular to the axis of the discs below a line, averaged over the lines of a
             strip.
     """
-    gas, frame = log.discs, centre_of_mass_velocity(log)
+    gas, frame = log.discs, centre_of_mass_velocity(log.scene, log.discs)
     shape = (len(gas.species_names), len(edges) - 1)
     sums, carried = np.zeros((len(times), *shape, 5)), np.zeros((len(times), shape[1], 5))
     stored = np.zeros((len(times), shape[1]))

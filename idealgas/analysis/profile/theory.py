@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import column_profiles, column_temperature, known_ensemble
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, classes, ensemble_at
-from idealgas.analysis.theory.values import Theory
 from idealgas.columns import sides_across
 from idealgas.log import Log
+from idealgas.tallies.equilibrium import column_profiles, column_temperature, known_ensemble
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import Composition, classes, ensemble_at
+from idealgas.theory.values import Theory
 
 UNIFORM = "uniform"
 """Name of the law of a uniform gas."""

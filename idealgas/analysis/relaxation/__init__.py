@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Option, Progress, Section
-from idealgas.analysis.core.collisions import collisions_per_disc
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.fields import OMITTED, Key, reported
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, ks_distance
-from idealgas.analysis.core.stream import frames
-from idealgas.analysis.core.tables import Cell, Number, Table, format_estimate, with_error
+from idealgas.analysis.analysis import Analysis, Option, Section
 from idealgas.analysis.relaxation.acceptance import Acceptance, acceptance, acceptance_tables
 from idealgas.analysis.relaxation.speeds import (
     SpeedDistributions,
@@ -32,13 +25,20 @@ from idealgas.analysis.relaxation.speeds import (
     speed_distributions,
     speed_table,
 )
+from idealgas.analysis.result import Result
 from idealgas.errors import UserError
+from idealgas.fields import OMITTED, Key, reported
 from idealgas.log import Log
+from idealgas.presentation.tables import Cell, Number, Table, format_estimate, with_error
+from idealgas.statistics.estimates import Estimate, ks_distance
+from idealgas.tallies.collisions import collisions_per_disc
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.stream import ReadProgress, frames
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from idealgas.analysis.core.style import Panel
+    from idealgas.presentation.style import Panel
 
 SAMPLES = 320
 
@@ -165,7 +165,7 @@ class RelaxationAnalysis(Analysis):
         log: Log,
         start: float | None = None,
         end: float | None = None,
-        progress: Progress | None = None,
+        progress: ReadProgress | None = None,
         every: float | None = None,
     ) -> Relaxation:
         """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit the relaxation time.
@@ -246,7 +246,7 @@ class RelaxationAnalysis(Analysis):
 
         With several logs, the same is drawn against collisions per disc on the left.
         """
-        from idealgas.analysis.core.style import panels
+        from idealgas.presentation.style import panels
 
         if len(found.logs) == 1:
             figure, axes = panels(3)
@@ -295,7 +295,7 @@ def _draw(axes: "Sequence[Panel]", relaxations: Relaxations, in_time: bool) -> N
     """Draw three panels against time, or against collisions per disc."""
     from matplotlib.ticker import FixedLocator, NullLocator
 
-    from idealgas.analysis.core.style import BLACK, curve_style
+    from idealgas.presentation.style import BLACK, curve_style
 
     kurtosis, distance, entropy = axes
     for k, result in enumerate(relaxations.logs):

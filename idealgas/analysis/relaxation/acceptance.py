@@ -7,15 +7,15 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.fields import OMITTED, Key, reported
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Cell, Number, Table, estimates
-from idealgas.analysis.theory import conserved, hard_discs
-from idealgas.analysis.theory.ensemble import classes
+from idealgas.fields import OMITTED, Key, reported
 from idealgas.log import Log
+from idealgas.presentation.tables import Cell, Number, Table, estimates
 from idealgas.scene import Scene
 from idealgas.scene.defaults import reference_speed
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.theory import conserved, hard_discs
+from idealgas.theory.ensemble import classes
 
 PUBLISHED = 6_552
 """Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970).

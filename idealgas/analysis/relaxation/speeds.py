@@ -11,16 +11,16 @@ from typing import Annotated
 import numpy as np
 from scipy import optimize
 
-from idealgas.analysis.core.collisions import collisions_per_disc
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.fields import Key
-from idealgas.analysis.core.statistics import Estimate, ks_distance
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.tables import Cell, Number, Table
 from idealgas.analysis.relaxation.acceptance import last_trial
-from idealgas.analysis.theory.ensemble import Ensemble, composition
 from idealgas.errors import UserError
+from idealgas.fields import Key
 from idealgas.log import Log
+from idealgas.presentation.tables import Cell, Number, Table
+from idealgas.statistics.estimates import Estimate, ks_distance
+from idealgas.tallies.collisions import collisions_per_disc
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.stream import span
+from idealgas.theory.ensemble import Ensemble, composition
 
 CLASSES = 0.3 * np.arange(9)
 """Lower ends of the classes of speed, in units of the root-mean-square speed; the last class has no upper end."""

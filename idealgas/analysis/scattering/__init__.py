@@ -11,21 +11,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.caveats import narrow
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Table, describe, estimates, format_estimate, time_series
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.caveats import narrow
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.analysis.scattering.displacements import Curve, VanHove, curve_of, non_gaussian, van_hove
 from idealgas.analysis.scattering.distinct import Distinct, distinct_parts
 from idealgas.analysis.scattering.sums import APART, BINS, FARTHEST, Sums, read, segments, wave_numbers
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.waves import sound_of_discs
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate, time_series
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.stream import ReadProgress
+from idealgas.theory import hard_discs
+from idealgas.theory.waves import sound_of_discs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,7 +112,7 @@ class ScatteringAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Scattering:
         """Measure how waves of density and of current decay, between two times of a log.
 
@@ -164,7 +165,7 @@ class ScatteringAnalysis(Analysis):
             )
         ]
         notes = [
-            describe(result.window),
+            str(result.window),
             "theory: (1 − S/N) T/m; free flight and the first collision",
             "errors by 32 segments; too small, by the rms of deviation over error in 150 runs, are those of the "
             "current along k of the longest wave (1.23), S(k, ω) of the shortest wave (1.23) and the current across k "
@@ -202,7 +203,7 @@ class ScatteringAnalysis(Analysis):
     @staticmethod
     def figure(result: Scattering) -> "Figure":
         """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d, with free flight and normal distribution dashed."""
-        from idealgas.analysis.core.style import BAND, COLOURS, curve_style, panels
+        from idealgas.presentation.style import BAND, COLOURS, curve_style, panels
 
         figure, (density, self_part, spectrum, along, across, gaussian, displaced, distinct) = panels(4, 2)
         for index, wave in enumerate(result.waves):

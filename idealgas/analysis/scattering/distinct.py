@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.pairs import BINS_A_DIAMETER, REACH, inside
 from idealgas.analysis.scattering.displacements import Curve, curve_of
 from idealgas.analysis.scattering.sums import SEGMENTS
 from idealgas.log import Log
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.pairs import BINS_A_DIAMETER, REACH, inside
+from idealgas.theory.conserved import centre_of_mass_velocity
 
 STARTS = 4
 """Number of instants in a segment from which pairs are counted."""
@@ -50,7 +50,7 @@ def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Di
     first, second = at.searchsorted(starts), at.searchsorted(later)
     counts = np.empty((len(times), len(starts), bins))
     places: dict[int, np.ndarray] = {}
-    box, drift = np.array(log.box), centre_of_mass_velocity(log)
+    box, drift = np.array(log.box), centre_of_mass_velocity(log.scene, log.discs)
     for now, state in enumerate(log.frames(at)):
         places[now] = inside(log, np.remainder(state.position - drift * at[now], box))
         for k, start in np.argwhere(second == now):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.stream import trajectories
 from idealgas.log import Log
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.stream import trajectories
 
 WAVES = 4
 """Number of wave numbers, evenly spaced on a logarithmic scale from that of the box to that of a diameter."""

@@ -8,7 +8,7 @@ against the packing fraction.
 
 from typing import TYPE_CHECKING, Any
 
-from idealgas.analysis.core.analysis import Analysis, Option, Section
+from idealgas.analysis.analysis import Analysis, Option, Section
 from idealgas.analysis.transport.combine import Sample, States, combine_transport, restore_transport
 from idealgas.analysis.transport.measure import Transport, transport
 from idealgas.analysis.transport.tables import transport_summary, transport_tables

@@ -7,19 +7,19 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.currents import APART_X, APART_Y, CARRIED, HEAT_X, HEAT_Y, XX, XY, YY, Currents
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.fields import INLINE, Key
-from idealgas.analysis.core.samples import in_blocks
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import stream
-from idealgas.analysis.theory.ensemble import Ensemble
-from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
+from idealgas.fields import INLINE, Key
 from idealgas.log import Log
 from idealgas.state import Gas
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.currents import APART_X, APART_Y, CARRIED, HEAT_X, HEAT_Y, XX, XY, YY, Currents
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.samples import in_blocks
+from idealgas.tallies.stream import stream
+from idealgas.theory.conserved import centre_of_mass_velocity
+from idealgas.theory.ensemble import Ensemble
+from idealgas.theory.values import Theory
 
 STEPS = 100  # number of steps up to the longest lag
 MOST_BLOCKS = 2**18  # largest number of blocks of the currents; a longer run has longer steps
@@ -96,7 +96,7 @@ def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarra
     With snapshots the blocks begin and end at them, so that the integrals are exact. Without snapshots the sums are
     interpolated between samples. The current of heat is nan without its sums, and so is the current of a species.
     """
-    observed, still = log.observables, centre_of_mass_velocity(log)
+    observed, still = log.observables, centre_of_mass_velocity(log.scene, log.discs)
     edges = _sample_edges(log, window, longest)
     flow = np.full((len(edges) - 1, 2, 7), np.nan)
     for part, (momentum, heat) in enumerate(

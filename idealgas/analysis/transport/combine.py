@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from idealgas.analysis.core.caveats import by_state, name_of_state, seeds_of
-from idealgas.analysis.core.fields import Key
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate, mean_of_replicates
+from idealgas.analysis.caveats import by_state, name_of_state, seeds_of
+from idealgas.analysis.result import Result
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.measure import Transport
+from idealgas.fields import Key
+from idealgas.statistics.estimates import Estimate, mean_of_replicates
 
 DIFFUSION = "D"
 """Symbol of the diffusion coefficient of a single species."""

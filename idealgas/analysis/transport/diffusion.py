@@ -7,16 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.ensemble import centre_of_mass_velocity
-from idealgas.analysis.core.equilibration import Window
-from idealgas.analysis.core.statistics import Estimate, mean
-from idealgas.analysis.core.stream import sample_trajectories
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, Ensemble
-from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
 from idealgas.analysis.transport.enskog import Enskog
 from idealgas.log import Log
+from idealgas.statistics.estimates import Estimate, mean
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.stream import sample_trajectories
+from idealgas.theory import hard_discs
+from idealgas.theory.conserved import centre_of_mass_velocity
+from idealgas.theory.ensemble import Composition, Ensemble
+from idealgas.theory.values import Theory
 
 LAGS = 200  # number of steps of the correlation functions
 MOST_SEGMENTS = 64
@@ -160,8 +160,11 @@ def diffusion(
     chosen = [ids[:: -(-len(ids) // most)] for ids in members]
     places, velocities = sample_trajectories(log, times, np.concatenate(chosen))
     shape = (segments, len(lag), -1, 2)
-    places, velocities = places.reshape(shape), velocities.reshape(shape) - centre_of_mass_velocity(log)
-    places = places - lag[:, None, None] * centre_of_mass_velocity(log)
+    places, velocities = (
+        places.reshape(shape),
+        velocities.reshape(shape) - centre_of_mass_velocity(log.scene, log.discs),
+    )
+    places = places - lag[:, None, None] * centre_of_mass_velocity(log.scene, log.discs)
     cuts = np.cumsum([len(ids) for ids in chosen])[:-1]
     parts = zip(discs.name, np.split(places, cuts, axis=2), np.split(velocities, cuts, axis=2), limits, strict=True)
     whole, coefficients, equilibrium = expected

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import ExpectedRates
-from idealgas.analysis.core.ensemble import conserved_momentum
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, Ensemble
-from idealgas.analysis.theory.values import Theory, enskog_error
 from idealgas.log import Log
+from idealgas.tallies.collisions import ExpectedRates
+from idealgas.theory import hard_discs
+from idealgas.theory.conserved import conserved_momentum
+from idealgas.theory.ensemble import Composition, Ensemble
+from idealgas.theory.values import Theory, enskog_error
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> lis
     """
     discs, (rate, off) = rates.discs, rates.of_kinds
     values = np.empty((2, len(discs.mass)))  # value and error
-    whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log).mean()
+    whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log.scene).mean()
     error = enskog_error("diffusion", log.discs.packing_fraction)
     for i, (mass, rest) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
         reduced = mass * discs.mass / (mass + discs.mass)
@@ -106,7 +106,7 @@ def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None
     gas = log.discs
     if len(discs.name) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:
         return None
-    density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - conserved_momentum(log).mean() / len(gas)
+    density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - conserved_momentum(log.scene).mean() / len(gas)
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)
     state = (2 * discs.radius[0], density, equilibrium.temperature, mass, chi)
     viscosity = hard_discs.enskog_viscosity(*state)

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from idealgas.analysis.core.style import BAND, COLOURS, GREY, Panel, curve_style, panels
-from idealgas.analysis.theory import hard_discs
 from idealgas.analysis.transport.coefficients import SYMBOLS
 from idealgas.analysis.transport.combine import DIFFUSION, States
 from idealgas.analysis.transport.measure import Transport
+from idealgas.presentation.style import BAND, COLOURS, GREY, Panel, curve_style, panels
+from idealgas.theory import hard_discs
 
 FAINTEST = 1e-4
 """Smallest velocity correlation in the figure."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.analysis.core.autoregression import unit_of
+from idealgas.statistics.autoregression import unit_of
 
 MOST_PARTS = 64
 """Largest number of parts of a run whose scatter gives the error at every lag."""

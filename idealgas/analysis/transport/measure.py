@@ -11,25 +11,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.collisions import (
-    CollisionRate,
-    FreePath,
-    collision_rates,
-    expected_rates,
-    free_paths,
-    theory_of,
-)
-from idealgas.analysis.core.currents import Currents, pressure_tensor
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.equilibration import Window, measure
-from idealgas.analysis.core.fields import Key
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.samples import SampledImpacts, sampled
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.ensemble import Composition, Ensemble, composition
+from idealgas.analysis.result import Result
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
 from idealgas.analysis.transport.diffusion import (
     LEAST_LAG,
@@ -42,9 +24,20 @@ from idealgas.analysis.transport.diffusion import (
 from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
 from idealgas.errors import UserError
+from idealgas.fields import Key
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import MOST_PAIRED
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths, theory_of
+from idealgas.tallies.currents import Currents, pressure_tensor
+from idealgas.tallies.equilibration import Window, measure
+from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.samples import SampledImpacts, sampled
+from idealgas.theory import hard_discs
+from idealgas.theory.ensemble import Composition, Ensemble, composition
 
 FEWEST_SEGMENTS = 8  # smallest number of segments of the window, each as long as the longest lag
 LEAST_WINDOW = 16.0  # longest lags; with 8, coefficients of the whole gas are too small by up to a quarter

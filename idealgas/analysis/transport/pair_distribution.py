@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from idealgas.analysis.core.pairs import BINS_A_DIAMETER, REACH, inside
-from idealgas.analysis.theory.ensemble import Composition
 from idealgas.log import Log
+from idealgas.tallies.pairs import BINS_A_DIAMETER, REACH, inside
+from idealgas.theory.ensemble import Composition
 
 FRAMES = 64  # number of instants
 

@@ -2,23 +2,22 @@
 
 from dataclasses import replace
 
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import (
+from idealgas.analysis.check import agreement
+from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
+from idealgas.analysis.transport.combine import States
+from idealgas.analysis.transport.measure import Transport
+from idealgas.presentation.tables import (
     THEORY_ERROR,
     Cell,
     Number,
     Table,
-    collision_tables,
-    describe,
     estimates,
     format_estimate,
     pressure_table,
     with_error,
 )
-from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
-from idealgas.analysis.transport.combine import States
-from idealgas.analysis.transport.measure import Transport
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.collisions import collision_tables
 
 WALLS = (
     "No viscosities and thermal conductivity: they need periodic sides and nothing else in the box, as walls change "
@@ -60,7 +59,7 @@ def _of_log(result: Transport) -> list[Table]:
                 (f"{entry.species}: velocity correlation time, time", entry.velocity_correlation_time),
             ]
             lags.append(f"{entry.species}: lags t = {entry.plateau[0]:.4g} to {entry.plateau[1]:.4g}")
-    tables = [replace(rates, notes=(describe(result.window),)), paths, estimates("g(r) at contact (no unit)", contacts)]
+    tables = [replace(rates, notes=(str(result.window),)), paths, estimates("g(r) at contact (no unit)", contacts)]
     tables.append(estimates("Diffusion, theory Enskog's", diffusion, (*lags, *([] if result.collective else [WALLS]))))
     if result.collective:
         tables += _of_currents(result.collective, result.free_times)

@@ -10,16 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.analysis.core.analysis import Analysis, Progress, Section
-from idealgas.analysis.core.caveats import must_be_one_gas
-from idealgas.analysis.core.check import agreement
-from idealgas.analysis.core.ensemble import must_apply
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.stream import span
-from idealgas.analysis.core.tables import Table, estimates, format_estimate
-from idealgas.analysis.theory.free_energy import log_configurations
-from idealgas.analysis.theory.values import Theory
+from idealgas.analysis.analysis import Analysis, Section
+from idealgas.analysis.caveats import must_be_one_gas
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
 from idealgas.analysis.work.processes import (
     DIGITS,
     Crossing,
@@ -32,6 +26,12 @@ from idealgas.analysis.work.processes import (
 )
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
+from idealgas.presentation.tables import Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.equilibrium import must_apply
+from idealgas.tallies.stream import ReadProgress, span
+from idealgas.theory.free_energy import log_configurations
+from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,7 +72,7 @@ class WorkAnalysis(Analysis):
 
     @staticmethod
     def measure(
-        log: Log, start: float | None = None, end: float | None = None, progress: Progress | None = None
+        log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Work:
         """Measure the work of each stroke of a piston and compare it with the free energy difference ΔF of the gas.
 
@@ -176,7 +176,7 @@ class WorkAnalysis(Analysis):
     @staticmethod
     def figure(result: Work) -> "Figure":
         """Draw the distributions of the work and of minus the work of the reverse strokes, and their ratio."""
-        from idealgas.analysis.core.style import COLOURS, panels
+        from idealgas.presentation.style import COLOURS, panels
 
         if not result.crossings:
             figure, axes = panels(len(result.processes))
@@ -226,7 +226,7 @@ def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np
 
 def _mark(ax: Any, free_energy: Estimate) -> None:
     """Draw a line at the free energy in a panel with distributions of the work."""
-    from idealgas.analysis.core.style import BAND, BLACK
+    from idealgas.presentation.style import BAND, BLACK
 
     where, error, label = free_energy.value, free_energy.standard_error, "free energy by the work"
     if free_energy.theory is not None:

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.core.fields import OMITTED
-from idealgas.analysis.core.statistics import Estimate, parts_of
-from idealgas.analysis.theory.values import Theory
+from idealgas.fields import OMITTED
+from idealgas.statistics.estimates import Estimate, parts_of
+from idealgas.theory.values import Theory
 
 FEWEST_EFFECTIVE = 200.0
 """Effective number of strokes in ⟨exp(-W/T)⟩, (Σx)²/Σx², below which its error may be too small.

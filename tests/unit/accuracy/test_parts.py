@@ -11,12 +11,12 @@ from idealgas.accuracy.cases import Case, Start, compared_cases
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
 from idealgas.accuracy.report import cost_of, flat_row, lost_after, sentences
 from idealgas.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
+from idealgas.statistics.estimates import Estimate
 
 
 def some_gas(n=100, seed=1):

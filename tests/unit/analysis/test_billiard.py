@@ -7,8 +7,8 @@ import pytest
 from helpers.logs import log_of
 
 from idealgas.analysis.billiard import UNMIXED
-from idealgas.analysis.core.reach import reach_of
 from idealgas.analysis.registry import analyse
+from idealgas.tallies.reach import reach_of
 
 # Places that discs touch are found within NEAR, 1e-9 of the box: lengths with ten such ends are right within 1e-8.
 pytestmark = pytest.mark.usefixtures("uncompiled")

@@ -11,16 +11,15 @@ import pytest
 from helpers.logs import raised
 from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, analysed, made, only, silent
 
-from idealgas.analysis import registry
-from idealgas.analysis.core import caveats
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import estimates
+from idealgas.analysis import caveats, registry
 from idealgas.analysis.info import info
 from idealgas.analysis.status import status
-from idealgas.analysis.theory.forecast import forecast
 from idealgas.initial.build import make_gas
+from idealgas.presentation.tables import estimates
 from idealgas.report.sections import make_sections
 from idealgas.scene import parse_scene
+from idealgas.statistics.estimates import Estimate
+from idealgas.theory.forecast import forecast
 
 
 def combined(name, *logs):

@@ -7,9 +7,9 @@ import pytest
 from helpers.logs import log_of
 
 from idealgas import escape
-from idealgas.analysis.core.reach import reach_of
 from idealgas.analysis.escape import BILLIARD
-from idealgas.analysis.theory import hard_discs
+from idealgas.tallies.reach import reach_of
+from idealgas.theory import hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 

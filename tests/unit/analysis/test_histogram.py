@@ -8,8 +8,8 @@ import pytest
 from helpers.logs import gas, raised
 
 from idealgas import histogram
-from idealgas.analysis.core.collisions import expected_rates, theory_of
-from idealgas.analysis.core.ensemble import known_ensemble
+from idealgas.tallies.collisions import expected_rates, theory_of
+from idealgas.tallies.equilibrium import known_ensemble
 
 GAS = gas(40, 0.1, (8, 6), "until = 30", temperature=1.5, seed=3)
 

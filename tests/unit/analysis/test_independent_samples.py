@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import signal, stats
 
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.histogram.distribution import distribution_of
 from idealgas.analysis.histogram.samples import independent_samples
-from idealgas.analysis.theory.distributions import WaitingTimeLaw
+from idealgas.statistics.estimates import Estimate
+from idealgas.theory.distributions import WaitingTimeLaw
 
 DISCS, INSTANTS, RUNS = 40, 600, 300
 LEAST_P = 0.001

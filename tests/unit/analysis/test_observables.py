@@ -8,14 +8,14 @@ import pytest
 from helpers.logs import gas, raised
 
 from idealgas import heat_capacity, histogram
-from idealgas.analysis.core.equilibration import measure
-from idealgas.analysis.core.flights import Moments
 from idealgas.analysis.heat_capacity import CLOSED, HeatCapacityAnalysis
 from idealgas.analysis.histogram import QUANTITIES
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.transport.measure import transport
 from idealgas.effects.properties import ActiveEffect, Properties
 from idealgas.scene import Scene
+from idealgas.tallies.equilibration import measure
+from idealgas.tallies.flights import Moments
 
 GAS = gas(100, 0.25, (20.0, 15.0), "collisions_per_disc = 150", speed=1.0, seed=5)
 

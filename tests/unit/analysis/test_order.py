@@ -8,9 +8,9 @@ import pytest
 from helpers.logs import gas, raised
 
 from idealgas import order
-from idealgas.analysis.core.bond_order import bond_order
 from idealgas.analysis.order import FEWEST_FRAMES, FRAMES, WaveVectors
 from idealgas.columns import SIDES
+from idealgas.tallies.bond_order import bond_order
 
 GAS = gas(60, 0.04, (1, 1.2), "collisions_per_disc = 60", periodic="xy", seed=3)
 

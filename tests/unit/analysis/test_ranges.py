@@ -9,10 +9,10 @@ from helpers.small_gases import GAS, PERIODIC, SLIT, TWO, WHOLE, analysed, made,
 
 from idealgas.analysis import registry
 from idealgas.analysis.heat_capacity.fluctuations import energy_series
-from idealgas.analysis.theory.forecast import forecast
-from idealgas.analysis.theory.granular import GranularParameters, cooling_per_collision
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
+from idealgas.theory.forecast import forecast
+from idealgas.theory.granular import GranularParameters, cooling_per_collision
 
 SPIN = "rotation={inertia=0.5, roughness=0}"
 STEEP, COLUMN = ((f"gravity.acceleration=[0, {pull}]", "run.collisions_per_disc=60") for pull in (-5, -0.2))

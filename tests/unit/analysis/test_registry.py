@@ -18,13 +18,13 @@ import idealgas
 from idealgas import analysis as package
 from idealgas import catalogue
 from idealgas.analysis import registry
-from idealgas.analysis.core.analysis import Option
-from idealgas.analysis.core.quantities import ESTIMATE, as_csv, names
-from idealgas.analysis.core.result import Result
-from idealgas.analysis.core.statistics import Estimate
-from idealgas.analysis.core.tables import Number, Table, escape, estimates, html_table
+from idealgas.analysis.analysis import Option
+from idealgas.analysis.result import Result
+from idealgas.presentation.quantities import ESTIMATE, as_csv, names
+from idealgas.presentation.tables import Number, Table, escape, estimates, html_table
 from idealgas.report.sections import make_sections
 from idealgas.scene import load_scene, parse_scene
+from idealgas.statistics.estimates import Estimate
 
 GAS = gas(30, 0.2, (8, 8), "collisions_per_disc = 60", speed=1.0)
 

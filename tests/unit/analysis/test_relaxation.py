@@ -9,8 +9,6 @@ from helpers.crafted import craft, put
 from helpers.logs import gas, log_of, raised, species
 
 from idealgas import open_run, parse_scene, relaxation
-from idealgas.analysis.core.ensemble import ensemble
-from idealgas.analysis.core.statistics import ks_distance
 from idealgas.analysis.relaxation.acceptance import acceptance
 from idealgas.analysis.relaxation.speeds import (
     colliding_span,
@@ -24,6 +22,8 @@ from idealgas.analysis.relaxation.speeds import (
 )
 from idealgas.errors import UserError
 from idealgas.log import open_log
+from idealgas.statistics.estimates import ks_distance
+from idealgas.tallies.equilibrium import ensemble
 
 GAS = gas(80, 0.1, (10, 10), "collisions_per_disc = 60", speed=2.0, seed=5)
 STANDARD_ERRORS = 4

@@ -7,9 +7,9 @@ import pytest
 from helpers.logs import gas, log_of
 
 import idealgas
-from idealgas.analysis.core.equilibration import Window
 from idealgas.analysis.scattering.distinct import distinct_parts
 from idealgas.analysis.scattering.sums import correlation, read, segments
+from idealgas.tallies.equilibration import Window
 
 GAS = gas(30, 0.5, (9, 9), "collisions_per_disc = 600", periodic="xy", mass=2, temperature=1.5, seed=5)
 TEMPERATURE = 1.5 * 60 / 58
@@ -29,7 +29,7 @@ def test_sums_against_states(make, monkeypatch, starts, step):
     monkeypatch.setattr("idealgas.analysis.scattering.sums.STARTS", starts)
     log = make("run.collisions_per_disc=40")
     window = idealgas.analyse(log, "scattering", start=0.0).window
-    monkeypatch.setattr("idealgas.analysis.core.stream.PLACES_AT_ONCE", 300)
+    monkeypatch.setattr("idealgas.tallies.stream.PLACES_AT_ONCE", 300)
     k, lags = 2 * math.pi / 9, 17
     most = len(read(log, window, k, step, lags).at) * 15
     monkeypatch.setattr("idealgas.analysis.scattering.sums.MOST_PLACES", most)

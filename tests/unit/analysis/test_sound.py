@@ -8,7 +8,7 @@ from helpers.logs import gas
 
 from idealgas import sound
 from idealgas.analysis.sound import _amplitudes, _wave, correlations
-from idealgas.analysis.theory.waves import Decay, Fluid, correlation, fit, sound_of_discs
+from idealgas.theory.waves import Decay, Fluid, correlation, fit, sound_of_discs
 
 FLUID = Fluid(speed=2.8, damping=2.5, spreading=2.4, exponent=2.1)
 TIME = np.linspace(0.0, 40.0, 201)

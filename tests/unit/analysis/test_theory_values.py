@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from idealgas.analysis.theory import hard_discs
-from idealgas.analysis.theory.two_discs import two_discs
-from idealgas.analysis.theory.values import BoxTheory, NoTheoryError, Theory, box_theory, crystal, fluid
+from idealgas.theory import hard_discs
+from idealgas.theory.two_discs import two_discs
+from idealgas.theory.values import BoxTheory, NoTheoryError, Theory, box_theory, crystal, fluid
 
 
 @pytest.mark.parametrize("box", [(1.0, 1.0), (1.0, 1.7)])

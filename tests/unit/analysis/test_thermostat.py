@@ -5,12 +5,12 @@ import pytest
 from helpers.logs import gas
 
 from idealgas import evolution, histogram
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.stream import stream
-from idealgas.analysis.core.walls import WallImpulses
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.columns import BATH, Kind
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.stream import stream
+from idealgas.tallies.walls import WallImpulses
 
 GAS = gas(
     40, 0.1, (8, 6), "until = 60", temperature=1.5, seed=3,

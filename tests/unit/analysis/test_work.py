@@ -11,14 +11,14 @@ from helpers.support import ROOT
 import idealgas
 from idealgas import load_scene, simulate
 from idealgas.analysis.registry import find
-from idealgas.analysis.theory.free_energy import log_configurations
-from idealgas.analysis.theory.two_discs import configurations
-from idealgas.analysis.theory.values import Theory
 from idealgas.analysis.work import _pairs
 from idealgas.analysis.work.processes import crossings, process
 from idealgas.columns import Kind
 from idealgas.initial.build import make_gas
 from idealgas.scene import parse_scene
+from idealgas.theory.free_energy import log_configurations
+from idealgas.theory.two_discs import configurations
+from idealgas.theory.values import Theory
 
 SCENE = ROOT / "configs" / "work.toml"
 

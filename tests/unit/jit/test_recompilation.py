@@ -148,7 +148,7 @@ def watched(name, *rest):
     compiled.append(name)
     save(name, *rest)
 files.save = watched
-from idealgas.analysis.core import autoregression
+from idealgas.statistics import autoregression
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
 sets = []
@@ -176,7 +176,7 @@ def test_an_edit_of_the_package_compiles_what_depends_on_it(tmp_path):
         return json.loads(run_copy(RUNS, tmp_path, NUMBA_DISABLE_JIT="0"))
 
     plain, vibrating, analysis = run()
-    kernel = "idealgas.analysis.core.autoregression._go_on"
+    kernel = "idealgas.statistics.autoregression._go_on"
     assert plain
     assert set(vibrating) <= set(plain)
     assert analysis == [kernel]
@@ -186,5 +186,5 @@ def test_an_edit_of_the_package_compiles_what_depends_on_it(tmp_path):
     assert run() == [[], [], []]
     edit(folder, "physics/vibration.py", "MOST_PARABOLAS = 64", "MOST_PARABOLAS = 65")
     assert run() == [[], ["idealgas.engine.event_driven.kernel.advance_events"], []]
-    edit(folder, "analysis/core/autoregression.py", "total = 0.0", "total = 0.0 * p")
+    edit(folder, "statistics/autoregression.py", "total = 0.0", "total = 0.0 * p")
     assert run() == [[], [], [kernel]]

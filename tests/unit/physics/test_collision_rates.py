@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from helpers.rounding import gamma
 
-from idealgas.analysis.theory.hard_discs import collision_rate, mean_relative_speed
 from idealgas.physics.collision_rates import (
     collisions_per_length,
     contact_value,
     disc_collisions_per_length,
     mean_trial_time,
 )
+from idealgas.theory.hard_discs import collision_rate, mean_relative_speed
 
 pytestmark = pytest.mark.interpreted
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 
-from idealgas.analysis.core.style import panels
+from idealgas.presentation.style import panels
 from idealgas.report.picture import html_pictures
 
 

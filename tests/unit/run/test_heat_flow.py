@@ -5,12 +5,12 @@ import pytest
 from helpers.log_compare import contents, differences
 from helpers.support import refused
 
-from idealgas.analysis.core.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents
-from idealgas.analysis.core.stream import stream
 from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
+from idealgas.tallies.currents import CARRIED, HEAT_X, HEAT_Y, PASSED_ON, Currents
+from idealgas.tallies.stream import stream
 
 GAS = """
 scene.seed = 3

@@ -5,9 +5,6 @@ import pytest
 from helpers.log_compare import differences, scene_of
 from helpers.support import logged, refused
 
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.samples import SampledImpacts
-from idealgas.analysis.core.stream import stream
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.status import status
 from idealgas.errors import UserError
@@ -15,6 +12,9 @@ from idealgas.log import open_log
 from idealgas.run.resume import resume
 from idealgas.run.simulate import simulate
 from idealgas.scene import parse_scene
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.samples import SampledImpacts
+from idealgas.tallies.stream import stream
 
 pytestmark = pytest.mark.slow
 

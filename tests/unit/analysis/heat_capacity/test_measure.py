@@ -8,7 +8,6 @@ from helpers.logs import gas, log_of
 from scipy.signal import lfilter
 
 from idealgas import heat_capacity
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.heat_capacity import BATH, CLOSED, PISTON, HeatCapacityAnalysis, Measured
 from idealgas.analysis.heat_capacity.fluctuations import (
     LEAST_SAMPLES,
@@ -18,6 +17,7 @@ from idealgas.analysis.heat_capacity.fluctuations import (
     expected_capacity,
     kinetic_fluctuations,
 )
+from idealgas.statistics.estimates import Estimate
 
 N = 20
 

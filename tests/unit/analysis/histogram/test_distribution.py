@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from helpers.logs import raised
 
-from idealgas.analysis.core.statistics import Estimate, ks_p_value, ratio
 from idealgas.analysis.histogram.distribution import distribution_of
 from idealgas.analysis.histogram.intervals import _third, _variance
-from idealgas.analysis.theory.distributions import UniformLaw
+from idealgas.statistics.estimates import Estimate, ks_p_value, ratio
+from idealgas.theory.distributions import UniformLaw
 
 pytestmark = pytest.mark.interpreted
 

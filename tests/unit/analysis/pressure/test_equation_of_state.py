@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from idealgas.analysis.core.quantities import as_csv
-from idealgas.analysis.core.result import Origin
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
 from idealgas.analysis.pressure.tables import pressure_tables
-from idealgas.analysis.theory import hard_discs
+from idealgas.analysis.result import Origin
+from idealgas.presentation.quantities import as_csv
+from idealgas.statistics.estimates import Estimate
+from idealgas.theory import hard_discs
 
 
 def samples(phis, error, number=1000, runs=4, seed=0):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from helpers.logs import PERIODIC, gas, raised
 
-from idealgas.analysis.core.statistics import Estimate
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
 from idealgas.analysis.pressure.figure import pressure_figure
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.mechanical import WallPressure
 from idealgas.analysis.pressure.tables import _on_walls, _unlike, pressure_tables
+from idealgas.statistics.estimates import Estimate
 
 UP = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
 GAS = gas(30, 0.1, (8, 6), "until = 40", temperature=1.5, seed=3)

@@ -6,7 +6,7 @@ from helpers.support import gas_of
 
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.analysis.pressure.routes import WALLS, _across, _average, _on_sides, _reach
-from idealgas.analysis.theory.values import Theory
+from idealgas.theory.values import Theory
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 

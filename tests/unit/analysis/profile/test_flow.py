@@ -7,7 +7,7 @@ import pytest
 
 from idealgas.analysis.profile.flow import LAW, expected_flow
 from idealgas.analysis.profile.strips import collect
-from idealgas.analysis.theory import hard_discs
+from idealgas.theory import hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 

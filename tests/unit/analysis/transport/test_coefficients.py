@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from helpers.logs import PERIODIC, gas, log_of, species, streamed
 
-from idealgas.analysis.core.currents import APART_X, CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
-from idealgas.analysis.core.flights import Moments
-from idealgas.analysis.core.impacts import Impacts
-from idealgas.analysis.core.stream import stream
 from idealgas.analysis.transport.coefficients import _coefficients, flow_in_samples
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import WALLS, transport_tables
+from idealgas.tallies.currents import APART_X, CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
+from idealgas.tallies.flights import Moments
+from idealgas.tallies.impacts import Impacts
+from idealgas.tallies.stream import stream
 
 GAS = gas(12, 0.3, (6, 5), "collisions_per_disc = 60", periodic="xy", temperature=1.0, seed=3)
 HEAVY = species("heavy", 3, 0.4, mass=2.5)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from helpers.logs import PERIODIC, gas, log_of
 
-from idealgas.analysis.core.stream import sample_trajectories
 from idealgas.analysis.transport.correlations import correlation, mean_square_displacement, velocity_integral
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.pair_distribution import chance_within
+from idealgas.tallies.stream import sample_trajectories
 
 GAS = gas(12, 0.3, (6, 5), "collisions_per_disc = 60", seed=3)
 SQUARE = gas(30, 0.3, (9, 9), "collisions_per_disc = 16_000", periodic="xy", seed=3)

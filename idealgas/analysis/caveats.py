@@ -1,0 +1,169 @@
+"""Caveats of results: conditions of a number that are not met.
+
+An analysis tests its own conditions and puts one sentence per unmet condition into its result (`Result`). This module
+contains the caveats that all analyses share, and those of several logs together.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from idealgas.analysis.result import Origin, Result
+from idealgas.errors import UserError
+from idealgas.log import Log
+from idealgas.scene import Scene
+from idealgas.scene.scene import describe_gas, draws_random_numbers, gas_digest, gas_kind, is_mixture, run_digest
+from idealgas.tallies.equilibration import Window
+from idealgas.tallies.exchange import INDEPENDENT
+from idealgas.theory import conserved, time_steps
+
+Sample = TypeVar("Sample", bound=Any)
+
+MOST = 6
+"""Largest number of caveats of single logs that are kept if many logs are combined."""
+
+NAMED = 3
+"""Largest number of logs that one sentence lists."""
+
+WIDE, WIDE_PERIODIC = 20.0, 5.0
+"""Width of a wide box between walls, which occupy a twentieth of it, and of a wide periodic box, in diameters."""
+
+
+def of_log(log: Log) -> tuple[str, ...]:
+    """Return the caveats of every time average of a log: those of its gas and of its simulation method."""
+    return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
+
+
+def of_paths(log: Log, window: Window) -> tuple[str, ...]:
+    """Return a caveat if discs hardly collide with each other, so that only walls mix their paths."""
+    times, collisions = log.observables["disc_collisions"]
+    among = np.diff(np.interp((window.start, window.end), times, collisions))
+    if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
+        return ()
+    return (
+        f"Discs hardly collide with each other ({each:.2g} times each in the window): each disc keeps its energy, "
+        "and averages are over its path between walls. Standard errors are too small if paths stay alike for long.",
+    )
+
+
+def of_window(window: Window) -> tuple[str, ...]:
+    """Return a caveat if the window is too short for the slowest exchange in its gas."""
+    time, process = window.slowest
+    if window.duration >= INDEPENDENT * time:
+        return ()
+    return (
+        f"This gas relaxes slowly: {process} in t = {time:.2g}, and the window is only {window.duration / time:.2g} "
+        "times as long. Standard errors may be up to 3 times too small; they are right if the window is "
+        f"{INDEPENDENT:g} times as long.",
+    )
+
+
+def origin_of(scene: Scene, path: str) -> Origin:
+    """Return the origin of a run of a scene; path: path of its log, or another name for it."""
+    seed = scene.scene.seed if draws_random_numbers(scene) else None
+    return Origin(
+        path,
+        run_digest(scene),
+        gas_digest(scene),
+        describe_gas(scene),
+        gas_kind(scene),
+        is_mixture(scene),
+        seed,
+        scene.scene.title or path,
+    )
+
+
+def title_of(results: Sequence[Result]) -> str:
+    """Return the title of the figure of one or several runs: their titles, or their number."""
+    titles = list(dict.fromkeys(r.title for r in results))
+    if len(titles) > NAMED:
+        return f"{len(results)} runs"
+    runs = f" ({len(results)} runs)" if len(results) > len(titles) else ""
+    return ", ".join(titles) + runs
+
+
+def of_several(results: Sequence[Result]) -> tuple[str, ...]:
+    """Return the caveats of single logs, each once, with the paths of the logs that it concerns; at most MOST."""
+    if len(results) == 1:
+        return results[0].caveats
+    whose: dict[str, list[str]] = {}
+    for result in results:
+        for sentence in result.caveats:
+            whose.setdefault(sentence, []).extend([result.origin.path] if result.origin else [])
+    sentences = [f"{named(paths)}: {sentence}" if paths else sentence for sentence, paths in whose.items()]
+    if len(sentences) > MOST:
+        sentences[MOST:] = [f"{len(sentences) - MOST} more caveats are reported with the single logs."]
+    return tuple(sentences)
+
+
+def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
+    """Return caveats on the independence of runs that are averaged.
+
+    Raises:
+        UserError: if a run is given twice: the same log, a copy of it, or another log of the same scene and seed.
+    """
+    runs: dict[str, Origin] = {}
+    seeds: dict[int, list[str]] = {}
+    for origin in (r.origin for r in results if r.origin is not None):
+        if (first := runs.setdefault(origin.run, origin)) is not origin:
+            if origin.path == first.path:
+                raise UserError(f"{origin.path}: given twice")
+            raise UserError(f"{origin.path}: the same run as {first.path} (same scene and seed)")
+        if origin.seed is not None:
+            seeds.setdefault(origin.seed, []).append(origin.path)
+    return tuple(
+        f"Runs with the same seed ({seed}) may start alike, and their errors are then not independent: {named(paths)}. "
+        "Give each run a different seed."
+        for seed, paths in seeds.items()
+        if len(paths) > 1
+    )
+
+
+def must_be_one_gas(results: Sequence[Result], message: str = "different gases") -> None:
+    """Raise UserError, with a message that starts with `message`, if results are of different gases."""
+    if len(gases := {r.origin.gas: r.origin.words for r in results if r.origin is not None}) > 1:
+        raise UserError(f"{message} ({'; '.join(gases.values())}): analyse them separately")
+
+
+def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
+    """Return the kind of gas in words (empty if unknown) and the runs of each state, in order of φ."""
+    states: dict[tuple[float, int, str], list[Sample]] = {}
+    for sample in samples:
+        kind = sample.origin.kind if sample.origin else ""
+        states.setdefault((round(sample.packing_fraction, 9), sample.number, kind), []).append(sample)
+    return [(kind, runs) for (_, _, kind), runs in sorted(states.items())]
+
+
+def seeds_of(runs: Iterable[Result]) -> tuple[int, ...]:
+    """Return the seeds of runs in increasing order, each once; runs that draw no random numbers have none."""
+    return tuple(sorted({run.origin.seed for run in runs if run.origin and run.origin.seed is not None}))
+
+
+def name_of_state(packing_fraction: float, number: int, kind: str, seeds: Sequence[int]) -> str:
+    """Return the name of a state of a gas: φ, N, the seeds of its runs and the kind of gas."""
+    last = f" to {seeds[-1]}" if len(seeds) > NAMED else ""
+    listed = f"{seeds[0]}{last}" if last else ", ".join(map(str, seeds))
+    of_seeds = [f"seed{'s' * (len(seeds) > 1)} {listed}"] if seeds else []
+    return ", ".join([f"φ = {packing_fraction:.9g}", f"N = {number}", *of_seeds, *filter(None, [kind])])
+
+
+def named(paths: Sequence[str]) -> str:
+    """Return paths on one line; long lists are cut: 'a, b, c and 5 more'."""
+    rest = len(paths) - NAMED
+    return ", ".join(paths[:NAMED]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def narrow(log: Log) -> tuple[str, ...]:
+    """Return a caveat if the box is too narrow for theory of a wide one; none for discs without positions."""
+    if not log.has_positions:
+        return ()
+    diameter = 2 * float(log.discs.radius.max())
+    for size, periodic in zip(log.box, log.periodic, strict=True):
+        if size < (WIDE_PERIODIC if periodic else WIDE) * diameter:
+            between = "to its own image" if periodic else "between walls"
+            return (
+                f"The box is {size / diameter:.3g} diameters wide {between}; theory assumes a wide box "
+                f"({WIDE:g} diameters between walls, {WIDE_PERIODIC:g} if periodic).",
+            )
+    return ()

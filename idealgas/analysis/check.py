@@ -1,0 +1,256 @@
+"""Agreement of measurement and theory: one rule for headlines, checks, JSON and report pages.
+
+Measurement and theory differ if a difference is larger than Student's t allows, given the number of rows. They agree if
+no row differs, provided that the samples could have revealed a difference; otherwise there are too few samples.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
+
+from idealgas.fields import OMITTED, Key, as_dict, reported
+from idealgas.presentation.tables import Cell, Number, Table
+from idealgas.statistics.estimates import Estimate
+
+FALSE_ALARM = 1e-3
+"""Probability that a correct gas differs from theory in any row of a comparison, whatever the number of rows."""
+
+POWER = 0.95
+"""Probability that a comparison finds the smallest error that it reports as detectable."""
+
+FEWEST = 5.0
+"""Smallest number of independent samples of an estimate that can agree with theory."""
+
+FEWEST_OF_LAW = 30.0
+"""Smallest number of independent samples that can agree with a law; one in twenty then has a distance above 0.24."""
+
+ROUGH = 20.0
+"""Number of samples below which it is printed with a deviation, as Student's t then differs from a normal law."""
+
+NAMED = 3
+"""Largest number of rows with too few samples that a sentence lists."""
+
+VERDICTS = {True: "agrees", False: "differs", None: "too few samples"}
+
+
+class PValue(NamedTuple):
+    """Probability that samples of a law deviate from it by at least as much, and the number of independent samples."""
+
+    value: float
+    samples: float
+
+    def agrees(self, rows: int) -> bool | None:
+        """Return whether the samples agree with the law, in a comparison of `rows` rows; None if they are too few."""
+        if self.value < FALSE_ALARM / rows:
+            return False
+        return True if self.samples >= FEWEST_OF_LAW else None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One row of a comparison: a measured quantity with its theory, all in the unit of the quantity.
+
+    Attributes:
+        name: name of the quantity.
+        source: name of the theory.
+        estimate: measurement and theory.
+        rows: number of rows that are compared together.
+    """
+
+    name: str
+    source: str
+    estimate: Estimate
+    rows: Annotated[int, OMITTED] = 1
+
+    @property
+    @reported
+    def difference(self) -> float:
+        """Measurement minus theory."""
+        assert self.estimate.theory is not None
+        return self.estimate.value - self.estimate.theory
+
+    @property
+    @reported
+    def allowed(self) -> float:
+        """Largest difference without an alarm; a correct gas exceeds it with a probability of FALSE_ALARM / rows.
+
+        It is the root of the sum of two squares: by Student's t for the standard error, and by the normal distribution
+        for the error of theory. It is exact for either error alone, and exceeded less often for both.
+        """
+        from scipy import special
+
+        return math.hypot(self._by_student, special.ndtri(1 - self._false_alarm / 2) * self.estimate.theory_error)
+
+    @property
+    @reported
+    def detectable(self) -> float:
+        """Smallest error of the measurement that the comparison finds with a probability of POWER.
+
+        It is from the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
+        """
+        return self.allowed + self._margin(self.estimate.theory_error)
+
+    @property
+    @reported
+    def agrees(self) -> bool | None:
+        """Whether measurement and theory agree; None if there are too few samples for a verdict.
+
+        There are too few if there is no error bar, if there are fewer than FEWEST samples, or if they would not reveal
+        an error as large as a nonzero value of the theory.
+        """
+        deviation, theory = self.estimate.deviation, self.estimate.theory
+        if deviation is None or not math.isfinite(deviation):
+            return None
+        if abs(self.difference) > self.allowed:
+            return False
+        resolved = not theory or self._by_student + self._margin(0.0) <= abs(theory)
+        return True if resolved and self.estimate.independent_samples >= FEWEST else None
+
+    @property
+    def _false_alarm(self) -> float:
+        return FALSE_ALARM / self.rows
+
+    @property
+    def _freedom(self) -> float:
+        return max(self.estimate.independent_samples - 1, 1.0)
+
+    @property
+    def _by_student(self) -> float:
+        from scipy import special
+
+        return float(special.stdtrit(self._freedom, 1 - self._false_alarm / 2)) * self.estimate.standard_error
+
+    def _margin(self, theory_error: float) -> float:
+        """Return the part of a difference beyond the allowed one that chance hides with a probability of 1 - POWER."""
+        from scipy import special
+
+        of_allowed = self._by_student / math.sqrt(2 * self._freedom)
+        return float(special.ndtri(POWER)) * math.hypot(self.estimate.standard_error, theory_error, of_allowed)
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """Result of a check of measurement against theory.
+
+    Attributes:
+        compared: compared rows.
+        why_not: why theory has no value, as part of a sentence; None if it has one.
+    """
+
+    compared: tuple[Comparison, ...] = ()
+    why_not: Annotated[str | None, Key("no_theory")] = None
+
+    @property
+    @reported
+    def agrees(self) -> bool | None:
+        """Whether measurement and theory agree in all rows with enough samples; None without such rows."""
+        verdicts = {row.agrees for row in self.compared}
+        return False if False in verdicts else True if True in verdicts else None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values by name, ready for JSON."""
+        return as_dict(self)
+
+    def tables(self) -> list[Table]:
+        """Return the table of the comparisons; none without theory."""
+        heads = ("", "compared with", "difference", "allowed ±", "detectable", "verdict")
+        rows: list[Sequence[Cell]] = []
+        for row in self.compared:
+            compared = f"{row.estimate.theory:.6g}: {row.source}", Number(row.difference, "+.2g")
+            limits = (Number(x if math.isfinite(x) else None, ".2g") for x in (row.allowed, row.detectable))
+            rows.append((row.name, *compared, *limits, VERDICTS[row.agrees]))
+        return [Table("Check: difference between measurement and theory", heads, rows)] if rows else []
+
+    def __str__(self) -> str:
+        """Return the result in sentences."""
+        if not self.compared:
+            return f"Theory is not available: {self.why_not}."
+        failed = [row.name for row in self.compared if row.agrees is False]
+        if self.agrees is None:
+            verdict = "Too few samples to tell whether measurement and theory agree"
+        else:
+            verdict = "Measurement and theory " + (f"do not agree in {'; '.join(failed)}" if failed else "agree")
+        return (
+            f"{verdict}. A correct gas fails this check with a probability of {FALSE_ALARM:g}; an error of the "
+            f"detectable size is found with {POWER:.0%}."
+        )
+
+
+def check_theory(found: Iterable[tuple[str, str | None, Estimate]], why_not: str | None = None) -> CheckResult:
+    """Check that every estimate with a theory agrees with it.
+
+    Args:
+        found: name, name of the theory, and value of each estimate.
+        why_not: why theory has no value, for the case that no estimate has a theory.
+    """
+    known = [(name, source or "theory", value) for name, source, value in found if value.theory is not None]
+    compared = tuple(Comparison(name, source, value, len(known)) for name, source, value in known)
+    return CheckResult(compared, None if compared else why_not)
+
+
+def agreement(
+    found: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", why_not: str | None = None
+) -> str:
+    """Return whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
+
+    Args:
+        found: estimates, or tests of laws, by name; if there are several, the one that deviates most is named.
+        theory: name of the theory.
+        why_not: why theory has no value, as part of a sentence.
+    """
+    known = [(name, item) for name, item in found if isinstance(item, PValue) or item.theory is not None]
+    if not known:
+        return f"theory is not available: {why_not}" if why_not else "theory is not available"
+    rows = [_row(name, theory, item, len(known)) for name, item in known]
+    rows = [row for row in rows if row.shown] or rows
+    differing, agreeing, few = ([row for row in rows if row.agrees is verdict] for verdict in (False, True, None))
+    if len(rows) == 1:
+        ((_, agrees, _, shown, value),) = rows
+        beside = ", ".join(filter(None, (value, shown)))
+        if not shown:
+            return f"no error bar to compare it with {theory} ({value})"
+        if agrees is None:
+            return f"too few samples to tell whether it agrees with {theory} ({beside})"
+        return f"{'agrees with' if agrees else 'differs from'} {theory} ({beside})"
+    if not differing and not agreeing:
+        return f"too few samples to tell whether they agree with {theory}"
+    worst = max(differing or agreeing, key=lambda row: row.size)
+    most = f"largest deviation {worst.shown}, {worst.name}"
+    if differing:
+        return (
+            f"{len(differing)} of {len(rows)} {'differs' if len(differing) == 1 else 'differ'} from {theory} ({most})"
+        )
+    if not few:
+        return f"{'both' if len(rows) == 2 else f'all {len(rows)}'} agree with {theory} ({most})"
+    undecided = ", ".join(row.name for row in few) if len(few) <= NAMED else f"{len(few)} of them"
+    number = f"{len(agreeing)} of {len(rows)} {'agrees' if len(agreeing) == 1 else 'agree'}"
+    return f"{number} with {theory} ({most}), too few samples for a verdict on {undecided}"
+
+
+class _Row(NamedTuple):
+    """Verdict on a row.
+
+    name: name of the row. agrees: whether it agrees. size: its deviation. shown: the deviation in words. value: value
+    of theory.
+    """
+
+    name: str
+    agrees: bool | None
+    size: float
+    shown: str
+    value: str
+
+
+def _row(name: str, theory: str, result: Estimate | PValue, rows: int) -> _Row:
+    from scipy import special
+
+    if isinstance(result, PValue):
+        size = -float(special.ndtri(result.value / 2))
+        return _Row(name, result.agrees(rows), size, f"p = {result.value:.2g}", "")
+    agrees, deviation = Comparison(name, theory, result, rows).agrees, result.deviation
+    value, samples = f"{result.theory:.5g}", result.independent_samples
+    if deviation is None:
+        return _Row(name, agrees, 0.0, "", value)
+    few = f" of {samples:.0f} samples" if samples < ROUGH else ""
+    return _Row(name, agrees, abs(deviation), f"{deviation:+.1f}σ{few}".replace("-", "−"), value)

@@ -1,1 +1,0 @@
-"""Common parts of all analyses: reading a log in blocks, windows of time, statistics, tables and style of figures."""

@@ -1,1 +1,0 @@
-"""Theory of hard discs: equations of state, rates, distributions, and forecasts for a scene."""

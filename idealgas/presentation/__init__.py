@@ -1,0 +1,1 @@
+"""Tables, names of quantities and the style of figures."""

@@ -1,0 +1,1 @@
+"""Estimates with standard errors from series of numbers."""

@@ -1,0 +1,148 @@
+"""Times in which heat, discs and energy are exchanged across a gas or through its inner pistons, by kinetic theory.
+
+Differences between parts of a gas decay in its slowest wave, and its states are independent only after this decay. A
+log that contains few such times does not show how far a profile or a temperature fluctuates.
+"""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from idealgas.log import Log
+from idealgas.statistics.estimates import Estimate
+from idealgas.theory import adiabatic_piston, hard_discs, waves
+from idealgas.theory.conserved import are_fixed, centre_of_mass_energy
+from idealgas.theory.ensemble import classes
+
+INDEPENDENT = 42.0
+"""Number of times of the slowest exchange that a window must contain for errors to be right (to 10 %)."""
+
+
+class Exchange(NamedTuple):
+    """An exchange within a gas.
+
+    Attributes:
+        time: time after which states are independent, at least twice the correlation time; 0 without an exchange.
+        process: description of the process in words.
+    """
+
+    time: float
+    process: str
+
+
+NOTHING = Exchange(0.0, "")
+"""No slow exchange."""
+
+
+def across(log: Log, axis: int) -> Exchange:
+    """Return the slowest exchange of heat or, in a mixture, of discs across the box along an axis.
+
+    In the time L²/2D diffusion spreads by the length L (rms), where D is the thermal diffusivity or the diffusion
+    coefficient by Enskog's theory. L is the distance between walls, which is half of the longest wave, or half of the
+    length of a periodic box. The longest wave has a correlation time L²/π²D. Densities and temperatures of strips
+    contain all of it, most of all beside walls, where its amplitude is largest: errors there have the fewest degrees of
+    freedom. A mixture conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs
+    diffuse.
+    """
+    gas, temperature = log.discs, _temperature(log)
+    moving = ~are_fixed(gas.mass)
+    if not temperature > 0 or not gas.packing_fraction > 0 or not gas.radius[moving].any():
+        return NOTHING
+    fraction = min(gas.packing_fraction, hard_discs.HIGHEST)
+    diameter = 2 * math.sqrt(fraction * gas.area / (math.pi * float(moving.sum())))
+    fluid = waves.sound_of_discs(fraction, temperature, float(gas.mass[moving].mean()), diameter)
+    slowest, carried = fluid.spreading, "heat crosses"
+    discs = classes(gas)
+    if len(discs.name) > 1:
+        rate = hard_discs.mixture_collision_rate(discs.radius, discs.mass, discs.number, gas.area, temperature)
+        friction = (2 * discs.mass / (discs.mass[:, None] + discs.mass) * rate).sum(axis=1)
+        diffusion = (temperature / (discs.mass * friction))[~are_fixed(discs.mass)].min()
+        if diffusion < slowest:
+            slowest, carried = float(diffusion), "discs diffuse across"
+    length = log.box[axis] / (2 if log.periodic[axis] else 1)
+    return Exchange(length**2 / (2 * slowest), f"{carried} the box along {'xy'[axis]}")
+
+
+def through_pistons(log: Log) -> Exchange:
+    """Return the slowest exchange of energy between gases through inner pistons that have a mass."""
+    if (gases := _gases_in_a_row(log)) is None:
+        return NOTHING
+    rate = adiabatic_piston.slowest_rate(gases.conductance, gases.capacity)
+    return Exchange(2 / rate, "energy crosses the inner pistons") if rate > 0 else NOTHING
+
+
+def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: float) -> Estimate:
+    """Return the mean temperature of a part of a gas with an error that includes the exchange through pistons.
+
+    If the window is shorter than INDEPENDENT times the exchange, the error is at least that by theory. Gases of equal
+    pressure with a fixed total energy have temperatures with variances T² (1/C - 1/ΣC), where C are their heat
+    capacities at constant pressure; the temperatures are correlated over the time of the exchange.
+
+    Args:
+        estimate: mean over a window, with its error by the fluctuations in the window, energy.
+        log: log of the gas.
+        discs: (N,), whether a disc belongs to the part.
+        duration: duration of the window, time.
+    """
+    time, gases = through_pistons(log).time, _gases_in_a_row(log)
+    if gases is None or not log.scene.properties.isolated or duration >= INDEPENDENT * time:
+        return estimate
+    held = gases.capacity > 0
+    share = np.bincount(gases.chamber[discs], minlength=len(held))[held] / np.count_nonzero(discs)
+    capacity, memory = gases.capacity[held], time / 2 / duration
+    variance = max(float((share**2 / capacity).sum() - 1 / capacity.sum()), 0.0) * gases.temperature**2
+    error = math.sqrt(variance * 2 * memory * (1 + memory * math.expm1(-1 / memory)))
+    if error <= estimate.standard_error:
+        return estimate
+    return replace(estimate, standard_error=error, independent_samples=math.inf, blocks=())
+
+
+class _Gases(NamedTuple):
+    """Gases in a row with pistons between them.
+
+    Attributes:
+        chamber: (N,), number of the gas of each disc.
+        conductance: (K,), conductance of each piston, 1/time.
+        capacity: (K + 1,), heat capacities of the gases at constant pressure.
+        temperature: mean temperature of all discs, energy.
+    """
+
+    chamber: np.ndarray
+    conductance: np.ndarray
+    capacity: np.ndarray
+    temperature: float
+
+
+def _gases_in_a_row(log: Log) -> _Gases | None:
+    """Return the gases beside the inner pistons that have a mass; None without such pistons, and for discs at rest."""
+    pistons, temperature = log.scene.piston, _temperature(log)
+    inner = [k for k, piston in enumerate(pistons) if piston.inner and piston.mass]
+    if not inner or not temperature > 0:
+        return None
+    gas, axis = log.discs, pistons[inner[0]].axis
+    places = log.observables["piston_position"][1].mean(axis=0)
+    ends = [0.0, log.box[axis]]
+    for piston, place in zip(pistons, places.tolist(), strict=True):
+        if not piston.inner and piston.axis == axis:
+            ends[int(piston.outward > 0)] = place
+    cuts = np.array([ends[0], *places[inner], ends[1]])
+    chamber = np.searchsorted([pistons[k].start(log.box) for k in inner], gas.position[:, axis])
+    number, solid = (np.bincount(chamber, weight, len(cuts) - 1) for weight in (None, math.pi * gas.radius**2))
+    fraction = np.clip(solid / (np.diff(cuts) * log.box[1 - axis]), 0.0, hard_discs.HIGHEST)
+    z = hard_discs.compressibility_factor(fraction)
+    force = (z * temperature / np.diff(cuts))[chamber]  # for each disc
+    conductance = np.zeros(len(inner))
+    for k, piston in enumerate(inner):
+        each = adiabatic_piston.conductance(temperature, temperature, force, gas.mass, pistons[piston].mass or 0.0)
+        low, high = np.bincount(chamber, each, len(cuts) - 1)[k : k + 2]
+        conductance[k] = low * high / (low + high)
+    return _Gases(chamber, conductance, number * (1 + z), temperature)
+
+
+def _temperature(log: Log) -> float:
+    """Return the mean kinetic energy of a moving disc over the whole log, energy."""
+    moving = int((~are_fixed(log.discs.mass)).sum())
+    energies = log.observables["kinetic_energy"][1]
+    return float(energies.mean() - centre_of_mass_energy(log.scene, log.discs)) / moving if len(energies) else 0.0

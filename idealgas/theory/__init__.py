@@ -1,0 +1,1 @@
+"""Theory of the gas, by formulas alone: no log is read here."""
