@@ -90,7 +90,7 @@ def collide_and_record(a, b, a_id, b_id, images, before, shear, dissipated, effe
     energy = 0.0
     if dissipated is not None:
         energy = energy_of(a, a_id, effects.rotation) + energy_of(b, b_id, effects.rotation)
-    collide(a, b, a_id, b_id, images, effects)
+    collide(a, b, a_id, b_id, images, effects.rotation, effects.periodic, effects)
     if dissipated is not None:
         energy -= energy_of(a, a_id, effects.rotation) + energy_of(b, b_id, effects.rotation)
         add(dissipated[U(0)], energy)

@@ -135,23 +135,17 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 
 @inline
-def line_of_centres(a, b, periodic, images):
-    """Position (x, y) of disc a relative to the image of disc b that it touches, length; both are at the same time."""
-    x, y = a.x - b.x, a.y - b.y
-    if periodic is not None:
-        x, y = shift_by_images(x, y, periodic, images)
-        x, _ = less_offset(x, a.vx, a.t, periodic.shear, images)
-    return x, y
-
-
-@inline
-def collide(a, b, a_id, b_id, images, effects):
+def collide(a, b, a_id, b_id, images, rotation, periodic, effects):
     """Collide two discs whose records are at the time of contact; their velocities and spins change.
 
     If sides are sheared, the velocities must be those in the common frame.
     """
-    x, y = line_of_centres(a, b, effects.periodic, images)
-    tangential_impulse(a, b, a_id, b_id, x, y, effects.rotation)
+    x, y = a.x - b.x, a.y - b.y
+    if periodic is not None:
+        x, y = shift_by_images(x, y, periodic, images)
+        x, _ = less_offset(x, a.vx, a.t, periodic.shear, images)
+    if rotation is not None:
+        tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     factor = restitution_factor(effects.restitution, a_id, b_id, a.t)
     a.vx, a.vy, b.vx, b.vy = velocities_after(a, b, x, y, a.vx - b.vx, a.vy - b.vy, factor)
 

@@ -43,22 +43,21 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
 
     x, y: position of a relative to b, length.
     """
-    if rotation is not None:
-        u = np.uintp(a_id)
-        w = np.uintp(b_id)
-        distance = math.sqrt(x * x + y * y)
-        tx = y / distance  # t = z × n with n = -(x, y)/distance, from a to b
-        ty = -x / distance
-        slip = (a.vx - b.vx) * tx + (a.vy - b.vy) * ty + (a.r * rotation.omega[u] + b.r * rotation.omega[w])
-        a_mobility = 1.0 / a.m + a.r * a.r / rotation.inertia[u]
-        b_mobility = 1.0 / b.m + b.r * b.r / rotation.inertia[w]
-        factor = 1.0 + rotation.roughness
-        impulse = -factor * slip / (a_mobility + b_mobility)
-        a_excess, a_work = _rounding(a, u, tx, ty, impulse, factor, rotation)
-        b_excess, b_work = _rounding(b, w, -tx, -ty, impulse, factor, rotation)
-        c = correction(a_excess + b_excess, a_work + b_work)
-        _apply(a, u, tx, ty, impulse, c, rotation)
-        _apply(b, w, -tx, -ty, impulse, c, rotation)
+    u = np.uintp(a_id)
+    w = np.uintp(b_id)
+    distance = math.sqrt(x * x + y * y)
+    tx = y / distance  # t = z × n with n = -(x, y)/distance, from a to b
+    ty = -x / distance
+    slip = (a.vx - b.vx) * tx + (a.vy - b.vy) * ty + (a.r * rotation.omega[u] + b.r * rotation.omega[w])
+    a_mobility = 1.0 / a.m + a.r * a.r / rotation.inertia[u]
+    b_mobility = 1.0 / b.m + b.r * b.r / rotation.inertia[w]
+    factor = 1.0 + rotation.roughness
+    impulse = -factor * slip / (a_mobility + b_mobility)
+    a_excess, a_work = _rounding(a, u, tx, ty, impulse, factor, rotation)
+    b_excess, b_work = _rounding(b, w, -tx, -ty, impulse, factor, rotation)
+    c = correction(a_excess + b_excess, a_work + b_work)
+    _apply(a, u, tx, ty, impulse, c, rotation)
+    _apply(b, w, -tx, -ty, impulse, c, rotation)
 
 
 @inline

@@ -30,7 +30,7 @@ def contact_under_gravity(discs):
 
 @njit
 def collide_them(discs):
-    collide(discs[0], discs[1], 0, 1, (0, 0), Effects())
+    collide(discs[0], discs[1], 0, 1, (0, 0), None, None, Effects())
 
 
 def pair(a, b):
@@ -163,6 +163,6 @@ def test_the_line_of_centres_has_the_sine_of_the_offset(offset):
 def test_a_head_on_contact_of_equal_discs_exchanges_the_velocities():
     record = two_discs((2.0, 1.0), (-1.0, 0.5), masses=(1.0, 1.0))
     random_contact(record[0], record[1], 0.0)
-    collide(record[0], record[1], 0, 1, NO_IMAGES, Effects())
+    collide(record[0], record[1], 0, 1, NO_IMAGES, None, None, Effects())
     assert (record[0].vx, record[0].vy) == pytest.approx((-1.0, 0.5), abs=1e-15)
     assert (record[1].vx, record[1].vy) == pytest.approx((2.0, 1.0), abs=1e-15)

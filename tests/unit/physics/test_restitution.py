@@ -51,7 +51,7 @@ def test_discs_part_with_e_times_their_approach():
             a = body(x=5.0, y=4.0, vx=v[0], vy=v[1], r=0.5, m=masses[0], t=9.0)
             b = body(x=5.0 + np.cos(angle), y=4.0 + np.sin(angle), vx=v[2], vy=v[3], r=0.5, m=masses[1], t=9.0)
             before = copy_of(a), copy_of(b)
-            collide(a, b, 0, 1, NO_IMAGES, Effects(restitution=inelastic(0.0, 0.0)))
+            collide(a, b, 0, 1, NO_IMAGES, None, None, Effects(restitution=inelastic(0.0, 0.0)))
             nx, ny = exact(a.x) - exact(b.x), exact(a.y) - exact(b.y)
             speed = sum(map(abs, v)) * (abs(nx) + abs(ny))
 
