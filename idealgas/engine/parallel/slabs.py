@@ -74,7 +74,7 @@ def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tun
     else:
         limits = {
             max(rows // MIN_ROWS, 1): f"each has at least {MIN_ROWS} rows of cells",
-            threads: "as requested by run.threads",
+            threads: "as run.threads says",
         }
     number = min(limits)
     worthwhile = max(2 * tuning.min_events, min(4 * n, tuning.max_events))  # a slice begins with a copy of all discs

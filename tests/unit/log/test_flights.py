@@ -206,7 +206,7 @@ def test_some_discs_and_some_columns_and_a_data_frame(log):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"edges": [0.0]}, "two times or more"),
+        ({"edges": [0.0]}, "two or more times"),
         ({"edges": [1.0, 0.5]}, "in increasing order"),
         ({"edges": [0.0, 1e9]}, r"no flights from t = 0 to 1e\+09"),
         ({"columns": ("spin",)}, "have no spin"),

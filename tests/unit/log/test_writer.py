@@ -242,7 +242,7 @@ def test_a_disk_that_is_full_from_the_start(tmp_path, monkeypatch):
 
 def test_a_summary_of_wrong_size(tmp_path):
     with new_writer(tmp_path / "run.h5") as writer:
-        with pytest.raises(ValueError, match="have to be short"):
+        with pytest.raises(ValueError, match="must be short"):
             writer.close({"x": "y" * 1000})
         with pytest.raises(ValueError, match="at least one"):
             writer.close({})

@@ -29,8 +29,12 @@ def contact_under_gravity(discs):
 
 
 @njit
+def collide_with(discs, effects):
+    collide(discs[0], discs[1], 0, 1, (0, 0), None, None, effects)
+
+
 def collide_them(discs):
-    collide(discs[0], discs[1], 0, 1, (0, 0), None, None, Effects())
+    collide_with(discs, Effects())
 
 
 def pair(a, b):

@@ -45,7 +45,7 @@ def test_one_thread_goes_on_while_the_log_is_behind(tmp_path, monkeypatch):
         monkeypatch.setattr(LogWriter, "behind", behind)
         summary = simulate(scene, path)
         assert (summary.threads, summary.shared_slices > 0) == ((1, False) if behind else (2, True))
-        assert summary.threads_reason == (ONE_WAS_FASTER if behind else "as requested by run.threads")
+        assert summary.threads_reason == (ONE_WAS_FASTER if behind else "as run.threads says")
     assert not differences(*paths)
 
 

@@ -22,9 +22,9 @@ def test_slabs_are_high_enough_and_share_equally_where_they_can(discs, most):
 def test_a_number_of_threads_and_why(monkeypatch):
     monkeypatch.setattr("numba.config.DISABLE_JIT", 0)
     monkeypatch.setattr("idealgas.engine.parallel.slabs.cores", lambda: 4)
-    assert choose_threads(3, 100, 50, "")[:2] == (3, "as requested by run.threads")
+    assert choose_threads(3, 100, 50, "")[:2] == (3, "as run.threads says")
     assert choose_threads(3, 2 * MIN_ROWS + 1, 50, "")[0] == 2
-    assert choose_threads(1, 5, 50, "")[:2] == (1, "as requested by run.threads")
+    assert choose_threads(1, 5, 50, "")[:2] == (1, "as run.threads says")
     assert choose_threads(None, 1000, 10**6, "")[:2] == (4, "as many as there are cores")
     assert choose_threads(None, 1000, 12_000, "")[:2] == (2, "each has at least 5000 discs")
     assert choose_threads(None, 100, 10**6, "")[:2] == (3, "each has at least 32 rows of cells")

@@ -174,7 +174,7 @@ def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
     one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
     simulate(parse_scene(GAS), one)
     summary = simulate(parse_scene(GAS, overrides=["run.threads=2"]), two)
-    assert (summary.threads, summary.threads_reason) == (2, "as requested by run.threads")
+    assert (summary.threads, summary.threads_reason) == (2, "as run.threads says")
     assert 0 <= summary.aborted_slices < summary.shared_slices
     assert differences(one, two) == []
     calls = []
