@@ -185,7 +185,7 @@ CLAIMS = [
           near("pressure.walls.membrane_right.pressure", 1.0, 0.05, 0.05)),
     Claim("osmosis", "the pressure on the right is higher", "pressure",
           prints(r"^P = 2\.1\d*\(\d+\) on the left wall, 3\.1\d*\(\d+\) on the right wall,")),
-    Claim("otto", "the account of energy shows the work of the piston", "evolution",
+    Claim("otto", "the energy account shows the work of the piston", "evolution",
           between("evolution.given.piston", -2500, -800)),
     Claim("otto", "and the heat of the left side", "evolution", between("evolution.given.left", 800, 2500)),
     Claim("periodic", "that of an endless gas, without the corrections", "pressure",

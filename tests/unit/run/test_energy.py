@@ -1,4 +1,4 @@
-"""The account of the energy: parts, gifts and losses in numbers by hand."""
+"""The energy account: parts, gifts and losses in numbers by hand."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Values that change in time: exact, the same by every method, in a resumed run and in the account of energy."""
+"""Values that change in time: exact, the same by every method, in a resumed run and in the energy account."""
 
 import math
 

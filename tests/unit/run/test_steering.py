@@ -1,4 +1,4 @@
-"""Reversed velocities: a gas runs back, the same by every method, in a resumed run and in the account of energy."""
+"""Reversed velocities: a gas runs back, the same by every method, in a resumed run and in the energy account."""
 
 import numpy as np
 import pytest

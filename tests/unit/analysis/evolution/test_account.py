@@ -1,4 +1,4 @@
-"""The account of the energy in time, and what follows from a stroke, in numbers by hand."""
+"""The energy account in time, and what follows from a stroke, in numbers by hand."""
 
 import math
 from types import SimpleNamespace
