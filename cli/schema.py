@@ -13,7 +13,7 @@ def schema(kind: str) -> None:
     A file refers to its schema in its first line, as in `#:schema scene.schema.json`.
     """
     from idealgas.scene import Scene
-    from idealgas.sweep.tables import Tables
+    from idealgas.sweep.tables import SweepTables
     from idealgas.toml.table import schema_text
 
-    data(schema_text(Scene if kind == "scene" else Tables), nl=False)
+    data(schema_text(Scene if kind == "scene" else SweepTables), nl=False)

@@ -19,7 +19,7 @@ from ._terminal import data, echo, written
 
 if TYPE_CHECKING:
     from idealgas.sweep.plan import Sweep
-    from idealgas.sweep.run import Progress
+    from idealgas.sweep.run import SweepProgress
 
 
 EXAMPLE = """\b
@@ -157,7 +157,7 @@ def _run(
 
     with progress_bar("sweep") as show:
 
-        def on_progress(progress: "Progress") -> None:
+        def on_progress(progress: "SweepProgress") -> None:
             done = progress.done + progress.failed
             show(done, progress.total, f"{done}/{progress.total} points, {progress.failed} failed")
             if interrupted():  # a library may have swallowed the exception

@@ -45,7 +45,7 @@ class WriteLock:
                 os.close(self.descriptor)
                 raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
         try:
-            _lock(self.descriptor, needed and not _does_without())
+            _lock(self.descriptor, needed and not _locking_disabled())
         except OSError:
             self.close()
             raise
@@ -73,7 +73,7 @@ def _key(descriptor: int) -> tuple[int, int]:
     return status.st_dev, status.st_ino
 
 
-def _does_without() -> bool:
+def _locking_disabled() -> bool:
     """Return whether the user has disabled file locking, by the same environment variable as for HDF5."""
     return os.environ.get("HDF5_USE_FILE_LOCKING", "").upper() in ("FALSE", "0", "BEST_EFFORT")
 

@@ -64,7 +64,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Start:
+class EquilibratedStart:
     """An equilibrated gas with its effects, from which all cases start."""
 
     gas: Gas
@@ -92,14 +92,14 @@ def compared_cases(gas: Gas, precise: bool) -> list[Case]:
     ]
 
 
-def equilibrated(scene: Scene) -> Start:
+def equilibrated(scene: Scene) -> EquilibratedStart:
     """Return the gas of a scene after EQUILIBRATION collisions per disc, simulated event-driven."""
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
     stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
     simulation.run(stop)
     gas, effects = simulation.state()
-    return Start(gas, effects)
+    return EquilibratedStart(gas, effects)
 
 
 def cpu_seconds(simulation: Simulation, until: float) -> float:

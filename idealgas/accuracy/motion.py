@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from idealgas.accuracy.cases import Case, Start
+from idealgas.accuracy.cases import Case, EquilibratedStart
 from idealgas.columns import Kind, empty_batch
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.multiprecision import PreciseBruteForce, make_columns, turn_back
@@ -34,7 +34,9 @@ class Missed:
         return Estimate(self.missed / number, math.sqrt(max(self.missed, 1)) / number, self.compared)
 
 
-def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Callable[[float], None]) -> list[Missed]:
+def count_missed(
+    start: EquilibratedStart, cases: Sequence[Case], rate: float, progress: Callable[[float], None]
+) -> list[Missed]:
     """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
 
     Only collisions of two discs that have not yet collided with other discs are compared. A collision is missed if, in
@@ -51,7 +53,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
     number = 0
     while number < STARTS and compared.max(initial=0) < ENOUGH:
         gas, effects = reference.state()
-        here = Start(gas, effects)
+        here = EquilibratedStart(gas, effects)
         truth = first_collisions(here, Case("event_driven"), 1 / rate)
         for k, case in enumerate(cases):
             collisions = first_collisions(here, case, 1 / rate + (case.dt or 0.0))
@@ -64,7 +66,7 @@ def count_missed(start: Start, cases: Sequence[Case], rate: float, progress: Cal
     return [Missed(int(c), int(m)) for c, m in zip(compared, missed, strict=True)]
 
 
-def first_collisions(start: Start, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
+def first_collisions(start: EquilibratedStart, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the times (N,) and partners (N,) of the first collision of each disc; infinity and -1 if there is none."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
@@ -113,19 +115,19 @@ def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
     return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
-def error_on_return(start: Start, case: Case, duration: float) -> float:
+def error_on_return(start: EquilibratedStart, case: Case, duration: float) -> float:
     """Return the rms distance from the start, in mean diameters, after a run, a reversal and an equally long run."""
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())
     simulation.run(pause=duration)
     gas = simulation.state()[0]
-    back = Start(replace(gas, velocity=-gas.velocity), start.effects).simulation(case.make())
+    back = EquilibratedStart(replace(gas, velocity=-gas.velocity), start.effects).simulation(case.make())
     back.run(pause=duration)
     return float(rms_distance(back.state()[0].position, start.gas.position, start.gas))
 
 
-def _error_on_precise_return(start: Start, precision: str, duration: float) -> float:
+def _error_on_precise_return(start: EquilibratedStart, precision: str, duration: float) -> float:
     """Return the same as `error_on_return`, computed with all digits of a precision."""
     columns = origin = make_columns(start.gas, precision)
     for _ in range(2):

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from idealgas.accuracy.bias import BiasLaw, bias_law
-from idealgas.accuracy.study import Accuracy, Row
+from idealgas.accuracy.study import Accuracy, AccuracyRow
 from idealgas.files import check_output, storage_error, written
 from idealgas.presentation.style import save
 from idealgas.statistics.estimates import Estimate
@@ -21,7 +21,7 @@ TARGET = 0.01  # relative error whose cost is given in a sentence
 LOST = 0.1  # rms distance beyond which a trajectory is considered lost, diameters
 
 
-def flat_row(row: Row, found: Accuracy) -> dict[str, Any]:
+def flat_row(row: AccuracyRow, found: Accuracy) -> dict[str, Any]:
     """Return the row of the CSV file for a case; numbers that were not measured are None."""
     averages, at = row.averages, nearest(found.collisions, 1.0)
     return {
@@ -66,7 +66,7 @@ def nearest(values: np.ndarray, target: float) -> int:
     return int(np.abs(values - target).argmin()) if len(values) else 0
 
 
-def lost_after(row: Row, found: Accuracy) -> float | None:
+def lost_after(row: AccuracyRow, found: Accuracy) -> float | None:
     """Return the collisions per disc after which the rms error of the positions exceeds LOST; None if it never does."""
     if row.trajectory is None or not (gone := row.trajectory > LOST).any():
         return None
@@ -85,7 +85,7 @@ def sentences(found: Accuracy) -> list[str]:
     return [sentence for sentence in results if sentence]
 
 
-def cost_of(dt: float, rows: list[Row]) -> float:
+def cost_of(dt: float, rows: list[AccuracyRow]) -> float:
     """Return the CPU seconds per unit of simulated time for a time step, interpolated between measured time steps.
 
     A power law is assumed between neighbouring time steps.
@@ -147,7 +147,7 @@ def _motion(study: Accuracy) -> list[str]:
     last = study.collisions[-1]
     finest = study.steps[-1]
 
-    def life(row: Row) -> str:
+    def life(row: AccuracyRow) -> str:
         lost = lost_after(row, study)
         return f"{lost:.2g}" if lost is not None else f"more than {last:.2g}"
 

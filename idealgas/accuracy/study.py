@@ -11,7 +11,7 @@ import numpy as np
 
 from idealgas.accuracy.averages import Averages, measure_averages
 from idealgas.accuracy.bias import BiasLaw, rate_biases
-from idealgas.accuracy.cases import Case, Start, compared_cases, cpu_seconds, equilibrated
+from idealgas.accuracy.cases import Case, EquilibratedStart, compared_cases, cpu_seconds, equilibrated
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, positions, rms_distance
 from idealgas.errors import UserError
 from idealgas.initial.build import make_gas
@@ -56,7 +56,7 @@ class Timing:
 
 
 @dataclass(frozen=True)
-class Row:
+class AccuracyRow:
     """CPU time and errors of a case; errors that were not measured are None.
 
     Attributes:
@@ -105,20 +105,20 @@ class Accuracy:
     collisions: np.ndarray
     left_out: str
     rate_law: BiasLaw | None
-    rows: tuple[Row, ...]
+    rows: tuple[AccuracyRow, ...]
 
     @property
-    def event_driven(self) -> Row:
+    def event_driven(self) -> AccuracyRow:
         """Row of the event-driven run."""
         return self.rows[0]
 
     @property
-    def steps(self) -> list[Row]:
+    def steps(self) -> list[AccuracyRow]:
         """Rows of the time steps, from long to short."""
         return [row for row in self.rows if row.case.dt is not None]
 
     @property
-    def precisions(self) -> list[Row]:
+    def precisions(self) -> list[AccuracyRow]:
         """Rows of brute force, from few digits to many."""
         return [row for row in self.rows if row.case.precision is not None]
 
@@ -154,7 +154,7 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     rates = dict(zip(steps, biases[1:], strict=False))
     collisions, trajectories, ways_back = _motion(start, cases, timings, rate, progress)
     rows = [
-        Row(
+        AccuracyRow(
             case, timing, measured,
             rate=relative(measured.rate, truth.rate) if case.precision and measured else rates.get(case),
             z_pairs=None if measured is None else from_theory(measured.z_pairs),
@@ -206,7 +206,7 @@ def from_theory(value: Estimate | None) -> Estimate | None:
     return Estimate(value.value / value.theory - 1, error, math.inf)
 
 
-def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
+def measure_timings(start: EquilibratedStart, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
     """Return the CPU time of all cases, measured in turn; each run takes at least SHORTEST_TIMING."""
     durations = []
     for k, case in enumerate(cases):
@@ -226,7 +226,7 @@ def measure_timings(start: Start, cases: Sequence[Case], repeats: int, progress:
     ]
 
 
-def _long_enough(start: Start, case: Case) -> float:
+def _long_enough(start: EquilibratedStart, case: Case) -> float:
     """Return the simulated time of a run that takes SHORTEST_TIMING; the machine code is compiled on the way."""
     speed = float(np.hypot(*start.gas.velocity.T).mean())
     duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
@@ -238,7 +238,9 @@ def _long_enough(start: Start, case: Case) -> float:
     return duration
 
 
-def measure_rates(start: Start, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress) -> list[Estimate]:
+def measure_rates(
+    start: EquilibratedStart, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
+) -> list[Estimate]:
     """Return the pair collisions per time in each case, from runs of equal length that take RATE_SECONDS together."""
     whole = RATE_SECONDS / sum(timing.median for timing in timings[: len(cases)])
     edges = np.linspace(BURN_IN * whole, whole, RATE_BLOCKS + 1)
@@ -279,7 +281,7 @@ def _all_averages(
 
 
 def _motion(
-    start: Start, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
+    start: EquilibratedStart, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
 ) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
     """Return the collisions per disc, and `Row.trajectory` and `Row.way_back` of each case.
 

@@ -144,13 +144,13 @@ class Analysis:
     None if the analysis takes a single log only.
     """
 
-    takes_unlike_discs: ClassVar[bool] = True
+    supports_polydispersity: ClassVar[bool] = True
     """Whether the analysis applies to species whose discs differ in radius or mass."""
 
-    takes_shear: ClassVar[bool] = False
+    supports_shear: ClassVar[bool] = False
     """Whether the analysis subtracts the mean flow between sheared sides and follows the images that they move."""
 
-    takes_escapes: ClassVar[bool] = False
+    supports_escapes: ClassVar[bool] = False
     """Whether the analysis applies to a gas that discs leave."""
 
     restore: ClassVar[Callable[..., Any] | None] = None
@@ -209,15 +209,15 @@ class Analysis:
     def _analyse(
         cls, log: "Log", start: float | None, end: float | None, progress: ReadProgress | None, values: dict[str, Any]
     ) -> Any:
-        if not cls.takes_unlike_discs and (unlike := log.discs.unlike):
+        if not cls.supports_polydispersity and (unlike := log.discs.unlike):
             differ = f"but radius or mass differ within {', '.join(unlike)}"
             raise NotApplicableError(f"{log.path}: {cls.key} requires equal discs in each species, {differ}")
-        if not cls.takes_shear and log.scene.properties.shear:
+        if not cls.supports_shear and log.scene.properties.shear:
             raise NotApplicableError(
                 f"{log.path}: {cls.key} requires a gas that does not flow, but sides shear it; use `idealgas shear` or "
                 "`idealgas profile`"
             )
-        if log.escapes and not cls.takes_escapes:
+        if log.escapes and not cls.supports_escapes:
             raise NotApplicableError(
                 f"{log.path}: {cls.key} requires a constant number of discs, but discs leave this gas; use `idealgas "
                 "escape` or `idealgas evolution`"
@@ -226,10 +226,10 @@ class Analysis:
             result = cls.measure(log, start=start, end=end, progress=progress, **values)
         slow: tuple[str, ...] = ()
         if hasattr(result, "window"):
-            slow = *caveats.of_paths(log, result.window), *caveats.of_window(result.window)
+            slow = *caveats.path_caveats(log, result.window), *caveats.window_caveats(result.window)
         origin = caveats.origin_of(log.scene, str(log.path))
         return replace(
-            result, caveats=(*caveats.of_log(log), *slow, *result.caveats), origin=origin, title=origin.title
+            result, caveats=(*caveats.log_caveats(log), *slow, *result.caveats), origin=origin, title=origin.title
         )
 
     @classmethod
@@ -268,12 +268,12 @@ class Analysis:
         if cls.combine is None:
             (result,) = results
             return result
-        independent = caveats.of_averages(results) if cls.averages else ()
+        independent = caveats.averaging_caveats(results) if cls.averages else ()
         combined = cls.combine(results)
         if len(results) == 1 and combined is results[0]:
             return combined
-        sentences = (*caveats.of_several(results), *independent, *combined.caveats)
-        return replace(combined, caveats=sentences, title=caveats.title_of(results))
+        sentences = (*caveats.combined_caveats(results), *independent, *combined.caveats)
+        return replace(combined, caveats=sentences, title=caveats.combined_title(results))
 
     @classmethod
     def restored(cls, found: dict[str, Any], label: str, origin: Origin | None = None) -> Any:

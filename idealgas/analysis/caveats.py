@@ -30,12 +30,12 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 """Width of a wide box between walls, which occupy a twentieth of it, and of a wide periodic box, in diameters."""
 
 
-def of_log(log: Log) -> tuple[str, ...]:
+def log_caveats(log: Log) -> tuple[str, ...]:
     """Return the caveats of every time average of a log: those of its gas and of its simulation method."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
 
 
-def of_paths(log: Log, window: Window) -> tuple[str, ...]:
+def path_caveats(log: Log, window: Window) -> tuple[str, ...]:
     """Return a caveat if discs hardly collide with each other, so that only walls mix their paths."""
     times, collisions = log.observables["disc_collisions"]
     among = np.diff(np.interp((window.start, window.end), times, collisions))
@@ -47,7 +47,7 @@ def of_paths(log: Log, window: Window) -> tuple[str, ...]:
     )
 
 
-def of_window(window: Window) -> tuple[str, ...]:
+def window_caveats(window: Window) -> tuple[str, ...]:
     """Return a caveat if the window is too short for the slowest exchange in its gas."""
     time, process = window.slowest
     if window.duration >= INDEPENDENT * time:
@@ -74,7 +74,7 @@ def origin_of(scene: Scene, path: str) -> Origin:
     )
 
 
-def title_of(results: Sequence[Result]) -> str:
+def combined_title(results: Sequence[Result]) -> str:
     """Return the title of the figure of one or several runs: their titles, or their number."""
     titles = list(dict.fromkeys(r.title for r in results))
     if len(titles) > NAMED:
@@ -83,7 +83,7 @@ def title_of(results: Sequence[Result]) -> str:
     return ", ".join(titles) + runs
 
 
-def of_several(results: Sequence[Result]) -> tuple[str, ...]:
+def combined_caveats(results: Sequence[Result]) -> tuple[str, ...]:
     """Return the caveats of single logs, each once, with the paths of the logs that it concerns; at most MOST."""
     if len(results) == 1:
         return results[0].caveats
@@ -97,7 +97,7 @@ def of_several(results: Sequence[Result]) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def of_averages(results: Sequence[Result]) -> tuple[str, ...]:
+def averaging_caveats(results: Sequence[Result]) -> tuple[str, ...]:
     """Return caveats on the independence of runs that are averaged.
 
     Raises:

@@ -91,7 +91,7 @@ class EffusionAnalysis(Analysis):
 
     position = 110
     headline = "speed"
-    takes_unlike_discs = False
+    supports_polydispersity = False
     results = (Effusion, Effusions)
     sections = (Section("Effusion", "Fraction of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),)
     averages = True

@@ -88,7 +88,7 @@ class EntropyAnalysis(Analysis):
     headline = "species.*.mean_h"
     results = (Entropy,)
     sections = (Section("Entropy", "Boltzmann's H and the entropy of the positions against time, equilibrium dashed"),)
-    takes_unlike_discs = False
+    supports_polydispersity = False
     start = "the log's start"
     reads = "frames"
 

@@ -71,7 +71,7 @@ class EscapeAnalysis(Analysis):
 
     position = 112
     headline = "per_path"
-    takes_escapes = True
+    supports_escapes = True
     results = (Escape,)
     sections = (Section("Escape", "Number of discs in the gas against time, beside theory"),)
     start = "the log's start"

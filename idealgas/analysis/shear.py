@@ -270,7 +270,7 @@ class ShearAnalysis(Analysis):
     position = 95
     headline = "viscosity"
     start = "where viscosity/√T is steady"
-    takes_shear = True
+    supports_shear = True
     results = (ShearFlow,)
     sections = (Section("Shear flow", "Viscosity and temperature in time, and mean velocity against height"),)
 

@@ -64,7 +64,7 @@ currents have long-time tails, so that the neglected terms do not decrease as kÂ
 
 
 @dataclass(frozen=True)
-class Wave:
+class SoundWave:
     """The longest density waves along the axes of the box, or along one axis.
 
     Attributes:
@@ -106,7 +106,7 @@ class Sound(Result):
 
     window: Window
     frames: int
-    waves: tuple[Wave, ...]
+    waves: tuple[SoundWave, ...]
 
 
 class SoundAnalysis(Analysis):
@@ -114,7 +114,7 @@ class SoundAnalysis(Analysis):
 
     position = 90
     headline = "waves.*.speed"
-    takes_unlike_discs = False
+    supports_polydispersity = False
     results = (Sound,)
     sections = (Section("Sound", "Correlation in time of the longest waves of density, hydrodynamics dashed"),)
     reads = "frames"
@@ -210,7 +210,7 @@ class SoundAnalysis(Analysis):
         return figure
 
 
-def _doubt(time: np.ndarray, wave: Wave) -> np.ndarray:
+def _doubt(time: np.ndarray, wave: SoundWave) -> np.ndarray:
     """Return the error of the correlation of a wave by theory at times (L,), from the errors of its properties."""
     assert wave.theory is not None
     law, square = wave.theory, np.zeros_like(time)
@@ -272,7 +272,7 @@ def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray
 
 def _wave(
     log: Log, axes: tuple[int, ...], theory: tuple[Decay, Fluid | None], lag: np.ndarray, amplitudes: np.ndarray
-) -> Wave:
+) -> SoundWave:
     """Return the wave along the axes from its amplitudes (A, G), with theory and its relative errors."""
     expected, errors = theory
     parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
@@ -289,7 +289,7 @@ def _wave(
         name: Estimate(value, float(error[j]), float(SEGMENTS), *((of, of * errors[j]) if errors else ()))
         for j, (name, value, of) in enumerate(zip(Fluid._fields, fitted.fluid, expected.fluid, strict=True))
     }
-    return Wave(
+    return SoundWave(
         axes=" and ".join("xy"[axis] for axis in axes),
         wavelength=log.box[axes[0]],
         lag=lag,
@@ -301,7 +301,7 @@ def _wave(
     )
 
 
-def _caveats(log: Log, window: Window, wave: Wave) -> Iterator[str]:
+def _caveats(log: Log, window: Window, wave: SoundWave) -> Iterator[str]:
     """Yield caveats on conditions that a wave does not meet."""
     gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
     diameter = 2 * float(gas.radius[0])

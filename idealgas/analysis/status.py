@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.analysis.caveats import of_log
+from idealgas.analysis.caveats import log_caveats
 from idealgas.analysis.pressure.measure import PAIRS, pressure
 from idealgas.errors import UserError
 from idealgas.log import DamageError, Log
@@ -72,7 +72,7 @@ def status(log: Log) -> Status:
         edges=edges,
         density=None if speeds is None else np.histogram(speeds, edges)[0] / len(speeds) / np.diff(edges),
         expected=np.diff(_reduced_speed_cdf(edges)) / np.diff(edges),
-        caveats=of_log(log),
+        caveats=log_caveats(log),
     )
 
 

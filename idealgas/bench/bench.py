@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from idealgas.run.simulate import simulate
-from idealgas.scene import Box, Header, Log, Run, Scene, Species
+from idealgas.scene import Box, Header, LogTable, Run, Scene, Species
 
 RADIUS = 0.5
 
 
-class Row(NamedTuple):
+class SpeedRow(NamedTuple):
     """Speed of the engine for one number of discs, packing fraction and number of threads.
 
     Attributes:
@@ -51,7 +51,7 @@ class Bench:
     """
 
     compile_seconds: float
-    rows: list[Row]
+    rows: list[SpeedRow]
 
 
 def bench_scene(n: int, phi: float, collisions: int, log: bool, threads: int = 1) -> Scene:
@@ -62,7 +62,7 @@ def bench_scene(n: int, phi: float, collisions: int, log: bool, threads: int = 1
         box=Box(size=(side, side)),
         species=(Species(name="gas", count=n, radius=RADIUS, temperature=1.0, placement="lattice"),),
         run=Run(collisions_per_disc=2.0 * collisions / n, threads=threads),
-        log=Log(events=log),
+        log=LogTable(events=log),
     )
 
 
@@ -71,7 +71,7 @@ def bench(
     fractions: Iterable[float],
     collisions: int = 1_000_000,
     repeats: int = 3,
-    on_row: Callable[[Row], None] = lambda row: None,
+    on_row: Callable[[SpeedRow], None] = lambda row: None,
     threads: Iterable[int] = (1,),
 ) -> Bench:
     """Measure the speed of runs, alternately without and with the log.
@@ -100,6 +100,6 @@ def bench(
             pairs = statistics.median(on / off for off, on in zip(*rates.values(), strict=True))
             for log, measured in rates.items():
                 ratio, median = pairs if log else None, statistics.median(measured)
-                rows.append(Row(n, phi, summary.threads, log, median, min(measured), max(measured), ratio))
+                rows.append(SpeedRow(n, phi, summary.threads, log, median, min(measured), max(measured), ratio))
                 on_row(rows[-1])
     return Bench(compile_seconds, rows)

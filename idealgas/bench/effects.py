@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from idealgas.effects import EFFECTS
-from idealgas.effects.effect import SAMPLE_DISCS, Sample
+from idealgas.effects.effect import SAMPLE_DISCS, BenchmarkSample
 from idealgas.log.summary import Summary
 from idealgas.run.simulate import simulate
 from idealgas.scene import Scene, parse_scene
@@ -30,8 +30,8 @@ events = false
 """
 
 
-def _scenes() -> dict[str, Sequence[Sample]]:
-    scenes: dict[str, Sequence[Sample]] = {
+def _scenes() -> dict[str, Sequence[BenchmarkSample]]:
+    scenes: dict[str, Sequence[BenchmarkSample]] = {
         ", ".join(filter(None, (effect.name, sample.name))): [sample] for effect in EFFECTS for sample in effect.samples
     }
     return scenes | {"all": [effect.sample_together or effect.samples[0] for effect in EFFECTS]}
@@ -41,7 +41,7 @@ SCENES = _scenes()
 """Samples that each effect, and all effects together, add to the scene of the plain box."""
 
 
-class Row(NamedTuple):
+class EffectCost(NamedTuple):
     """Cost of an effect.
 
     Attributes:
@@ -68,8 +68,8 @@ def effect_scene(effect: str | None, events: int) -> Scene:
 
 
 def bench_effects(
-    events: int = 500_000, repeats: int = 5, on_row: Callable[[Row], None] = lambda row: None
-) -> list[Row]:
+    events: int = 500_000, repeats: int = 5, on_row: Callable[[EffectCost], None] = lambda row: None
+) -> list[EffectCost]:
     """Measure the cost of every effect alone, and of all compatible effects together.
 
     Args:
@@ -90,6 +90,6 @@ def bench_effects(
             for _ in range(repeats):
                 plain, with_effect = (run(each, events) for each in (None, effect))
                 ratios.append((with_effect.seconds / with_effect.events) / (plain.seconds / plain.events))
-            rows.append(Row(effect, statistics.median(ratios), min(ratios), max(ratios), compile_seconds))
+            rows.append(EffectCost(effect, statistics.median(ratios), min(ratios), max(ratios), compile_seconds))
             on_row(rows[-1])
     return rows

@@ -3,7 +3,7 @@
 import numpy as np
 
 from idealgas.columns import Kind
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 
 
@@ -18,12 +18,12 @@ class AbsorbingEffect(Effect[np.ndarray]):
     name = "absorbing walls"
     field = "absorbing"
     events = Kind.ESCAPED
-    samples = (Sample(tables=_hole),)
+    samples = (BenchmarkSample(tables=_hole),)
 
     def properties(self, tables: Tables) -> Properties | None:
         return Properties(escapes=True) if any(wall is not None and wall.absorbing for wall in tables.walls) else None
 
-    def make(self, tables: Tables, _: Start) -> np.ndarray:
+    def make(self, tables: Tables, _: GasAtStart) -> np.ndarray:
         return np.array([wall.absorbing for wall in tables.walls])
 
     def gives_energy(self, absorbing: np.ndarray) -> bool:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import arc as law
@@ -32,13 +32,13 @@ class ArcEffect(Effect[np.recarray]):
 
     name = "arcs"
     field = "arcs"
-    samples = (Sample(tables=_circle),)
-    sample_together = Sample(tables=lambda side: "[[wall]]\nfrom = [2, 2]\nto = [8, 2]\nvia = [5, 5]\n")
+    samples = (BenchmarkSample(tables=_circle),)
+    sample_together = BenchmarkSample(tables=lambda side: "[[wall]]\nfrom = [2, 2]\nto = [8, 2]\nvia = [5, 5]\n")
 
     def properties(self, tables: Tables) -> Properties | None:
         return Properties() if any(wall is not None and wall.arc for wall in tables.walls) else None
 
-    def make(self, tables: Tables, _: Start) -> np.recarray:
+    def make(self, tables: Tables, _: GasAtStart) -> np.recarray:
         return make_arcs([wall.arc for wall in tables.walls])
 
 

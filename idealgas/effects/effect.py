@@ -33,7 +33,7 @@ class Tables(NamedTuple):
     walls: tuple[Any, ...]
 
 
-class Start(NamedTuple):
+class GasAtStart(NamedTuple):
     """The discs at time 0, from which an effect makes its state.
 
     Attributes:
@@ -56,7 +56,7 @@ class Start(NamedTuple):
 SAMPLE_DISCS = 1000
 
 
-class Sample(NamedTuple):
+class BenchmarkSample(NamedTuple):
     """Addition of an effect to the scene of the benchmark, SAMPLE_DISCS discs at temperature 1 in a square box.
 
     Attributes:
@@ -121,8 +121,8 @@ class Effect(Generic[State]):
     energy_is_inner: ClassVar[bool] = False
     events: ClassVar[Kind | None] = None
     shearable: ClassVar[bool] = False
-    samples: ClassVar[tuple[Sample, ...]]
-    sample_together: ClassVar[Sample | None] = None
+    samples: ClassVar[tuple[BenchmarkSample, ...]]
+    sample_together: ClassVar[BenchmarkSample | None] = None
 
     def properties(self, tables: Tables) -> Properties | None:
         """Return the properties of a gas with these tables, or sides of the box; None if they change nothing."""
@@ -136,11 +136,11 @@ class Effect(Generic[State]):
         """Return the table, or tuple of tables, of a scene that continues from a later time."""
         return table.after(later.time) if hasattr(table, "after") else table
 
-    def make(self, tables: Tables, start: Start) -> State | None:
+    def make(self, tables: Tables, start: GasAtStart) -> State | None:
         """Return the state at time 0 of an effect that the scene has."""
         raise NotImplementedError
 
-    def state_at_start(self, tables: Tables, start: Start) -> State | None:
+    def state_at_start(self, tables: Tables, start: GasAtStart) -> State | None:
         """Return the state at time 0; None if the scene does not have the effect."""
         return self.make(tables, start) if self.find(tables) is not None else None
 
@@ -191,7 +191,7 @@ class Effect(Generic[State]):
     def reverse(self, state: State) -> None:
         """Reverse the velocities in the state, at the start of an epoch."""
 
-    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+    def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
         """Return the changes in time of values of the state, after time 0."""
         return ()
 

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import Column
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, VectorInSteps, steps_of
 from idealgas.physics import gravity as law
@@ -38,7 +38,7 @@ class GravityEffect(Effect[law.Gravity]):
     description = "[gravity]: acceleration"
     energy_part = "potential"
     energy_column = Column("potential_energy", "f8", (), "energy")
-    samples = (Sample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),)
+    samples = (BenchmarkSample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),)
 
     def properties(self, tables: Tables) -> Properties:
         (_, first), *later = steps_of(tables.own.acceleration)
@@ -61,7 +61,7 @@ class GravityEffect(Effect[law.Gravity]):
         if not any(map(any, steps)):
             yield Issue((key,), "no acceleration", str(list(steps[0])), "a nonzero acceleration, or no [gravity]")
 
-    def state_at_start(self, _: Tables, start: Start) -> law.Gravity | None:
+    def state_at_start(self, _: Tables, start: GasAtStart) -> law.Gravity | None:
         """Return the acceleration summed over all effects, which is what moves the discs."""
         return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
 
@@ -72,7 +72,7 @@ class GravityEffect(Effect[law.Gravity]):
         """Potential energy; its decrease along periodic sides is the work of gravity on the flowing gas."""
         return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 
-    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+    def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:
         """Yield the changes of the acceleration along x (item 0) and along y (item 1)."""
         for time, acceleration in steps_of(tables.own.acceleration)[1:]:
             yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))

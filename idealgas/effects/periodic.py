@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from idealgas.columns import IMAGE, SIDES, Arrays, sides_across
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import periodic as law
 from idealgas.toml.issues import Issue, Key
@@ -26,8 +26,8 @@ class PeriodicEffect(Effect[law.Periodic]):
     side = PERIODIC
     side_text = f'"{PERIODIC}"'
     shearable = True
-    samples = (Sample(box=lambda side: _joined(*SIDES)),)
-    sample_together = Sample(box=lambda side: _joined("left", "right"))
+    samples = (BenchmarkSample(box=lambda side: _joined(*SIDES)),)
+    sample_together = BenchmarkSample(box=lambda side: _joined("left", "right"))
 
     def properties(self, tables: Tables) -> Properties | None:
         sides = tables.sides
@@ -50,7 +50,7 @@ class PeriodicEffect(Effect[law.Periodic]):
                     f"{side_name} and {opposite} periodic",
                 )
 
-    def make(self, tables: Tables, start: Start) -> law.Periodic:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Periodic:
         image = np.zeros((len(start.gas), *IMAGE.shape), IMAGE.dtype)
         return law.Periodic(tables.sides[0] == PERIODIC, tables.sides[2] == PERIODIC, *tables.size, image)
 

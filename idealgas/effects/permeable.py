@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from idealgas.columns import OUTWARD, SIDES
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import permeable as law
 from idealgas.toml.issues import Issue
@@ -35,8 +35,8 @@ class PermeableEffect(Effect[law.Permeable]):
 
     name = "permeable walls"
     field = "permeable"
-    samples = (Sample(tables=lambda side: _door(side / 4, side)),)
-    sample_together = Sample(tables=lambda side: _door(side / 4, 9.0))
+    samples = (BenchmarkSample(tables=lambda side: _door(side / 4, side)),)
+    sample_together = BenchmarkSample(tables=lambda side: _door(side / 4, 9.0))
 
     def properties(self, tables: Tables) -> Properties | None:
         walls = [wall for wall in tables.walls if wall is not None and wall.is_permeable]
@@ -63,7 +63,7 @@ class PermeableEffect(Effect[law.Permeable]):
                 allowed = "a wall that is always present; if necessary, add a gate at the same place"
                 yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
 
-    def make(self, tables: Tables, start: Start) -> law.Permeable:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Permeable:
         gas = start.gas
         names = np.array(gas.species_names)
         passage = np.full((len(tables.walls), len(names)), law.SOLID, np.uint8)

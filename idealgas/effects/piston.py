@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Column, Point, Values, axis_of
-from idealgas.effects.effect import SAMPLE_DISCS, Effect, Later, Sample, Start, Tables
+from idealgas.effects.effect import SAMPLE_DISCS, BenchmarkSample, Effect, GasAtStart, Later, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import (
     Change,
@@ -182,7 +182,7 @@ class PistonEffect(Effect[np.ndarray]):
     many = True
     description = "[[piston]] tables"
     energy_part = "piston"
-    samples = (Sample(tables=_sample), Sample("inner", tables=_inner_sample))
+    samples = (BenchmarkSample(tables=_sample), BenchmarkSample("inner", tables=_inner_sample))
 
     def properties(self, tables: Tables) -> Properties:
         pistons = [piston for piston in tables.own if piston is not None]
@@ -224,7 +224,7 @@ class PistonEffect(Effect[np.ndarray]):
             moved.append(piston.after(later.time).model_copy(update={"position": float(place), **motion}))
         return tuple(moved)
 
-    def make(self, tables: Tables, start: Start) -> np.ndarray:
+    def make(self, tables: Tables, start: GasAtStart) -> np.ndarray:
         size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.own)
         pistons = aligned(len(tables.own), law.PISTON)
         for record, table in zip(pistons, tables.own, strict=True):
@@ -269,7 +269,7 @@ class PistonEffect(Effect[np.ndarray]):
             if record.m > 0:
                 record.v = reversed_velocity(record.v)
 
-    def schedule(self, tables: Tables, start: Start) -> Iterator[Change]:
+    def schedule(self, tables: Tables, start: GasAtStart) -> Iterator[Change]:
         """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
         for k, table in enumerate(tables.own):
             for time, _ in steps_of(table.pressure)[1:]:

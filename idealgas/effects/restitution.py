@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import Arrays, Column
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import restitution as law
 from idealgas.toml.table import Positive, Real, Table
@@ -45,14 +45,14 @@ class RestitutionEffect(Effect[law.Restitution]):
     table = RestitutionTable
     description = "[restitution]: normal, wall, contact_duration"
     shearable = True
-    samples = (Sample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),)
+    samples = (BenchmarkSample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),)
 
     def properties(self, tables: Tables) -> Properties | None:
         if tables.own.elastic:
             return None
         return Properties(uniform=False, elastic=False, dissipative=True)
 
-    def make(self, tables: Tables, start: Start) -> law.Restitution:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Restitution:
         table = tables.own
         return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
 

@@ -4,7 +4,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import ANGULAR_VELOCITY, Arrays, Column
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.physics import rotation as law
 from idealgas.physics.steering import reversed_velocity
@@ -47,7 +47,7 @@ class RotationEffect(Effect[law.Rotation]):
     energy_column = Column("rotational_energy", "f8", (), "energy")
     energy_is_inner = True
     shearable = True
-    samples = (Sample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),)
+    samples = (BenchmarkSample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),)
 
     def properties(self, tables: Tables) -> Properties:
         rotation = tables.own
@@ -55,7 +55,7 @@ class RotationEffect(Effect[law.Rotation]):
             dissipative=loses(rotation), inertia=rotation.inertia, has_rough_walls=rotation.wall_roughness > -1
         )
 
-    def make(self, tables: Tables, start: Start) -> law.Rotation:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Rotation:
         table, gas = tables.own, start.gas
         omega, inertias = start.angular_velocity.copy(), law.moment_of_inertia(table.inertia, gas.mass, gas.radius)
         for k, name in enumerate(gas.species_names):

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pydantic import Field
 
 from idealgas.columns import SIDES
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.periodic import PERIODIC
 from idealgas.effects.properties import Properties
 from idealgas.physics import shear as law
@@ -36,13 +36,13 @@ class ShearEffect(Effect[law.Shear]):
     side_text = "at bottom and top { shear = rate }"
     shearable = True
     samples = (
-        Sample(
+        BenchmarkSample(
             box=lambda side: (
                 f'left = "{PERIODIC}"\nright = "{PERIODIC}"\nbottom = {{ shear = 0.05 }}\ntop = {{ shear = 0.05 }}\n'
             )
         ),
     )
-    sample_together = Sample()
+    sample_together = BenchmarkSample()
 
     def properties(self, tables: Tables) -> Properties | None:
         rates = [side.shear for side in tables.sides if isinstance(side, ShearedSide)]
@@ -76,7 +76,7 @@ class ShearEffect(Effect[law.Shear]):
                 keys, "different shear at bottom and top", "two different sides", "the same { shear = rate } for both"
             )
 
-    def make(self, tables: Tables, start: Start) -> law.Shear:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Shear:
         return law.make_shear(tables.sides[3].shear, tables.size)
 
     def gives_energy(self, shear: law.Shear) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from pydantic import Field
 
 from idealgas.columns import Kind
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, Times, as_times, without_past
 from idealgas.toml.issues import Issue
@@ -36,7 +36,7 @@ class SteeringEffect(Effect[tuple[float, ...]]):
     table = SteeringTable
     description = "[steering]: reversed_at"
     events = Kind.STEERED
-    samples = (Sample(tables=lambda side: "[steering]\nreversed_at = 1\n"),)
+    samples = (BenchmarkSample(tables=lambda side: "[steering]\nreversed_at = 1\n"),)
 
     def properties(self, tables: Tables) -> Properties:
         return Properties(
@@ -48,13 +48,13 @@ class SteeringEffect(Effect[tuple[float, ...]]):
         if sorted(set(times)) != list(times) or 0 in times:
             yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
 
-    def state_at_start(self, tables: Tables, start: Start) -> tuple[float, ...] | None:
+    def state_at_start(self, tables: Tables, start: GasAtStart) -> tuple[float, ...] | None:
         """Return the times of the reversals: an empty tuple if only gravity steers discs, None if nothing does."""
         if tables.own is None:
             return () if start.later_accelerations else None
         return as_times(tables.own.reversed_at)
 
-    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+    def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
         return (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at))
 
 

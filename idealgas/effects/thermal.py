@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import SIDES, Arrays, Column
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, WallTemperature, changes_of, description, steps_of, value_at
 from idealgas.physics import thermal as law
@@ -52,8 +52,8 @@ class ThermalEffect(Effect[law.Thermal]):
     field = "thermal"
     side = ThermalSide
     side_text = "{ thermal = T }"
-    samples = (Sample(box=lambda side: _hot(*SIDES)),)
-    sample_together = Sample()
+    samples = (BenchmarkSample(box=lambda side: _hot(*SIDES)),)
+    sample_together = BenchmarkSample()
 
     def properties(self, tables: Tables) -> Properties | None:
         temperatures = _temperatures(tables)
@@ -71,7 +71,7 @@ class ThermalEffect(Effect[law.Thermal]):
             varies=bool(later),
         )
 
-    def make(self, tables: Tables, start: Start) -> law.Thermal:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Thermal:
         temperature = np.array([_number(value_at(t, 0.0)) for t in _temperatures(tables)])
         return law.Thermal(temperature, np.uint64(start.seed), np.zeros(len(start.gas), np.uint64))
 
@@ -81,7 +81,7 @@ class ThermalEffect(Effect[law.Thermal]):
     def gives_energy(self, thermal: law.Thermal) -> bool:
         return True
 
-    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+    def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:
         for wall, temperature in enumerate(_temperatures(tables)):
             for change in changes_of(temperature, wall):
                 yield change._replace(value=_number(change.value))

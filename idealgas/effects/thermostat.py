@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import Arrays, Column, Kind
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, PositiveInSteps, SteppedTable, changes_of, steps_of, value_at
 from idealgas.physics import thermostat as law
@@ -45,7 +45,7 @@ class ThermostatEffect(Effect[law.Thermostat]):
     description = "[thermostat]: temperature, rate"
     events = Kind.THERMOSTAT
     shearable = True
-    samples = (Sample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),)
+    samples = (BenchmarkSample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),)
 
     def properties(self, tables: Tables) -> Properties:
         first, *later = steps_of(tables.own.temperature)
@@ -60,7 +60,7 @@ class ThermostatEffect(Effect[law.Thermostat]):
             thermostat_rate=tables.own.rate,
         )
 
-    def make(self, tables: Tables, start: Start) -> law.Thermostat:
+    def make(self, tables: Tables, start: GasAtStart) -> law.Thermostat:
         table, n = tables.own, len(start.gas)
         temperature = value_at(table.temperature, 0.0)
         thermostat = law.Thermostat(temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64))
@@ -80,7 +80,7 @@ class ThermostatEffect(Effect[law.Thermostat]):
     def end_epoch(self, thermostat: law.Thermostat, length: float) -> None:
         law.end_epoch(thermostat, length)
 
-    def schedule(self, tables: Tables, start: Start) -> Iterable[Change]:
+    def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
         return changes_of(tables.own.temperature, 0)
 
     def change(self, thermostat: law.Thermostat, item: int, temperature: float) -> law.Thermostat:

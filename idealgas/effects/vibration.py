@@ -4,7 +4,7 @@ import numpy as np
 from pydantic import Field
 
 from idealgas.columns import SIDES
-from idealgas.effects.effect import Effect, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Tables
 from idealgas.effects.properties import Properties
 from idealgas.jit import aligned
 from idealgas.physics import vibration as law
@@ -42,7 +42,7 @@ class VibrationEffect(Effect[np.recarray]):
     field = "vibration"
     side = VibratingSide
     side_text = "{ vibrating = { amplitude = A, frequency = f } }"
-    samples = (Sample(box=lambda side: "bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }\n"),)
+    samples = (BenchmarkSample(box=lambda side: "bottom = { vibrating = { amplitude = 0.1, frequency = 1 } }\n"),)
 
     def properties(self, tables: Tables) -> Properties | None:
         if not any(map(reach, tables.sides)):
@@ -57,7 +57,7 @@ class VibrationEffect(Effect[np.recarray]):
             drives_discs=True,
         )
 
-    def make(self, tables: Tables, _: Start) -> np.recarray:
+    def make(self, tables: Tables, _: GasAtStart) -> np.recarray:
         vibration = aligned(len(SIDES), law.VIBRATION)
         for record, side in zip(vibration, tables.sides, strict=True):
             if isinstance(side, VibratingSide):

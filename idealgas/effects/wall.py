@@ -11,7 +11,7 @@ from pydantic import Field
 
 from idealgas.columns import SIDES
 from idealgas.effects.arc import FLATTEST
-from idealgas.effects.effect import Effect, Later, Sample, Start, Tables
+from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Later, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, Times, WallTemperature, as_times, description, times_key
 from idealgas.jit import aligned
@@ -251,10 +251,10 @@ class WallEffect(Effect[np.recarray]):
     many = True
     description = "[[wall]] tables"
     samples = (
-        Sample("6", tables=lambda side: _polygon(side, 6, side / 2)),
-        Sample("1000", tables=lambda side: _polygon(side, 1000, side / 2)),
+        BenchmarkSample("6", tables=lambda side: _polygon(side, 6, side / 2)),
+        BenchmarkSample("1000", tables=lambda side: _polygon(side, 1000, side / 2)),
     )
-    sample_together = Sample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n")
+    sample_together = BenchmarkSample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n")
 
     def properties(self, tables: Tables) -> Properties:
         walls = [wall for wall in tables.own if wall is not None]
@@ -292,12 +292,12 @@ class WallEffect(Effect[np.recarray]):
         walls = (wall.later(later.time) for wall in table)
         return tuple(wall.for_species(later.species) for wall in walls if wall is not None)
 
-    def make(self, tables: Tables, _: Start) -> np.recarray:
+    def make(self, tables: Tables, _: GasAtStart) -> np.recarray:
         start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
         active, radius = [wall.is_present(0.0) for wall in tables.own], [wall.radius for wall in tables.own]
         return make_segments(start, end, np.array(active), np.array(radius))
 
-    def schedule(self, tables: Tables, _: Start) -> Iterator[Change]:
+    def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:
         for k, wall in enumerate(tables.own):
             for times, active in zip(zip(*wall.absences, strict=True), (0.0, 1.0), strict=False):
                 yield from (Change(time, k, active) for time in times if 0 < time < math.inf)

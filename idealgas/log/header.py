@@ -17,7 +17,7 @@ from idealgas.state import Gas
 if TYPE_CHECKING:
     from idealgas.scene import Scene
     from idealgas.scene.changes import SceneChange
-    from idealgas.scene.discs import Discs
+    from idealgas.scene.discs import InitialDiscs
 
 
 class LogHeader:
@@ -153,14 +153,16 @@ class LogHeader:
         return Gas(self.box, **columns, species_names=names)
 
     @property
-    def given(self) -> "Discs":
+    def given(self) -> "InitialDiscs":
         """The discs at the start of the run, in the form from which a scene can start."""
-        from idealgas.scene.discs import Discs
+        from idealgas.scene.discs import InitialDiscs
 
         gas, n = self._stored_discs, len(self._stored_discs)
         spin = self._file.fixed("discs/angular_velocity") if self.inertia is not None else np.zeros(n)
         species = gas.species.astype(np.uint32)
-        return Discs(gas.position, gas.velocity, gas.radius, gas.mass, spin, species, gas.species_names, np.arange(n))
+        return InitialDiscs(
+            gas.position, gas.velocity, gas.radius, gas.mass, spin, species, gas.species_names, np.arange(n)
+        )
 
     def stored(self, table: str) -> list[Column]:
         """Return the columns of a table as stored in the file: name, type and shape of an entry."""

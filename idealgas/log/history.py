@@ -12,7 +12,7 @@ from idealgas.columns import EventBatch, Kind
 from idealgas.locks import is_locked
 from idealgas.log.errors import DamageError, LogError
 from idealgas.log.header import LogHeader
-from idealgas.log.log_file import LogFile, Table
+from idealgas.log.log_file import LogFile, StoredTable
 from idealgas.log.pairs import check_pairs
 from idealgas.log.replay import Checkpoint, Checkpoints, LogState, Replay
 from idealgas.log.schema import SUMMARY_COLUMNS
@@ -115,7 +115,7 @@ class LogHistory(LogHeader):
         fields = self._file.checked(lambda: parse_summary(names, values), "summary/value")
         if self.has_events and fields.get("rows", len(self)) != len(self):
             raise DamageError(self.path, f"summary/value: {fields['rows']} rows (events: {len(self)})")
-        return Table(self.path, "summary", fields)
+        return StoredTable(self.path, "summary", fields)
 
     @cached_property
     def end_time(self) -> float:

@@ -41,7 +41,7 @@ PAUSE = 0.02
 Result = TypeVar("Result")
 
 
-class Table(dict[str, Any]):
+class StoredTable(dict[str, Any]):
     """Entries of a table of a log, by name; a missing entry raises DamageError."""
 
     def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, overload
 import numpy as np
 
 from idealgas.columns import Kind
-from idealgas.log.log_file import LogFile, Table
+from idealgas.log.log_file import LogFile, StoredTable
 from idealgas.log.schema import CHECKPOINT_COLUMNS
 from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
@@ -106,7 +106,9 @@ class Checkpoints(Sequence[Checkpoint]):
         arrays = {name: entry for name, entry in entries.items() if entry.ndim}
         values = {name: entry.item() for name, entry in entries.items() if not entry.ndim}
         path = self._file.path
-        return Checkpoint(time, at, epoch, Table(path, "checkpoints", arrays), Table(path, "checkpoints", values))
+        return Checkpoint(
+            time, at, epoch, StoredTable(path, "checkpoints", arrays), StoredTable(path, "checkpoints", values)
+        )
 
     def _entry(self, name: str, row: int) -> np.ndarray:
         path = f"checkpoints/{name}"

@@ -12,7 +12,7 @@ from idealgas.scene.changes import Later, effects_at
 from idealgas.scene.checks.overlaps import deepest_overlap
 from idealgas.scene.discs import make_discs
 from idealgas.scene.start import StartError
-from idealgas.scene.tables import Start
+from idealgas.scene.tables import StartTable
 from idealgas.toml.dump import dump_document
 
 
@@ -80,7 +80,7 @@ def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
     columns, _ = _columns(log, time)
     numbers = Counter(columns["species"])
     update: dict[str, Any] = {
-        "start": Start(log=source, time=time),
+        "start": StartTable(log=source, time=time),
         "disc": tuple(disc for disc in scene.disc if disc.fixed),
         "box": scene.box.after(time),
         "species": tuple(

@@ -27,7 +27,7 @@ from idealgas.errors import UserError
 from idealgas.log import LogState
 from idealgas.movie.layout import LEFT, LETTER, TOP, Rectangle, frame_size, layout, lengths, view
 from idealgas.movie.order_colours import order_colours
-from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, Panel, SidesPanel, SpeedPanel
+from idealgas.movie.panels import BRIGHTEST, FASTEST, DensityPanel, FilmPanel, SidesPanel, SpeedPanel
 from idealgas.movie.piston_track import PistonTrack
 from idealgas.presentation.style import COLOURS, GRID, disable_mathtext
 from idealgas.scene import Scene
@@ -138,7 +138,7 @@ class Painter:
         self._flow = centre_of_mass_velocity(scene, gas)
         self._scene, self._inside, self._gas, self._pistons = scene, walls_inside(scene), gas, pistons
         self._colouring, self._shows, self._maxwell = colouring, panel, maxwell
-        self._panel: Panel | None = None
+        self._panel: FilmPanel | None = None
         self._view = view(gas.box, pistons)
         self.size = size or frame_size(self._view, panel != "none")
         self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}

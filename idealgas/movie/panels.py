@@ -25,7 +25,7 @@ FASTEST, BRIGHTEST = 3.2, 2.0
 STRIP = 9  # height of the strip with the colours, pixels
 
 
-class Panel(Protocol):
+class FilmPanel(Protocol):
     """Panel of a film. handles: entries of its legend."""
 
     handles: list[Line2D]

@@ -12,7 +12,7 @@ from idealgas.physics.motion import NEVER
 from idealgas.physics.periodic import shift_by_images
 from idealgas.physics.restitution import restitution_factor
 from idealgas.physics.rotation import tangential_impulse
-from idealgas.physics.shear import enter_common_frame, less_offset, set_velocities_along_x
+from idealgas.physics.shear import enter_common_frame, set_velocities_along_x, subtract_offset
 
 
 @inline
@@ -36,7 +36,7 @@ def relative_motion(a, b, gravity, periodic, images):
         vy += gravity.y * (a_dt - b_dt)
     if periodic is not None:
         x, y = shift_by_images(x, y, periodic, images)
-        x, vx = less_offset(x, vx, time, periodic.shear, images)
+        x, vx = subtract_offset(x, vx, time, periodic.shear, images)
     return time, x, y, vx, vy
 
 
@@ -143,7 +143,7 @@ def collide(a, b, a_id, b_id, images, rotation, periodic, effects):
     x, y = a.x - b.x, a.y - b.y
     if periodic is not None:
         x, y = shift_by_images(x, y, periodic, images)
-        x, _ = less_offset(x, a.vx, a.t, periodic.shear, images)
+        x, _ = subtract_offset(x, a.vx, a.t, periodic.shear, images)
     if rotation is not None:
         tangential_impulse(a, b, a_id, b_id, x, y, rotation)
     factor = restitution_factor(effects.restitution, a_id, b_id, a.t)

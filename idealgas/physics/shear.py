@@ -68,7 +68,7 @@ def offset_at(shear, time):
 
 
 @inline
-def less_offset(x, vx, time, shear, images):
+def subtract_offset(x, vx, time, shear, images):
     """Subtract the displacement and velocity of an image from a relative position and velocity along x.
 
     x: length. vx: length/time. time: local time. images: numbers of box lengths (x, y) to the image.

@@ -18,7 +18,7 @@ ANY = "*"
 """Placeholder for the name of a group, such as a species, a wall or a route, in the name of a quantity."""
 
 
-class Row(NamedTuple):
+class QuantityRow(NamedTuple):
     """A number of a result.
 
     Attributes:
@@ -34,14 +34,14 @@ class Row(NamedTuple):
     values: Mapping[str, float | None]
 
 
-def rows(found: Any, name: str) -> Iterator[Row]:
+def rows(found: Any, name: str) -> Iterator[QuantityRow]:
     """Yield the numbers in the plain values of a result; name: name of the analysis."""
     return _rows(found, (name,), (), None)
 
 
-def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int | None) -> Iterator[Row]:
+def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int | None) -> Iterator[QuantityRow]:
     if isinstance(part, dict) and set(ESTIMATE) <= part.keys():
-        yield Row(".".join(path), ", ".join(group), index, {name: part[name] for name in ESTIMATE})
+        yield QuantityRow(".".join(path), ", ".join(group), index, {name: part[name] for name in ESTIMATE})
     elif isinstance(part, dict):
         for name, value in part.items():
             word = identifier(name)
@@ -57,7 +57,7 @@ def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int |
             else:
                 yield from _rows(entry, (*path, str(k)), group, index)
     elif isinstance(part, int | float):
-        yield Row(".".join(path), ", ".join(group), index, {"value": float(part)})
+        yield QuantityRow(".".join(path), ", ".join(group), index, {"value": float(part)})
 
 
 def identifier(text: str) -> str:

@@ -17,7 +17,7 @@ from idealgas.log import Log, takes_path
 from idealgas.presentation.tables import Number, Table, escape, html_table
 from idealgas.report.picture import html_pictures
 from idealgas.report.player import MOST_DISCS, Player, player
-from idealgas.report.sections import Section, make_sections
+from idealgas.report.sections import ReportSection, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
 """Files of the program of the page, in order."""
@@ -92,7 +92,7 @@ def write_report(
     return path
 
 
-def _page(log: Log, played: Player | None, sections: Sequence[Section]) -> str:
+def _page(log: Log, played: Player | None, sections: Sequence[ReportSection]) -> str:
     facts = info(log)
     file = facts["file"]
     applicable = [section for section in sections if section.left_out is None]
@@ -210,7 +210,7 @@ def _shown(value: object) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
-def _section(section: Section, key: str) -> str:
+def _section(section: ReportSection, key: str) -> str:
     notes = "".join(f'<p class="note">{escape(note)}</p>' for table in section.tables for note in table.notes)
     picture = "" if section.picture is None else html_pictures(section.picture, section.caption, key)
     headline = f"<p>{escape(section.words)}</p>" if section.words else ""

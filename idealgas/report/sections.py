@@ -12,7 +12,7 @@ from idealgas.presentation.tables import Table
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A section of the report page.
 
     Attributes:
@@ -34,7 +34,7 @@ class Section:
     left_out: str | None = None
 
 
-def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, total: None) -> list[Section]:
+def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, total: None) -> list[ReportSection]:
     """Return the sections of all analyses in order; on_step(done, total) is called after each section."""
     made = []
     parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
@@ -45,10 +45,10 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
             result = analysis.combined([analysis.analyse(log, **section.options)])
             tables = tuple(analysis.shown_tables(result))
             figure, words = analysis.figure(result), analysis.summary(result)
-            made.append(Section(analysis.key, section.title, figure, section.caption, tables, words))
+            made.append(ReportSection(analysis.key, section.title, figure, section.caption, tables, words))
         except DamageError:
             raise
         except UserError as error:
-            made.append(Section(analysis.key, section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
+            made.append(ReportSection(analysis.key, section.title, left_out=str(error).removeprefix(f"{log.path}: ")))
         on_step(k + 1, len(parts))
     return made

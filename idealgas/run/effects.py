@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects, inner_energy, present
-from idealgas.effects.effect import Start
+from idealgas.effects.effect import GasAtStart
 from idealgas.engine.epoch import driving_speed, encounters_per_length
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
@@ -42,12 +42,12 @@ def make_schedule(scene: Scene, gas: Gas) -> Schedule | None:
     return _schedule(scene, _start(scene, gas))
 
 
-def _start(scene: Scene, gas: Gas) -> Start:
+def _start(scene: Scene, gas: Gas) -> GasAtStart:
     first, later = scene.properties.acceleration, scene.properties.later_accelerations
-    return Start(gas, scene.scene.seed, first, *_spins(scene, gas), later)
+    return GasAtStart(gas, scene.scene.seed, first, *_spins(scene, gas), later)
 
 
-def _schedule(scene: Scene, start: Start) -> Schedule | None:
+def _schedule(scene: Scene, start: GasAtStart) -> Schedule | None:
     tables = ((k, effect, scene.tables_of(effect)) for k, effect in enumerate(EFFECTS))
     schedules = ((k, effect.schedule(table, start)) for k, effect, table in tables if effect.find(table) is not None)
     entries = ((change.time, k, change.item, change.value) for k, changes in schedules for change in changes)

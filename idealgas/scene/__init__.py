@@ -12,7 +12,7 @@ from idealgas.effects.wall import WallTable
 from idealgas.scene.defaults import RestingDisc
 from idealgas.scene.loader import load_scene, parse_scene
 from idealgas.scene.scene import Scene
-from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species
+from idealgas.scene.tables import Box, Disc, Header, LogTable, Run, Species
 from idealgas.toml.issues import SceneError
 
 __all__ = [
@@ -20,7 +20,7 @@ __all__ = [
     "Disc",
     "GravityTable",
     "Header",
-    "Log",
+    "LogTable",
     "PistonTable",
     "RestingDisc",
     "RestitutionTable",

@@ -8,7 +8,7 @@ from idealgas.effects.schedule import SteppedTable, as_times, steps_of
 from idealgas.scene.scene import Scene, make_scene
 from idealgas.toml.issues import SceneError
 from idealgas.toml.overrides import OverrideError, find, value_of
-from idealgas.toml.text import Origin
+from idealgas.toml.text import TextOrigin
 
 OPEN = "open"
 """Key that opens a wall, or closes it if false."""
@@ -33,7 +33,7 @@ def changed_scene(scene: Scene, change: SceneChange) -> Scene:
         apply_change(document, change)
     except OverrideError as error:
         raise SceneError([f"{change.setting}: {error}"]) from None
-    return make_scene(document, Origin(name=change.setting), discs=scene.given)
+    return make_scene(document, TextOrigin(name=change.setting), discs=scene.given)
 
 
 def apply_change(document: dict[str, Any], change: SceneChange) -> None:

@@ -16,7 +16,7 @@ EXPLICIT = "disc"
 
 
 @dataclass(frozen=True, eq=False)
-class Discs:
+class InitialDiscs:
     """Given discs, in order of id; they have the first ids of a scene.
 
     Attributes:
@@ -42,17 +42,17 @@ class Discs:
     def __len__(self) -> int:
         return len(self.radius)
 
-    def first(self, number: int) -> "Discs":
+    def first(self, number: int) -> "InitialDiscs":
         """Return the first discs; number: how many."""
         keys = ("position", "velocity", "radius", "mass", "angular_velocity", "species", "index")
         names = self.names[: int(self.species[:number].max()) + 1]
         return replace(self, names=names, **{key: getattr(self, key)[:number] for key in keys})
 
-    def reversed(self) -> "Discs":
+    def reversed(self) -> "InitialDiscs":
         """Return the discs with reversed velocities and spins."""
         return replace(self, velocity=0.0 - self.velocity, angular_velocity=0.0 - self.angular_velocity)
 
-    def wrapped(self, size: Sequence[float], periodic: Sequence[bool], shear: float = 0.0) -> "Discs":
+    def wrapped(self, size: Sequence[float], periodic: Sequence[bool], shear: float = 0.0) -> "InitialDiscs":
         """Return the discs wrapped into a box, which may be periodic along x or y.
 
         Between sheared sides, a disc that is moved down by a number of heights of the box becomes slower along x,
@@ -88,11 +88,11 @@ class Discs:
         return sha.hexdigest()[:32]
 
 
-def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> Discs:
+def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> InitialDiscs:
     """Make discs from columns by name, without checks. names: species of each disc."""
     numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
     n = len(names)
-    return Discs(
+    return InitialDiscs(
         position=np.array(columns["position"], float).reshape(n, 2),
         velocity=np.array(columns["velocity"], float).reshape(n, 2),
         radius=np.array(columns["radius"], float),
@@ -104,7 +104,7 @@ def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[in
     )
 
 
-def discs_of_tables(tables: Sequence[Any]) -> Discs:
+def discs_of_tables(tables: Sequence[Any]) -> InitialDiscs:
     """Discs of the valid tables [[disc]] that are not fixed; None marks invalid tables."""
     items = [(i, d) for i, d in enumerate(tables) if d is not None and not d.fixed]
     keys = ("position", "velocity", "radius", "mass")
@@ -122,7 +122,7 @@ NO_DISCS = discs_of_tables(())
 
 
 @dataclass(eq=False)
-class Given:
+class ExplicitDiscs:
     """Given discs of a scene, and what else follows from its tables.
 
     All instances compare equal, because the digest in the table [start] distinguishes the discs.
@@ -137,7 +137,7 @@ class Given:
         effects_of: tables from which `effects` were found.
     """
 
-    discs: Discs = NO_DISCS
+    discs: InitialDiscs = NO_DISCS
     update: Mapping[str, Any] = field(default_factory=dict)
     tables: Sequence[Any] | None = None
     walls: Sequence[FixedDisc] = ()
@@ -146,6 +146,6 @@ class Given:
     effects_of: Sequence[Any] = ()
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Given)
+        return isinstance(other, ExplicitDiscs)
 
     __hash__ = None  # type: ignore[assignment]

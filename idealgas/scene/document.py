@@ -17,11 +17,11 @@ from idealgas.effects.properties import ActiveEffect, Properties, combine, lacki
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
 from idealgas.scene.defaults import RestingDisc, mean_kinetic_energy, mean_speed, reference_speed
-from idealgas.scene.discs import Discs, Given, discs_of_tables, fixed_discs
+from idealgas.scene.discs import ExplicitDiscs, InitialDiscs, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
 from idealgas.scene.solids import NO_SOLIDS, Solids, covered_area, find_solids
-from idealgas.scene.tables import Box, Disc, Header, Log, Run, Species, Start
+from idealgas.scene.tables import Box, Disc, Header, LogTable, Run, Species, StartTable
 from idealgas.toml.table import Rectangle, Table, Vector
 
 DEFAULT_CONTACT = 0.05
@@ -38,7 +38,7 @@ class _Discs(Table):
     box: Box = Field(description="[box]: size")
     species: Annotated[tuple[Species, ...], Field(strict=False)] = Field(default=(), description="[[species]] tables")
     disc: Annotated[tuple[Disc, ...], Field(strict=False)] = Field(default=(), description="[[disc]] tables")
-    start: Start | None = Field(default=None, description="[start]: log or file, time, velocities")
+    start: StartTable | None = Field(default=None, description="[start]: log or file, time, velocities")
 
 
 def _fields_of_effects() -> dict[str, Any]:
@@ -72,14 +72,14 @@ class Document(_DiscsAndEffects):
     """All tables of a scene."""
 
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
-    log: Log = Field(default_factory=Log, description="[log]: events, compression, checkpoint_every, ...")
-    _given: Given = PrivateAttr(default_factory=Given)
+    log: LogTable = Field(default_factory=LogTable, description="[log]: events, compression, checkpoint_every, ...")
+    _given: ExplicitDiscs = PrivateAttr(default_factory=ExplicitDiscs)
 
     @property
-    def given(self) -> Discs:
+    def given(self) -> InitialDiscs:
         """Discs from the table [start] or the tables [[disc]]."""
         if self.start is None and self._given.tables is not self.disc:
-            self._given = Given(discs_of_tables(self.disc), tables=self.disc)
+            self._given = ExplicitDiscs(discs_of_tables(self.disc), tables=self.disc)
         return self._given.discs
 
     @property

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from os import PathLike
 
 from idealgas.scene.changes import SceneChange, apply_change
-from idealgas.scene.discs import Discs
+from idealgas.scene.discs import InitialDiscs
 from idealgas.scene.scene import Scene, make_scene
 from idealgas.toml.issues import Key
 from idealgas.toml.overrides import OverrideError, apply
-from idealgas.toml.text import Origin, parse_document, read_text
+from idealgas.toml.text import TextOrigin, parse_document, read_text
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -33,7 +33,7 @@ def parse_scene(
     name: str = "<scene>",
     overrides: Sequence[str] = (),
     *,
-    discs: Discs | None = None,
+    discs: InitialDiscs | None = None,
     changes: Sequence[SceneChange] = (),
 ) -> Scene:
     """Make a scene from TOML text and check it completely, as `load_scene` does.
@@ -65,4 +65,4 @@ def parse_scene(
             apply_change(document, change)
         except OverrideError as error:
             errors.append(f"{change.setting}: {error}")
-    return make_scene(document, Origin(text, name, overridden), errors, discs=discs)
+    return make_scene(document, TextOrigin(text, name, overridden), errors, discs=discs)

@@ -11,12 +11,12 @@ from pydantic import BaseModel, PrivateAttr, TypeAdapter, ValidationError, Valid
 from pydantic_core import PydanticCustomError
 
 from idealgas.scene.checks import issues
-from idealgas.scene.discs import Discs, Given
+from idealgas.scene.discs import ExplicitDiscs, InitialDiscs
 from idealgas.scene.document import Document
 from idealgas.scene.start import StartError, read_start
 from idealgas.toml.issues import Issue, SceneError, as_issues, table_at
 from idealgas.toml.overrides import names_of
-from idealgas.toml.text import Origin
+from idealgas.toml.text import TextOrigin
 
 
 class _SceneType(type(BaseModel)):  # type: ignore[misc]
@@ -25,7 +25,7 @@ class _SceneType(type(BaseModel)):  # type: ignore[misc]
     def __call__(cls, *, discs: Mapping[str, Any] | None = None, **tables: Any) -> "Scene":
         if discs is not None:
             tables = {"start": {}} | tables
-        return make_scene(tables, Origin(), columns=discs)
+        return make_scene(tables, TextOrigin(), columns=discs)
 
 
 class Scene(Document, metaclass=_SceneType):
@@ -36,13 +36,13 @@ class Scene(Document, metaclass=_SceneType):
     raises SceneError for an invalid scene.
     """
 
-    _origin: Origin = PrivateAttr(default_factory=Origin)
+    _origin: TextOrigin = PrivateAttr(default_factory=TextOrigin)
 
     @model_validator(mode="after")
     def _check(self, info: ValidationInfo) -> Self:
         if self.start is not None:
             try:
-                self._given = Given(*read_start(self, **info.context or {}))
+                self._given = ExplicitDiscs(*read_start(self, **info.context or {}))
             except StartError as error:
                 errors = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
                 raise PydanticCustomError(
@@ -67,7 +67,7 @@ class Scene(Document, metaclass=_SceneType):
             update["start"] = self.start.model_copy(update=known | dict(self._given.update))
         return self.model_copy(update=update)
 
-    def from_origin(self, origin: Origin) -> Self:
+    def with_origin(self, origin: TextOrigin) -> Self:
         """Set the origin of this scene and return the scene."""
         self._origin = origin
         return self
@@ -170,11 +170,11 @@ def _digest(value: Any) -> str:
 
 def make_scene(
     document: dict[str, Any],
-    origin: Origin,
+    origin: TextOrigin,
     errors: Sequence[str] = (),
     *,
     columns: Mapping[str, Any] | None = None,
-    discs: Discs | None = None,
+    discs: InitialDiscs | None = None,
 ) -> Scene:
     """Make the scene of a document.
 
@@ -191,7 +191,7 @@ def make_scene(
     try:
         origin.names = names_of(document)
         context = {"folder": origin.folder, "columns": columns, "discs": discs}
-        scene = Scene.model_validate(document, context=context).resolved().from_origin(origin)
+        scene = Scene.model_validate(document, context=context).resolved().with_origin(origin)
     except ValidationError as error:
         errors = [*errors, *origin.report(_all_issues(error, document))]
     if errors:

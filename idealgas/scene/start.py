@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from idealgas.scene.discs import EXPLICIT, Discs, make_discs
+from idealgas.scene.discs import EXPLICIT, InitialDiscs, make_discs
 from idealgas.scene.sizes import mass_of
 from idealgas.toml.table import LARGEST, SMALLEST
 
@@ -45,8 +45,8 @@ class StartError(ValueError):
 
 
 def read_start(
-    scene: Document, folder: Path = Path(), columns: Mapping[str, Any] | None = None, discs: Discs | None = None
-) -> tuple[Discs, dict[str, Any]]:
+    scene: Document, folder: Path = Path(), columns: Mapping[str, Any] | None = None, discs: InitialDiscs | None = None
+) -> tuple[InitialDiscs, dict[str, Any]]:
     """Return the discs from which a scene starts, and the keys of its table [start] that follow from them.
 
     Args:
@@ -82,7 +82,7 @@ def read_start(
     return start_discs, update
 
 
-def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) -> Discs:
+def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) -> InitialDiscs:
     """Check columns and make their discs, with radius and mass of their species. tables: tables [[species]] by name."""
     if unknown := [name for name in columns if name not in COLUMNS]:
         raise StartError(key, "unknown column", str(unknown[0]), ", ".join(COLUMNS))

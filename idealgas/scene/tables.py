@@ -123,7 +123,7 @@ Instant = Annotated[
 ]
 
 
-class Start(Table):
+class StartTable(Table):
     """`[start]`: discs with positions and velocities from a log or a file, instead of `[[disc]]` tables."""
 
     log: str | None = Field(default=None, description="path of a log, relative to this file")
@@ -208,7 +208,7 @@ class Run(Table):
     )
 
 
-class Log(Table):
+class LogTable(Table):
     """`[log]`: contents of the log."""
 
     events: bool = Field(default=True, description="whether every event is recorded; otherwise only checkpoints")

@@ -67,7 +67,7 @@ class Spread(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Process:
+class AutoregressiveProcess:
     """Stationary process behind one or several series of one length: models with their weights."""
 
     models: tuple[Model, ...]
@@ -184,7 +184,7 @@ def changes(series: np.ndarray) -> bool:
     return bool(np.ptp(series) > NOISE * np.abs(series).max())
 
 
-def process_of(series: np.ndarray) -> Process:
+def process_of(series: np.ndarray) -> AutoregressiveProcess:
     """Return the process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2.
 
     The models have orders from 0 to n/8 or, if the series are long, 20 log₁₀ n.
@@ -206,7 +206,7 @@ def process_of(series: np.ndarray) -> Process:
         Model(coefficients[p, :p], noise[p], covariance[: p + 1] * n / (n - p), 2 / n + 4 * doubt[p] / n)
         for p in kept.tolist()
     )
-    return Process(models, weight[kept] / weight[kept].sum(), length)
+    return AutoregressiveProcess(models, weight[kept] / weight[kept].sum(), length)
 
 
 _fitted = 0

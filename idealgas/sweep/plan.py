@@ -19,7 +19,7 @@ from idealgas.sweep.tables import (
     PHI,
     Axis,
     Published,
-    Tables,
+    SweepTables,
     Value,
     axis_groups,
     published_errors,
@@ -29,7 +29,7 @@ from idealgas.sweep.tables import (
 from idealgas.toml.dump import toml_value
 from idealgas.toml.issues import Key, as_issues
 from idealgas.toml.overrides import OverrideError, apply
-from idealgas.toml.text import Origin, parse_document, read_text
+from idealgas.toml.text import TextOrigin, parse_document, read_text
 
 
 @dataclass(frozen=True)
@@ -91,13 +91,13 @@ def load_sweep(
     """
     text, name = read_text(path).replace("\r\n", "\n"), str(path)
     document = parse_document(text, name)
-    of_sweep = [override for override in overrides if override.split(".")[0].strip() in Tables.model_fields]
+    of_sweep = [override for override in overrides if override.split(".")[0].strip() in SweepTables.model_fields]
     of_scene = [override for override in overrides if override not in of_sweep]
-    origin = Origin(text, name, _override(document, of_sweep))
+    origin = TextOrigin(text, name, _override(document, of_sweep))
     try:
-        tables = Tables.model_validate(document)
+        tables = SweepTables.model_validate(document)
     except ValidationError as error:
-        raise SceneError(origin.report(as_issues(error.errors(include_url=False), Tables))) from None
+        raise SceneError(origin.report(as_issues(error.errors(include_url=False), SweepTables))) from None
     if issues := list(table_errors(tables)) or list(size_errors(tables)):
         raise SceneError(origin.report(issues))
     points = tuple(_points(tables, _bases(tables, Path(path), origin, of_scene), origin, on_progress))
@@ -118,15 +118,15 @@ def _override(document: dict[str, Any], overrides: Iterable[str]) -> dict[Key, s
     return places
 
 
-Base = tuple[dict[str, Any], Origin]
+Base = tuple[dict[str, Any], TextOrigin]
 
 
-def _bases(tables: Tables, path: Path, origin: Origin, overrides: Sequence[str]) -> dict[Value | None, Base]:
+def _bases(tables: SweepTables, path: Path, origin: TextOrigin, overrides: Sequence[str]) -> dict[Value | None, Base]:
     """Return the base scenes, with overrides, by their value of the axis "base"; a single one has the key None."""
     bases: dict[Value | None, Base]
     if tables.base is not None:
         places = {key[1:]: place for key, place in origin.overridden.items() if key[0] == "base"}
-        bases = {None: (tables.base, Origin(origin.text, origin.name, places, above=("base",)))}
+        bases = {None: (tables.base, TextOrigin(origin.text, origin.name, places, above=("base",)))}
     elif tables.sweep.scene is not None:
         bases = {None: _read_base(path.parent / tables.sweep.scene)}
     else:
@@ -137,14 +137,14 @@ def _bases(tables: Tables, path: Path, origin: Origin, overrides: Sequence[str])
 
 def _read_base(path: Path) -> Base:
     text = read_text(path).replace("\r\n", "\n")
-    return parse_document(text, str(path)), Origin(text, str(path))
+    return parse_document(text, str(path)), TextOrigin(text, str(path))
 
 
 # ── points ──
 
 
 def _points(
-    tables: Tables, bases: dict[Value | None, Base], origin: Origin, on_progress: Callable[[int, int], None]
+    tables: SweepTables, bases: dict[Value | None, Base], origin: TextOrigin, on_progress: Callable[[int, int], None]
 ) -> Iterator[Point]:
     """Return the points in the order of the axes; the last axis changes fastest, and replicates are consecutive."""
     settings, groups = tables.sweep, axis_groups(tables.axis)
@@ -169,7 +169,7 @@ def _points(
 
 
 def _scene(
-    axes: Sequence[Axis], pairs: Sequence[tuple[int, Value]], bases: dict[Value | None, Base], origin: Origin
+    axes: Sequence[Axis], pairs: Sequence[tuple[int, Value]], bases: dict[Value | None, Base], origin: TextOrigin
 ) -> Scene:
     """Return the scene of a combination of values, each given with the number of its axis. Raises SceneError."""
     base, base_origin = bases[next((value for i, value in pairs if axes[i].key == BASE), None)]
@@ -192,9 +192,9 @@ def _scene(
     return make_scene(document, _placed(base_origin, places))
 
 
-def _placed(origin: Origin, places: Mapping[Key, str]) -> Origin:
+def _placed(origin: TextOrigin, places: Mapping[Key, str]) -> TextOrigin:
     """Return the origin of a document in which keys have been changed at the given places."""
-    return Origin(origin.text, origin.name, {**origin.overridden, **places}, origin.above)
+    return TextOrigin(origin.text, origin.name, {**origin.overridden, **places}, origin.above)
 
 
 def _apply(override: str, document: dict[str, Any], place: str) -> Key:

@@ -21,7 +21,7 @@ FARTHEST = 6.0
 """Largest deviation that is drawn to scale, σ; larger deviations are drawn at the edge with their values."""
 
 
-class Comparison(NamedTuple):
+class PublishedComparison(NamedTuple):
     """A published value and the value of a sweep, which is the average over its replicates.
 
     Attributes:
@@ -45,7 +45,7 @@ class Comparison(NamedTuple):
         return off / both if both else math.copysign(math.inf, off) if off else 0.0
 
 
-def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[Published, list[Comparison]]]:
+def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[Published, list[PublishedComparison]]]:
     """Yield each table `[[published]]` of a sweep with the comparisons at all points that have results.
 
     Raises:
@@ -62,7 +62,7 @@ def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[
         lines = []
         for label, value, error in zip(labels, paper.values, paper.errors or (0.0,) * len(labels), strict=True):
             if replicates := [row for row in rows.get(label, ()) if row["quantity"] == paper.quantity]:
-                lines.append(Comparison(label, *average(replicates), value, error))
+                lines.append(PublishedComparison(label, *average(replicates), value, error))
         yield paper, lines
 
 
@@ -89,7 +89,7 @@ def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> 
     """Return a figure of the deviations from published values, a row per paper. sweeps: sweeps with their folders."""
     from idealgas.presentation.style import COLOURS, GREY, WIDTH, name_rows, panels
 
-    papers: dict[str, list[Comparison]] = {}
+    papers: dict[str, list[PublishedComparison]] = {}
     for sweep, folder in sweeps:
         for paper, compared in comparisons(sweep, folder):
             papers.setdefault(paper.source, []).extend(compared)

@@ -50,7 +50,7 @@ TIMEOUT = 10.0  # time limit for the answer of a scheduler, s
 
 
 @dataclass(frozen=True)
-class Progress:
+class SweepProgress:
     """Progress of a sweep: numbers of finished points, of points that failed for good, and of all points."""
 
     done: int
@@ -93,7 +93,7 @@ def run_sweep(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
-    on_progress: Callable[[Progress], None] = lambda progress: None,
+    on_progress: Callable[[SweepProgress], None] = lambda progress: None,
     on_estimate: Callable[[int, int], None] = lambda done, total: None,
 ) -> Outcome:
     """Run the points of a sweep that are not done yet, and write the tables of all results.
@@ -121,17 +121,17 @@ def run_sweep(
         failures: dict[int, str] = {}
         workers = min(workers or os.cpu_count() or 1, max(len(open_points), 1))
         estimated, started = None, time.monotonic()
-        on_progress(Progress(before, 0, len(sweep.points)))
+        on_progress(SweepProgress(before, 0, len(sweep.points)))
         if open_points:
             with _client(workers, scheduler) as client:
                 if not scheduler:
                     estimated = _estimate(client, remaining, folder, workers, on_estimate)
-                    on_progress(Progress(before, 0, len(sweep.points)))  # the estimate is over
+                    on_progress(SweepProgress(before, 0, len(sweep.points)))  # the estimate is over
                 for k, (index, failure) in enumerate(_run(client, remaining, folder)):
                     if failure is not None:
                         check_folder(folder)
                         failures[index] = failure
-                    on_progress(Progress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
+                    on_progress(SweepProgress(before + k + 1 - len(failures), len(failures), len(sweep.points)))
         failures |= _lost(folder, (point.index for point in open_points if point.index not in failures))
         seconds = time.monotonic() - started
         done = len(sweep.points) - len(failures)

@@ -77,7 +77,7 @@ class Published(Table):
     note: str = Field(default="", description="a known difference, in one sentence")
 
 
-class Tables(Table):
+class SweepTables(Table):
     """Tables of the file of a sweep."""
 
     sweep: Settings = Field(
@@ -104,7 +104,7 @@ def axis_groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]
     ]
 
 
-def table_errors(tables: Tables) -> Iterator[Issue]:
+def table_errors(tables: SweepTables) -> Iterator[Issue]:
     """Yield errors that involve several tables."""
     along = [i for i, axis in enumerate(tables.axis) if axis.key == BASE]
     given = ["sweep.scene"] * (tables.sweep.scene is not None) + ["[base]"] * (tables.base is not None)
@@ -134,7 +134,7 @@ def table_errors(tables: Tables) -> Iterator[Issue]:
             yield Issue((("axis", i, "zip"),), "length differs from the other axes with this zip", got, allowed)
 
 
-def size_errors(tables: Tables) -> Iterator[Issue]:
+def size_errors(tables: SweepTables) -> Iterator[Issue]:
     """Yield an error if a sweep has too many runs; called before the points are made."""
     numbers = [len(group) for group in axis_groups(tables.axis)]
     total = math.prod(numbers) * tables.sweep.replicates

@@ -162,7 +162,7 @@ class _Scanner:
 
 
 @dataclass
-class Origin:
+class TextOrigin:
     """Origin of a document. All origins compare equal, so that they do not matter when scenes are compared.
 
     Attributes:

@@ -14,7 +14,7 @@ from helpers.support import called, error_of, idealgas, output_of
 from helpers.sweeps import start, wait_for
 
 from idealgas.analysis import registry
-from idealgas.sweep.run import Outcome, Progress
+from idealgas.sweep.run import Outcome, SweepProgress
 
 SWEEP = """
 [sweep]
@@ -157,7 +157,7 @@ def test_a_ctrl_c_that_another_package_loses_is_not_lost(plan, tmp_path, monkeyp
         with contextlib.suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         if later == "a point":
-            on_progress(Progress(1, 0, 6))
+            on_progress(SweepProgress(1, 0, 6))
         return Outcome(0, 0, {})
 
     monkeypatch.setattr("idealgas.sweep.run.run_sweep", run_sweep)

@@ -10,7 +10,7 @@ from idealgas.columns import FIRST_SEGMENT
 from idealgas.effects import EFFECTS
 from idealgas.effects.arc import make_arcs
 from idealgas.effects.bundle import Effects
-from idealgas.effects.effect import Effect, Start
+from idealgas.effects.effect import Effect, GasAtStart
 from idealgas.effects.wall import make_segments
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.jit import aligned
@@ -115,7 +115,7 @@ def from_benchmark(effect: Effect[Any], gas: Gas, seed: int) -> Any:
     scene = effect_scene(effect.name, 1)
     rest = np.zeros(len(gas))
     tables = scene.tables_of(effect)._replace(size=BOX)
-    return effect.state_at_start(tables, Start(gas, seed, scene.properties.acceleration, rest, rest))
+    return effect.state_at_start(tables, GasAtStart(gas, seed, scene.properties.acceleration, rest, rest))
 
 
 def make_thermostat(n: int, seed: int) -> Thermostat:

@@ -6,7 +6,7 @@ from helpers.against_theory import agrees
 from helpers.logs import PERIODIC, gas, log_of, raised
 
 from idealgas import heat_capacity, pressure, profile, temperature
-from idealgas.analysis.caveats import of_log
+from idealgas.analysis.caveats import log_caveats
 from idealgas.analysis.profile.flow import expected_flow
 from idealgas.tallies.equilibrium import kind_of_state
 from idealgas.theory.conserved import conserved_momentum
@@ -46,7 +46,7 @@ def test_thermal_walls_carry_the_weight_along_them():
     assert force.x.theory == pytest.approx(30 * 0.1)
     agrees(force.x, 0.02)
     assert temperature(log, start=200).expected is None
-    assert "makes the gas flow" in " ".join(of_log(log))
+    assert "makes the gas flow" in " ".join(log_caveats(log))
     raised("requires equilibrium", heat_capacity, log)
 
 

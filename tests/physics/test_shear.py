@@ -159,7 +159,7 @@ def test_the_stress_heats_the_gas():
     )
     assert "run.h5" in continued_scene(log, 9 / 2.8, "run.h5")
     for analysis in registry.analyses():
-        if not analysis.takes_shear:
+        if not analysis.supports_shear:
             raised(
                 r"but sides shear it; use|equal discs in each species, but",
                 analysis.analyse,

@@ -25,7 +25,7 @@ from tools.calibration_cases import CASES, Case
 from tools.calibration_estimates import estimates
 
 from idealgas import Log, open_log, parse_scene, simulate
-from idealgas.analysis.caveats import of_window
+from idealgas.analysis.caveats import window_caveats
 from idealgas.errors import NotApplicableError
 from idealgas.tallies.equilibration import measure as read_window
 
@@ -69,7 +69,7 @@ def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
                 taken += [(name, one, False) for name, one in case.besides(log)]
                 window = read_window(log, []) if case.steady else None
                 share = window.duration / (log.end_time - log.start_time) if window else None
-                said = float(bool(window and (of_window(window) or case.caveats(log))))
+                said = float(bool(window and (window_caveats(window) or case.caveats(log))))
                 energy = energy_of(log)
             except NotApplicableError:
                 taken, share, said = [], 0.0, 1.0

@@ -9,7 +9,7 @@ from tools import calibration_estimates as estimates
 from tools.calibration_estimates import Of, of
 
 from idealgas import Log, profile, scattering, shear, transport
-from idealgas.analysis.caveats import of_window
+from idealgas.analysis.caveats import window_caveats
 from idealgas.columns import SIDES
 from idealgas.statistics.estimates import Estimate
 
@@ -117,7 +117,7 @@ def exchange(collisions: int) -> tuple[str, str]:
 
 def slow_along(axis: Literal["x", "y"]) -> Callable[[Log], Sequence[str]]:
     """Caveats of a window that is short for what crosses the box along an axis."""
-    return lambda log: of_window(profile(log, axis, 2).window)
+    return lambda log: window_caveats(profile(log, axis, 2).window)
 
 
 def in_a_row(*gases: tuple[int, float, float]) -> str:

@@ -115,7 +115,7 @@ class CoolingAnalysis(Analysis):
 
     position = 30
     headline = "loss"
-    takes_unlike_discs = False
+    supports_polydispersity = False
     results = (Cooling,)
     sections = (
         Section(

@@ -23,7 +23,7 @@ from idealgas.analysis.evolution.means import (
 )
 from idealgas.analysis.evolution.pressure_series import PressureSeries, draw_pressure, draw_state, pressure_series
 from idealgas.analysis.evolution.summary import evolution_summary
-from idealgas.analysis.evolution.theory import Law, equilibrium_spread, expected_law, first_passable
+from idealgas.analysis.evolution.theory import EvolutionLaw, equilibrium_spread, expected_law, first_passable
 from idealgas.analysis.result import Result
 from idealgas.errors import UserError
 from idealgas.fields import OPTIONAL, reported
@@ -84,7 +84,7 @@ class Evolution(Result):
     spin: Annotated[np.ndarray | None, OPTIONAL]
     beyond: Series
     spread: dict[str, Estimate]
-    law: Law | None
+    law: EvolutionLaw | None
     samples: np.ndarray
     parts: Series
     given: Series
@@ -118,7 +118,7 @@ class EvolutionAnalysis(Analysis):
     """Evolution in time."""
 
     position = 20
-    takes_escapes = True
+    supports_escapes = True
     headline = "rest"
     results = (Evolution,)
     sections = (

@@ -6,7 +6,7 @@ import numpy as np
 
 from idealgas.analysis.evolution.account import Series
 from idealgas.analysis.evolution.pressure_series import PressureSeries
-from idealgas.analysis.evolution.theory import STEPS, Law, is_crowded, room, work_integral
+from idealgas.analysis.evolution.theory import STEPS, EvolutionLaw, is_crowded, room, work_integral
 from idealgas.log import Log
 from idealgas.statistics.autoregression import error_of_mean
 from idealgas.statistics.estimates import Estimate, mean
@@ -32,7 +32,9 @@ ROUNDING = 1e-9
 """Relative change below which a temperature is constant."""
 
 
-def mean_position(log: Log, series: PressureSeries | None, law: Law | None) -> tuple[Estimate | None, float | None]:
+def mean_position(
+    log: Log, series: PressureSeries | None, law: EvolutionLaw | None
+) -> tuple[Estimate | None, float | None]:
     """Return the mean position of a single piston with a mass once it is steady, and the time at which this begins.
 
     The position is compared with theory. Both results are None without such a piston, or if it is never steady.
@@ -48,7 +50,7 @@ def mean_position(log: Log, series: PressureSeries | None, law: Law | None) -> t
     return mean(places[start:], theory), float(times[start])
 
 
-def mean_temperature(temperature: np.ndarray, law: Law | None) -> Estimate | None:
+def mean_temperature(temperature: np.ndarray, law: EvolutionLaw | None) -> Estimate | None:
     """Return the mean of a temperature (F,) once it is steady, compared with equilibrium.
 
     The result is None if the temperature is constant or never steady, or if the law is not one of equilibrium.
@@ -59,7 +61,7 @@ def mean_temperature(temperature: np.ndarray, law: Law | None) -> Estimate | Non
     return None if start is None else mean(temperature[start:], float(law.temperature[-1]))
 
 
-def adiabatic_exponent(temperature: np.ndarray, law: Law | None) -> Estimate | None:
+def adiabatic_exponent(temperature: np.ndarray, law: EvolutionLaw | None) -> Estimate | None:
     """Return the exponent γ of P A^γ = const from a temperature (F,): 1 + ln(T₂/T₁)/ln(A₁/A₂) between both ends.
 
     Its theory is the exponent of the adiabat of these discs, which is 2 for an ideal gas. Its error follows from the

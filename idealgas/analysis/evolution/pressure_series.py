@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import special
 
-from idealgas.analysis.evolution.theory import Law, StateLines, state_lines
+from idealgas.analysis.evolution.theory import EvolutionLaw, StateLines, state_lines
 from idealgas.columns import FIRST_SEGMENT
 from idealgas.fields import OMITTED, Key
 from idealgas.log import Log
@@ -140,7 +140,7 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
     return math.sqrt(off[calm].sum() / expected[calm].sum() * GROUP / free)
 
 
-def draw_pressure(ax: "Panel", series: PressureSeries, law: Law | None) -> None:
+def draw_pressure(ax: "Panel", series: PressureSeries, law: EvolutionLaw | None) -> None:
     """Draw pressure against time, with the external pressure on a free piston or the adiabat of a driven one."""
     from idealgas.presentation.style import BLACK, COLOURS
 

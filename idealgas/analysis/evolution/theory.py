@@ -45,7 +45,7 @@ In 30 runs the length was 1.1 % larger than theory for 10 discs, and 0.15 % larg
 
 
 @dataclass(frozen=True)
-class Law:
+class EvolutionLaw:
     """Law of the temperature of a gas at F times.
 
     Attributes:
@@ -90,7 +90,7 @@ class StateLines:
 
 def expected_law(
     log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray] | None = None, start: float = 0.0
-) -> Law | None:
+) -> EvolutionLaw | None:
     """Return the law of the temperature at times (F,); None if no simple theory applies to the scene.
 
     Args:
@@ -125,15 +125,17 @@ def expected_law(
     if any(log.gravity):
         axis = int(log.gravity[1] != 0)
         t = None if not properties.empty or log.gravity[1 - axis] else column_temperature(log, axis)
-        return None if t is None else Law(f"in equilibrium T = {t:.6g} at all heights", t * ones, t, steady=True)
+        return (
+            None if t is None else EvolutionLaw(f"in equilibrium T = {t:.6g} at all heights", t * ones, t, steady=True)
+        )
     if log.discs.unlike or (equilibrium := known_ensemble(log)) is None:
         return None
     t = equilibrium.temperature
     kinetic = float(discs.number @ equilibrium.of_species / discs.number.sum())
-    return Law(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * ones, t, steady=True)
+    return EvolutionLaw(f"in equilibrium T = {t:.6g} for each degree of freedom", kinetic * ones, t, steady=True)
 
 
-def _haff(log: Log, time: np.ndarray) -> Law | None:
+def _haff(log: Log, time: np.ndarray) -> EvolutionLaw | None:
     """Return Haff's law T = T₀/(1 + t/τ)² with τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
 
     e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant. If
@@ -147,7 +149,9 @@ def _haff(log: Log, time: np.ndarray) -> Law | None:
     rate = float(contacts) * hard_discs.mean_relative_speed(kinetic / (n * share), gas.mass[0])
     tau = share * granular.cooling_time(granular.GranularParameters(table.normal), rate)
     caveat = "Haff's law assumes a uniform gas; `idealgas cooling` checks this."
-    return Law(f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(caveat,))
+    return EvolutionLaw(
+        f"Haff: T = T₀/(1 + t/τ)², τ = {tau:.4g}", kinetic / n / (1 + time / tau) ** 2, caveats=(caveat,)
+    )
 
 
 def _kinetic(log: Log) -> float:
@@ -216,7 +220,7 @@ def work_integral(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
 
 
-def _adiabat(log: Log, time: np.ndarray) -> Law | None:
+def _adiabat(log: Log, time: np.ndarray) -> EvolutionLaw | None:
     """Return the adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the discs.
 
     The result is None if the gas does not remain a fluid.
@@ -236,10 +240,10 @@ def _adiabat(log: Log, time: np.ndarray) -> Law | None:
     )
     text = "slow piston: T A = const, for discs d ln T = -Z d ln A"
     area = lengths * log.box[1 - log.scene.piston[0].axis]
-    return Law(text, at_first * np.exp(exponent), caveats=(caveat,) if share > SLOW else (), area=area)
+    return EvolutionLaw(text, at_first * np.exp(exponent), caveats=(caveat,) if share > SLOW else (), area=area)
 
 
-def _at_rest(log: Log, ones: np.ndarray) -> Law | None:
+def _at_rest(log: Log, ones: np.ndarray) -> EvolutionLaw | None:
     """Return the mean position of a piston with a mass and the temperature there, from the energy N T + T/2 + P L X.
 
     These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
@@ -263,10 +267,10 @@ def _at_rest(log: Log, ones: np.ndarray) -> Law | None:
     if is_crowded(log, length) or table.outward * piston >= table.outward * table.stop(log.box):
         return None
     text = f"in equilibrium P A = N T Z, T = {t:.6g}, piston at {piston:.6g}"
-    return Law(text, t * ones, None, piston, table.pressure, piston_error=REST_ERROR / n * length, steady=True)
+    return EvolutionLaw(text, t * ones, None, piston, table.pressure, piston_error=REST_ERROR / n * length, steady=True)
 
 
-def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> Law | None:
+def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> EvolutionLaw | None:
     """Return temperature and position of an inner piston with a mass in equilibrium, and the relaxation of both gases.
 
     In equilibrium the probability of a position X between dilute gases of N₁ and N₂ discs is proportional to
@@ -283,7 +287,7 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     t = (_kinetic(log) + table.mass * speed**2 / 2) / (n + 0.5)
     rest = diameter + length * float(number[0] + 1) / (n + 2)
     text = f"in equilibrium T = {t:.6g} on both sides, piston at {rest:.6g}"
-    law = Law(text, t * np.ones(len(time)), piston=rest, piston_error=REST_ERROR / n * length, steady=True)
+    law = EvolutionLaw(text, t * np.ones(len(time)), piston=rest, piston_error=REST_ERROR / n * length, steady=True)
     first = np.array([series[0] for series in apart.values()])
     pressure = number * first / [start - diameter, length - (start - diameter)]
     if abs(pressure[0] - pressure[1]) > EQUAL * pressure.mean() * math.sqrt(2 * (1 / number).sum()):

@@ -60,7 +60,7 @@ class Measured(Result):
 
 
 @dataclass(frozen=True)
-class Route:
+class HeatCapacityRoute:
     """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one route.
 
     Attributes:
@@ -86,7 +86,7 @@ class HeatCapacity(Result):
         logs: measurements of each log.
     """
 
-    routes: tuple[Route, ...]
+    routes: tuple[HeatCapacityRoute, ...]
     refused: dict[str, str]
     logs: tuple[Measured, ...]
 
@@ -131,12 +131,12 @@ def _apart(groups: Groups) -> Iterator[str]:
             yield f"Different gases ({kind}) are analysed separately, each with its slope dE/dT and its means: {words}."
 
 
-def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[Route]:
+def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[HeatCapacityRoute]:
     if (slope := _slope(members)) is not None:
-        yield Route("dE/dT", kind, slope, gas or None)
+        yield HeatCapacityRoute("dE/dT", kind, slope, gas or None)
     for name in dict.fromkeys(name for m in members for name in m.routes):
         values = [m.routes[name] for m in members if name in m.routes]
-        yield Route(name, kind, mean_of_replicates(values), gas or None)
+        yield HeatCapacityRoute(name, kind, mean_of_replicates(values), gas or None)
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
@@ -166,7 +166,7 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
     )
 
 
-def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
+def _gammas(routes: Sequence[HeatCapacityRoute], groups: Groups) -> Iterator[HeatCapacityRoute]:
     """Yield the ratio γ = C_P/C_A of each gas with a piston.
 
     C_A is measured in a log without the piston if there is one; otherwise C_P - C_A is taken from theory.
@@ -187,4 +187,4 @@ def _gammas(routes: Sequence[Route], groups: Groups) -> Iterator[Route]:
             value = c_p.value / (c_p.value - excess)
             error = excess * c_p.standard_error / (c_p.value - excess) ** 2
         gamma = Estimate(value, error, c_p.independent_samples, expected)
-        yield Route("γ", f"{route.kind}: {route.name}", gamma, route.gas)
+        yield HeatCapacityRoute("γ", f"{route.kind}: {route.name}", gamma, route.gas)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
-from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample
+from idealgas.analysis.pressure.equation_of_state import EquationOfState, PressureSample
 from idealgas.analysis.pressure.measure import Pressure, pressure
 from idealgas.analysis.pressure.tables import pressure_summary, pressure_tables
 
@@ -24,7 +24,7 @@ class PressureAnalysis(Analysis):
 
     position = 0
     headline = "routes.pairs_virial*.compressibility_factor"
-    results = (Pressure, EquationOfState, Sample)
+    results = (Pressure, EquationOfState, PressureSample)
     sections = (
         Section(
             "Pressure", "Z by every route with standard errors, theory as lines; without one the pressure of walls"

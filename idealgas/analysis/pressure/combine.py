@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from typing import Any
 
-from idealgas.analysis.pressure.equation_of_state import EquationOfState, Sample, equation_of_state, sample_of
+from idealgas.analysis.pressure.equation_of_state import EquationOfState, PressureSample, equation_of_state, sample_of
 from idealgas.analysis.pressure.measure import Pressure
 from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.errors import UserError
 from idealgas.statistics.estimates import Estimate
 
 
-def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | EquationOfState:
+def combine_pressure(results: Sequence[Pressure | PressureSample]) -> Pressure | EquationOfState:
     """Return the pressure of a single log, or the equation of state of several logs or points of a sweep.
 
     Raises:
@@ -21,7 +21,7 @@ def combine_pressure(results: Sequence[Pressure | Sample]) -> Pressure | Equatio
     return equation_of_state([sample_of(result) if isinstance(result, Pressure) else result for result in results])
 
 
-def restore_pressure(found: dict[str, Any], label: str) -> Sample:
+def restore_pressure(found: dict[str, Any], label: str) -> PressureSample:
     """Return the compressibility factor of the point of a sweep that is named `label`, from its stored values.
 
     Raises:
@@ -30,4 +30,4 @@ def restore_pressure(found: dict[str, Any], label: str) -> Sample:
     if not found["routes"]:
         raise UserError(f"{label}: {found['no_theory']}")
     pairs = next(route["compressibility_factor"] for route in found["routes"] if route["route"] == PAIRS)
-    return Sample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))
+    return PressureSample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))

@@ -31,7 +31,7 @@ The fit requires one packing fraction more than that.
 
 
 @dataclass(frozen=True)
-class Sample(Result):
+class PressureSample(Result):
     """Compressibility factor of one run, with the theory for the same number of discs in the same box."""
 
     packing_fraction: float
@@ -40,7 +40,7 @@ class Sample(Result):
 
 
 @dataclass(frozen=True)
-class State:
+class PressureState:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
     Attributes:
@@ -82,7 +82,7 @@ class EquationOfState(Result):
         b3: B3/B2²; None if there are too few states for the fit.
     """
 
-    states: tuple[State, ...]
+    states: tuple[PressureState, ...]
     b2: Annotated[Estimate | None, Key("B2")]
     b3: Annotated[Estimate | None, Key("B3")]
 
@@ -99,17 +99,17 @@ class EquationOfState(Result):
         return tuple(dict.fromkeys(state.kind for state in self.states))
 
 
-def sample_of(measured: Pressure) -> Sample:
+def sample_of(measured: Pressure) -> PressureSample:
     """Return the compressibility factor of a run from the virial of its pair collisions.
 
     Raises:
         UserError: if the gas has no equation of state.
     """
     pairs = measured.route(PAIRS).compressibility_factor
-    return Sample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
+    return PressureSample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
 
 
-def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
+def equation_of_state(samples: Sequence[PressureSample]) -> EquationOfState:
     """Return the equation of state of many runs, averaged over runs of the same kind of gas, number of discs and φ.
 
     Raises:
@@ -129,7 +129,7 @@ def equation_of_state(samples: Sequence[Sample]) -> EquationOfState:
     return replace(result, caveats=(sentence,))
 
 
-def _state(kind: str, runs: Sequence[Sample]) -> State:
+def _state(kind: str, runs: Sequence[PressureSample]) -> PressureState:
     phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
     measured, fluid = mean_of_replicates([run.compressibility_factor for run in runs]), phi <= hard_discs.HIGHEST
     infinite, source = measured, "published simulations" if measured.theory is not None else None
@@ -139,7 +139,7 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
         solid = crystal(phi)
         infinite, source = replace(measured, theory=solid.value, theory_error=solid.error), solid.source
     seeds = seeds_of(runs)
-    return State(
+    return PressureState(
         name_of_state(phi, runs[0].number, kind, seeds),
         phi,
         runs[0].number,
@@ -154,7 +154,7 @@ def _state(kind: str, runs: Sequence[Sample]) -> State:
     )
 
 
-def _virial_coefficients(states: Sequence[State]) -> tuple[Estimate | None, Estimate | None]:
+def _virial_coefficients(states: Sequence[PressureState]) -> tuple[Estimate | None, Estimate | None]:
     """Fit the virial coefficients B2 and B3 to (Z - 1)/2φ = Σ b_k (2φ)^(k - 2) by weighted least squares."""
     used = [s for s in states if 0 < s.packing_fraction <= FITTED and s.source and s.infinite.standard_error > 0]
     if len({round(s.packing_fraction, 6) for s in used}) <= FREE_TERMS:

@@ -15,7 +15,7 @@ import numpy as np
 
 from idealgas.analysis.check import CheckResult, check_theory
 from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
-from idealgas.analysis.pressure.routes import PAIRS, WALLS, Route, bulk_in_events, bulk_in_samples, routes_of
+from idealgas.analysis.pressure.routes import PAIRS, WALLS, PressureRoute, bulk_in_events, bulk_in_samples, routes_of
 from idealgas.analysis.result import Result
 from idealgas.columns import SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError, unknown
@@ -78,7 +78,7 @@ class Pressure(Result):
     area: float
     temperature: float
     packing_fraction: float
-    routes: tuple[Route, ...]
+    routes: tuple[PressureRoute, ...]
     known_theories: Annotated[dict[str, Theory], OMITTED]
     collision_rates: tuple[CollisionRate, ...]
     free_paths: tuple[FreePath, ...]
@@ -98,7 +98,7 @@ class Pressure(Result):
         """Standard deviation of the error of Z by the name of each theory that applies."""
         return {name: theory.error for name, theory in self.known_theories.items()}
 
-    def route(self, name: str) -> Route:
+    def route(self, name: str) -> PressureRoute:
         """Return the pressure by one route.
 
         Raises:

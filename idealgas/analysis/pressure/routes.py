@@ -30,7 +30,7 @@ with it; PAIRS alone is the mean over both axes.
 
 
 @dataclass(frozen=True)
-class Route:
+class PressureRoute:
     """Pressure (energy/length²) and compressibility factor Z = PA/NT (no unit) by one route.
 
     Attributes:
@@ -93,7 +93,7 @@ def routes_of(
     bulk: Bulk,
     impacts: Impacts | SampledImpacts,
     tensor: dict[str, Estimate],
-) -> tuple[Route, ...]:
+) -> tuple[PressureRoute, ...]:
     """Return the pressure by the momentum given to each wall, by the virial of all walls and by that of the pairs."""
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
@@ -120,14 +120,14 @@ def routes_of(
         if along:
             source = theory.pairs.source if theory.pairs else None
             virials = {axis: tensor[2 * axis] for axis in "xy"}
-            routes += [Route(f"{PAIRS}, {axis}", p, p.times(1 / ideal), source) for axis, p in virials.items()]
+            routes += [PressureRoute(f"{PAIRS}, {axis}", p, p.times(1 / ideal), source) for axis, p in virials.items()]
     z = mean(1 + window.of(impacts.pair_virial) / (2 * gas.area * ideal), theory.pairs)
     return (*routes, _of(PAIRS, z, ideal, theory.pairs))
 
 
 def _wall(
     name: str, flux: np.ndarray, bulk: np.ndarray, unit: float, stored: float, ideal: float, theory: Theory | None
-) -> Route:
+) -> PressureRoute:
     """Return the pressure by a momentum flux to walls, with the error that follows from the flux through the bulk.
 
     Args:
@@ -149,9 +149,9 @@ def _wall(
     return _of(name, z, ideal, theory)
 
 
-def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> Route:
+def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> PressureRoute:
     """Return the route with Z and with the pressure, which is Z times that of the ideal gas."""
-    return Route(name, z.times(ideal), z, theory.source if theory else None)
+    return PressureRoute(name, z.times(ideal), z, theory.source if theory else None)
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:

@@ -113,7 +113,7 @@ class Profile(Result):
 class ProfileAnalysis(Analysis):
     """Profiles of density, temperature, flow and pressure."""
 
-    takes_shear = True
+    supports_shear = True
     position = 40
     results = (Profile,)
     sections = (Section("Profile", "Density, temperature and pressure tensor in strips along an axis, theory dashed"),)

@@ -42,7 +42,7 @@ FEWEST_DECAYS = 100.0
 
 
 @dataclass(frozen=True)
-class Wave:
+class ScatteringWave:
     """Correlations of the waves of one wave number.
 
     name: k as text. k: wave number, 1/length. time: (L,), lags. density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx)
@@ -88,7 +88,7 @@ class Scattering(Result):
 
     window: Window
     thermal_speed: float
-    waves: tuple[Wave, ...]
+    waves: tuple[ScatteringWave, ...]
     van_hove: tuple[VanHove, ...]
     distinct: tuple[Distinct, ...]
     time: np.ndarray
@@ -100,7 +100,7 @@ class ScatteringAnalysis(Analysis):
 
     position = 85
     headline = "waves.*.structure"
-    takes_unlike_discs = False
+    supports_polydispersity = False
     results = (Scattering,)
     sections = (
         Section(
@@ -252,14 +252,14 @@ class ScatteringAnalysis(Analysis):
         return figure
 
 
-def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> Wave:
+def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> ScatteringWave:
     """Return the wave from the sums of all segments; speed: √(T/m)."""
     density, self_part, along, across, *_ = (np.array(parts) for parts in zip(*sums, strict=True))
     taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
     frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
     spectrum = density @ (taper[:, None] * np.cos(time[:, None] * frequency))
     current = speed**2 * (1 - float(density[:, 0].mean()) / len(log.discs))
-    return Wave(
+    return ScatteringWave(
         name=f"k = {k:.4g}",
         k=k,
         time=time,

@@ -9,7 +9,7 @@ against the packing fraction.
 from typing import TYPE_CHECKING, Any
 
 from idealgas.analysis.analysis import Analysis, Option, Section
-from idealgas.analysis.transport.combine import Sample, States, combine_transport, restore_transport
+from idealgas.analysis.transport.combine import States, TransportSample, combine_transport, restore_transport
 from idealgas.analysis.transport.measure import Transport, transport
 from idealgas.analysis.transport.tables import transport_summary, transport_tables
 
@@ -22,7 +22,7 @@ class TransportAnalysis(Analysis):
 
     position = 70
     headline = "diffusion.*.coefficient"
-    results = (Transport, States, Sample)
+    results = (Transport, States, TransportSample)
     sections = (
         Section(
             "Transport",

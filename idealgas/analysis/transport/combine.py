@@ -16,7 +16,7 @@ DIFFUSION = "D"
 
 
 @dataclass(frozen=True)
-class Sample(Result):
+class TransportSample(Result):
     """Transport coefficients of one run over Enskog's, by their symbols.
 
     Attributes:
@@ -31,7 +31,7 @@ class Sample(Result):
 
 
 @dataclass(frozen=True)
-class State:
+class TransportState:
     """Transport coefficients at one packing fraction and one number of discs, averaged over runs of one kind of gas.
 
     Attributes:
@@ -57,10 +57,10 @@ class State:
 class States(Result):
     """Transport coefficients over Enskog's, state by state in order of φ."""
 
-    states: tuple[State, ...]
+    states: tuple[TransportState, ...]
 
 
-def combine_transport(results: Sequence[Transport | Sample]) -> Transport | States:
+def combine_transport(results: Sequence[Transport | TransportSample]) -> Transport | States:
     """Return the transport in the gas of a single log, or the coefficients of several logs or points of a sweep."""
     if len(results) == 1 and isinstance(results[0], Transport):
         return results[0]
@@ -68,23 +68,23 @@ def combine_transport(results: Sequence[Transport | Sample]) -> Transport | Stat
     return States(tuple(_state(kind, runs) for kind, runs in by_state(samples)))
 
 
-def restore_transport(found: dict[str, Any], label: str) -> Sample:
+def restore_transport(found: dict[str, Any], label: str) -> TransportSample:
     """Return the coefficients of the point of a sweep that is named `label`, from its stored values."""
     whole, diffusion = found["collective"] or {}, found["diffusion"]
     coefficients = {DIFFUSION: diffusion[0]["coefficient"]} if len(diffusion) == 1 else {}
     coefficients |= {symbol: whole[name]["coefficient"] for name, symbol in SYMBOLS.items() if name in whole}
     estimates = {symbol: Estimate.from_dict(estimate) for symbol, estimate in coefficients.items() if estimate}
-    return Sample(found["packing_fraction"], found["number"], _over_theory(estimates))
+    return TransportSample(found["packing_fraction"], found["number"], _over_theory(estimates))
 
 
-def _sample_of(result: Transport) -> Sample:
+def _sample_of(result: Transport) -> TransportSample:
     alone = result.diffusion[0].coefficient if len(result.diffusion) == 1 else None
     coefficients = {DIFFUSION: alone} if alone else {}
     if result.collective:
         coefficients |= {
             SYMBOLS[name]: coefficient.value for name, coefficient in result.collective.coefficients.items()
         }
-    return Sample(result.packing_fraction, result.number, _over_theory(coefficients), origin=result.origin)
+    return TransportSample(result.packing_fraction, result.number, _over_theory(coefficients), origin=result.origin)
 
 
 def _over_theory(coefficients: dict[str, Estimate]) -> dict[str, Estimate]:
@@ -92,9 +92,9 @@ def _over_theory(coefficients: dict[str, Estimate]) -> dict[str, Estimate]:
     return {symbol: estimate.times(1 / estimate.theory) for symbol, estimate in coefficients.items() if estimate.theory}
 
 
-def _state(kind: str, runs: Sequence[Sample]) -> State:
+def _state(kind: str, runs: Sequence[TransportSample]) -> TransportState:
     """Return the mean over the runs of one state, for all coefficients that every run has."""
     symbols = [symbol for symbol in runs[0].coefficients if all(symbol in run.coefficients for run in runs)]
     means = {symbol: mean_of_replicates([run.coefficients[symbol] for run in runs]) for symbol in symbols}
     phi, number, seeds = runs[0].packing_fraction, runs[0].number, seeds_of(runs)
-    return State(name_of_state(phi, number, kind, seeds), phi, number, kind, len(runs), seeds, means)
+    return TransportState(name_of_state(phi, number, kind, seeds), phi, number, kind, len(runs), seeds, means)

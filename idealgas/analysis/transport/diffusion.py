@@ -68,7 +68,7 @@ class Diffusion:
     velocity_correlation_time: Estimate | None
 
 
-class Limits(NamedTuple):
+class LagLimits(NamedTuple):
     """Times and lengths between which discs of a species diffuse.
 
     Attributes:
@@ -106,7 +106,7 @@ class Limits(NamedTuple):
         return sum(math.sqrt(displacement / math.pi) / way for way in self.ways)
 
 
-def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[Limits]:
+def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[LagLimits]:
     """Return the limits of the diffusion of each species, from measured collision rates.
 
     A disc of species i loses its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij. If there are too many species to know
@@ -127,7 +127,7 @@ def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equil
         needed = max(LEAST_LAG / whole, LEAST_MEMORIES / friction) if whole else math.inf
         friction_d = equilibrium.temperature / mass / friction if whole else math.inf
         sides = [side for side, is_periodic in zip(log.box, log.periodic, strict=True) if not is_periodic]
-        diffusions.append(Limits(whole, needed, friction_d, tuple(side - 2 * float(radius) for side in sides)))
+        diffusions.append(LagLimits(whole, needed, friction_d, tuple(side - 2 * float(radius) for side in sides)))
     return diffusions
 
 
@@ -136,7 +136,7 @@ def diffusion(
     discs: Composition,
     window: Window,
     longest: float,
-    limits: Sequence[Limits],
+    limits: Sequence[LagLimits],
     expected: tuple[Enskog | None, Sequence[Theory | None], Ensemble],
 ) -> tuple[Diffusion, ...]:
     """Return the diffusion of each species up to the longest lag or, between walls, up to the lag that they allow.
@@ -179,7 +179,7 @@ def _of_species(
     name: str,
     places: np.ndarray,
     velocities: np.ndarray,
-    limits: Limits,
+    limits: LagLimits,
     lag: np.ndarray,
     expected: tuple[Enskog | None, Theory | None, float],
 ) -> Diffusion:
@@ -242,7 +242,7 @@ def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
     return hard_discs.long_time_tail(lag, expected.density, expected.diffusion.value, expected.kinematic_viscosity)
 
 
-def diffusion_caveats(entry: Diffusion, limits: Limits) -> Iterator[str]:
+def diffusion_caveats(entry: Diffusion, limits: LagLimits) -> Iterator[str]:
     """Yield a caveat if a species has no diffusion coefficient, or if its discs are followed for too short a time."""
     longest, name = float(entry.lag[-1]), entry.species
     if limits.are_walls(entry.lag, entry.displacement):

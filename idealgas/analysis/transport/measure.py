@@ -16,7 +16,7 @@ from idealgas.analysis.transport.coefficients import Collective, collective, flo
 from idealgas.analysis.transport.diffusion import (
     LEAST_LAG,
     Diffusion,
-    Limits,
+    LagLimits,
     diffusion,
     diffusion_caveats,
     diffusion_limits,
@@ -127,7 +127,7 @@ def transport(
     rates = collision_rates(discs, expected, window, impacts)
     free_time = _free_time(impacts, discs, window)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    limits: list[Limits] = []
+    limits: list[LagLimits] = []
     spreading: tuple[Diffusion, ...] = ()
     if log.has_events:
         alone = [enskogs.diffusion] if enskogs else self_diffusion(log, equilibrium, expected)
@@ -176,7 +176,7 @@ def _among_fixed_discs(
     met = float((window.of(impacts.hits).sum(axis=1) + window.of(impacts.collisions).sum(axis=(1, 2))).mean())
     free_time = len(gas) / met if met else math.inf
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)
-    limits = [Limits(1 / free_time, LEAST_LAG * free_time, equilibrium.temperature, ())] * len(discs.name)
+    limits = [LagLimits(1 / free_time, LEAST_LAG * free_time, equilibrium.temperature, ())] * len(discs.name)
     spreading = diffusion(log, discs, window, longest, limits, (None, [None] * len(limits), equilibrium))
     return Transport(
         window=window,

@@ -17,7 +17,7 @@ from idealgas.analysis.result import Result
 from idealgas.analysis.work.processes import (
     DIGITS,
     Crossing,
-    Process,
+    WorkProcess,
     crossings,
     expectation_of,
     joined,
@@ -52,7 +52,7 @@ class Work(Result):
 
     temperature: float
     number: int
-    processes: tuple[Process, ...]
+    processes: tuple[WorkProcess, ...]
     crossings: tuple[Crossing, ...]
 
 
@@ -66,7 +66,7 @@ class WorkAnalysis(Analysis):
         Section("Work", "Distribution of the work of the piston forward and back, which cross at the free energy"),
     )
     averages = True
-    takes_unlike_discs = False
+    supports_polydispersity = False
     start = "the log's start"
     reads = "samples"
 
@@ -121,7 +121,7 @@ class WorkAnalysis(Analysis):
             UserError: if the runs are of different gases.
         """
         must_be_one_gas(results)
-        kinds: dict[tuple[Any, ...], list[Process]] = {}
+        kinds: dict[tuple[Any, ...], list[WorkProcess]] = {}
         for strokes in (each for result in results for each in result.processes):
             kinds.setdefault((strokes.ends, strokes.protocol), []).append(strokes)
         temperature, number = results[0].temperature, results[0].number

@@ -28,7 +28,7 @@ Protocol = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
-class Process:
+class WorkProcess:
     """Strokes of one kind: all begin in equilibrium with the heat bath and move the piston in the same way.
 
     Attributes:
@@ -84,12 +84,12 @@ def process(
     temperature: float,
     number: int,
     difference: Theory | None,
-) -> Process:
+) -> WorkProcess:
     """Return the process of strokes with work (n,) and kinetic energy before (n,), and with ΔF by theory."""
     least = float(work.min())
     weight = _independent(np.exp(-(work - least) / temperature))
     free, error = least - temperature * math.log(weight.value), temperature * weight.standard_error / weight.value
-    return Process(
+    return WorkProcess(
         f"from {ends[0]:g} to {ends[1]:g} in {sum(duration for duration, _ in protocol):g}",
         ends,
         protocol,
@@ -101,14 +101,14 @@ def process(
     )
 
 
-def joined(same: Sequence[Process], temperature: float, number: int) -> Process:
+def joined(same: Sequence[WorkProcess], temperature: float, number: int) -> WorkProcess:
     """Return the strokes of one kind of several runs together."""
     work, energy = (np.concatenate([getattr(run, name) for run in same]) for name in ("work", "start_energy"))
     first = same[0]
     return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
-def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
+def poorly_sampled(one: WorkProcess, temperature: float) -> Iterator[str]:
     """Yield a caveat if few strokes dominate the mean of exp(-W/T)."""
     weight = np.exp(-(one.work - one.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
@@ -118,7 +118,7 @@ def poorly_sampled(one: Process, temperature: float) -> Iterator[str]:
         )
 
 
-def crossings(processes: Sequence[Process], temperature: float) -> tuple[Crossing, ...]:
+def crossings(processes: Sequence[WorkProcess], temperature: float) -> tuple[Crossing, ...]:
     """Return the crossing of each process that is also made in reverse, each once."""
     known = {(forward.ends, forward.protocol): forward for forward in processes}
     pairs = []
@@ -130,7 +130,7 @@ def crossings(processes: Sequence[Process], temperature: float) -> tuple[Crossin
     return tuple(forward for forward in pairs if forward is not None)
 
 
-def _crossing(forward: Process, back: Process, temperature: float) -> Crossing | None:
+def _crossing(forward: WorkProcess, back: WorkProcess, temperature: float) -> Crossing | None:
     """Return the crossing of two distributions by logistic regression, or None if they do not overlap.
 
     ln(P_F/P_R) = a + bW/T maximizes the likelihood of the works being forward or back (Shirts et al., Phys. Rev. Lett.

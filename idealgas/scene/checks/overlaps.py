@@ -15,7 +15,7 @@ from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
     from idealgas.effects.wall import WallTable
-    from idealgas.scene.discs import Discs
+    from idealgas.scene.discs import InitialDiscs
     from idealgas.scene.document import Document
     from idealgas.scene.tables import Box
 
@@ -63,7 +63,7 @@ def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
         yield Issue(keys, f"{label(scene, high)}overlaps disc {low}", got, allowed)
 
 
-def overlapping(discs: Discs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
+def overlapping(discs: InitialDiscs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
     """Yield pairs of discs that overlap by more than rounding and the accepted overlap, and their distance.
 
     At most MOST_OVERLAPS pairs are returned. box: None if it is invalid. accepted: length.
@@ -164,7 +164,7 @@ def _pairs(
         start = stop
 
 
-def deepest_overlap(discs: Discs, box: Box, walls: Sequence[WallTable]) -> float:
+def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable]) -> float:
     """Deepest overlap of discs with each other, with sides or with walls, length; 0 if all overlaps are rounding."""
     radius = discs.radius
     depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
@@ -176,7 +176,7 @@ def deepest_overlap(discs: Discs, box: Box, walls: Sequence[WallTable]) -> float
 
 
 def wall_overlaps(
-    discs: Discs, box: Box, walls: Mapping[int, WallTable], accepted: float = 0.0
+    discs: InitialDiscs, box: Box, walls: Mapping[int, WallTable], accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
     """Yield the index of a disc, the number of a wall and their distance if they overlap by more than is accepted."""
     owner, centre = images(discs.position, discs.radius, box)

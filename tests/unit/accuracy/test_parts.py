@@ -7,10 +7,10 @@ import pytest
 from helpers.support import gas_of
 
 from idealgas.accuracy.bias import BiasLaw, bias_law, rate_biases
-from idealgas.accuracy.cases import Case, Start, compared_cases
+from idealgas.accuracy.cases import Case, EquilibratedStart, compared_cases
 from idealgas.accuracy.motion import Missed, count_missed, error_on_return, flown_through, positions, rms_distance
 from idealgas.accuracy.report import cost_of, flat_row, lost_after, sentences
-from idealgas.accuracy.study import Accuracy, Row, Timing, check, from_theory, relative
+from idealgas.accuracy.study import Accuracy, AccuracyRow, Timing, check, from_theory, relative
 from idealgas.effects.bundle import Effects
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Stop
@@ -28,7 +28,7 @@ def some_gas(n=100, seed=1):
 
 @pytest.fixture(scope="module")
 def start():
-    return Start(some_gas(), Effects())
+    return EquilibratedStart(some_gas(), Effects())
 
 
 def test_a_simulation_is_followed_to_any_time_without_a_change(start):
@@ -131,7 +131,7 @@ def row(dt=None, cost=1.0, rate=None, error=0.001, missed=None, trajectory=None,
     bias = None if rate is None else Estimate(rate, error, math.inf)
     pairs = None if z is None else Estimate(z, error, math.inf)
     timing = Timing(cost, 0.9 * cost, 1.1 * cost, 100.0)
-    return Row(Case(method, dt), timing, None, bias, pairs, None, missed, trajectory, None)
+    return AccuracyRow(Case(method, dt), timing, None, bias, pairs, None, missed, trajectory, None)
 
 
 def steps():

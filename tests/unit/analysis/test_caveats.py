@@ -66,12 +66,12 @@ def test_a_sentence_is_in_tables_json_and_the_report():
 
 def test_sentences_of_many_logs_have_their_paths_and_are_bounded():
     results = [replace(combined("temperature", made()), caveats=("a.", f"b{k}.")) for k in range(9)]
-    said = caveats.of_several(results)
+    said = caveats.combined_caveats(results)
     assert said[0].endswith(" and 6 more: a.")  # once, though all logs have it
     assert said[1].endswith(".h5: b0.")
     assert len(said) == caveats.MOST + 1
     assert said[-1].startswith(f"{10 - caveats.MOST} more caveats")
-    assert caveats.of_several(results[:1]) == ("a.", "b0.")
+    assert caveats.combined_caveats(results[:1]) == ("a.", "b0.")
 
 
 def test_discs_that_order_may_keep_an_arrangement():

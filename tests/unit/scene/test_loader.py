@@ -9,7 +9,7 @@ from helpers.support import refused as refused_of
 from idealgas.errors import UserError
 from idealgas.examples import load_example
 from idealgas.initial.build import make_gas
-from idealgas.scene import Header, Log, Scene, SceneError, Species, load_scene, parse_scene
+from idealgas.scene import Header, LogTable, Scene, SceneError, Species, load_scene, parse_scene
 from idealgas.toml.dump import dump_document
 from idealgas.toml.table import LARGEST
 
@@ -63,7 +63,7 @@ def test_messages_have_the_names_of_tables():
 def test_defaults_and_types():
     scene = parse_scene(MINIMAL)
     assert scene.scene == Header(title="", seed=0)
-    assert scene.log == Log(events=True, compression="gzip", checkpoint_every=1)
+    assert scene.log == LogTable(events=True, compression="gzip", checkpoint_every=1)
     assert scene.run.method == "event_driven"
     assert scene.disc[0].velocity == (0.0, 0.0)
     assert scene.disc[0].mass == 1.0

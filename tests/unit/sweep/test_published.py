@@ -9,7 +9,7 @@ from helpers.support import ROOT, error_of, output_of
 from idealgas.errors import UserError
 from idealgas.scene import SceneError
 from idealgas.sweep.plan import load_sweep
-from idealgas.sweep.published import Comparison, published_tables
+from idealgas.sweep.published import PublishedComparison, published_tables
 from idealgas.sweep.run import run_sweep
 
 CLASSICS = sorted((ROOT / "configs" / "classics").glob("*.toml"))
@@ -69,9 +69,9 @@ def test_one_value_for_each_point_and_exact_values_agree_or_do_not(plan):
         load_sweep(plan)
     (line,) = caught.value.errors
     assert line == f"{plan}:16: published.0.values: not one for each point (got 1 numbers; allowed 2)"
-    assert Comparison("", 3.0, 0.0, 3.0, 0.0).deviation == 0
-    assert Comparison("", 3.0, 0.0, 4.0, 0.0).deviation == -math.inf
-    assert Comparison("", 3.0, 0.3, 4.0, 0.4).deviation == pytest.approx(-2)
+    assert PublishedComparison("", 3.0, 0.0, 3.0, 0.0).deviation == 0
+    assert PublishedComparison("", 3.0, 0.0, 4.0, 0.0).deviation == -math.inf
+    assert PublishedComparison("", 3.0, 0.3, 4.0, 0.4).deviation == pytest.approx(-2)
 
 
 def test_an_unknown_quantity_is_said(plan, tmp_path):

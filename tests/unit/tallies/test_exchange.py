@@ -7,7 +7,7 @@ import pytest
 from helpers.logs import gas, log_of, species
 
 from idealgas import profile, temperature
-from idealgas.analysis.caveats import of_window
+from idealgas.analysis.caveats import window_caveats
 from idealgas.tallies.exchange import INDEPENDENT, across, through_pistons
 from idealgas.theory import hard_discs
 from idealgas.theory.adiabatic_piston import relaxation, slowest_rate
@@ -40,7 +40,7 @@ def test_a_short_profile_names_the_time_of_its_slowest_exchange():
     (said,) = [sentence for sentence in found.caveats if "relaxes slowly" in sentence]
     assert f"heat crosses the box along x in t = {across(log, 0).time:.2g}" in said
     assert found.window.slowest == across(log, 0)
-    assert not of_window(temperature(log).window)  # the temperature of all discs has no such exchange
+    assert not window_caveats(temperature(log).window)  # the temperature of all discs has no such exchange
 
 
 def test_unlike_discs_diffuse_more_slowly_than_heat():
@@ -71,7 +71,7 @@ def test_temperature_of_a_gas_beside_a_piston_has_the_error_of_the_exchange():
     """In a short window a temperature scatters by T √((1 - n/N)/2n) of n dilute discs, whatever the window shows."""
     log = log_of(PISTON)
     found = temperature(log, start=0.0)
-    (said,) = of_window(found.window)
+    (said,) = window_caveats(found.window)
     assert f"energy crosses the inner pistons in t = {found.window.slowest.time:.2g}" in said
     for entry, number in zip(found.species[:2], (40, 60), strict=True):
         spread = math.sqrt((1 - number / 100) / (2 * number))

@@ -7,7 +7,7 @@ from helpers.logs import log_of, species
 from helpers.support import ROOT
 
 from idealgas import analyse
-from idealgas.analysis.caveats import of_window
+from idealgas.analysis.caveats import window_caveats
 from idealgas.columns import SIDES
 from idealgas.tallies.equilibration import Window
 from idealgas.tallies.exchange import INDEPENDENT, Exchange
@@ -68,8 +68,8 @@ def test_slow_structure_is_said(name, start):
 
 def test_window_of_many_relaxation_times_needs_no_caveat():
     edges = [0.0, 100.0]
-    assert of_window(Window(edges, 0, True, slowest=Exchange(2.3, "heat crosses the gas"))) == ()
-    (said,) = of_window(Window(edges, 0, True, slowest=Exchange(10.0, "heat crosses the gas")))
+    assert window_caveats(Window(edges, 0, True, slowest=Exchange(2.3, "heat crosses the gas"))) == ()
+    (said,) = window_caveats(Window(edges, 0, True, slowest=Exchange(10.0, "heat crosses the gas")))
     assert "heat crosses the gas in t = 10, and the window is only 10 times as long" in said
     assert f"the window is {INDEPENDENT:g} times as long" in said
     assert f"{INDEPENDENT:g} times as long" in (ROOT / "idealgas" / "analysis" / "README.md").read_text()

@@ -8,7 +8,7 @@ import pytest
 
 from idealgas.analysis.evolution.account import HEAT_BATH, STEPS, account
 from idealgas.analysis.evolution.means import adiabatic_exponent, mean_temperature, short_stroke
-from idealgas.analysis.evolution.theory import Law
+from idealgas.analysis.evolution.theory import EvolutionLaw
 
 pytestmark = pytest.mark.interpreted
 
@@ -58,7 +58,7 @@ def test_a_piston_with_a_mass_is_a_part():
 
 
 def law(temperature, area=None, steady=False):
-    return Law("law", np.array(temperature), area=None if area is None else np.array(area), steady=steady)
+    return EvolutionLaw("law", np.array(temperature), area=None if area is None else np.array(area), steady=steady)
 
 
 def test_an_adiabatic_exponent_between_the_ends():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from idealgas.analysis.pressure.equation_of_state import Sample, equation_of_state
+from idealgas.analysis.pressure.equation_of_state import PressureSample, equation_of_state
 from idealgas.analysis.pressure.tables import pressure_tables
 from idealgas.analysis.result import Origin
 from idealgas.presentation.quantities import as_csv
@@ -22,7 +22,7 @@ def samples(phis, error, number=1000, runs=4, seed=0):
     for phi in phis:
         z = float(hard_discs.compressibility_factor(phi, number))
         for value in random.normal(z, error * z, runs):
-            yield Sample(phi, number, Estimate(float(value), error * z, 500.0, z))
+            yield PressureSample(phi, number, Estimate(float(value), error * z, 500.0, z))
 
 
 def test_virial_coefficients_come_back():
@@ -46,7 +46,7 @@ def test_spread_of_the_fit_is_its_standard_error():
 
 def test_a_wrong_pressure_is_found():
     right = [(run.packing_fraction, run.compressibility_factor) for run in samples([0.1, 0.2], 1e-4)]
-    wrong = [Sample(phi, 1000, Estimate(1.01 * z.value, 1e-3, 500.0, z.theory)) for phi, z in right]
+    wrong = [PressureSample(phi, 1000, Estimate(1.01 * z.value, 1e-3, 500.0, z.theory)) for phi, z in right]
     assert equation_of_state(wrong).check().agrees is False
 
 
@@ -67,8 +67,8 @@ def test_rows_of_states_have_n_and_phi_and_seeds():
 
 def test_every_phase_has_the_theory_that_is_known():
     """Fluid, published simulations, nothing where it freezes, and the crystal, with the error of free-volume theory."""
-    published = Sample(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
-    unknown, crystal = (Sample(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
+    published = PressureSample(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
+    unknown, crystal = (PressureSample(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
     found = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
     sources = ["virial series, resummed"] * 2 + ["published simulations", None, "free volume, of a crystal"]
     assert [state.source for state in found.states] == sources
@@ -82,7 +82,7 @@ def test_every_phase_has_the_theory_that_is_known():
     assert equation_of_state([unknown]).check().agrees is None
     (row,) = (row for row in pressure_tables(found)[0].shown if row[0] == "0.71")
     assert row[5:] == ["", "", "", "", ""]
-    without_error = equation_of_state([Sample(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
+    without_error = equation_of_state([PressureSample(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
     assert pressure_tables(without_error)[0].shown[0][4:6] == ["nan", ""]
 
 

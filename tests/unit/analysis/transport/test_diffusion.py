@@ -9,7 +9,7 @@ from helpers.against_theory import agrees
 from helpers.logs import gas, log_of
 
 from idealgas.analysis.transport.combine import combine_transport, restore_transport
-from idealgas.analysis.transport.diffusion import Limits
+from idealgas.analysis.transport.diffusion import LagLimits
 from idealgas.analysis.transport.figure import transport_figure
 from idealgas.analysis.transport.measure import transport
 from idealgas.analysis.transport.tables import transport_tables
@@ -81,6 +81,6 @@ def test_what_walls_take():
     """Against the law of diffusion between reflecting walls, half the slope of ⟨Δx²⟩."""
     n, way, time = np.arange(1, 2001, 2), 7.0, 0.01 * 7.0**2
     left = 8 / math.pi**2 * (np.exp(-((n * math.pi / way) ** 2) * time) / n**2).sum()
-    one, both = (Limits(1.0, 1.0, 1.0, ways).lost(4 * time) for ways in ((way,), (way, way)))
+    one, both = (LagLimits(1.0, 1.0, 1.0, ways).lost(4 * time) for ways in ((way,), (way, way)))
     assert both == pytest.approx(1 - left, rel=1e-3)
     assert one == pytest.approx(both / 2)
