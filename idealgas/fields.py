@@ -39,12 +39,12 @@ def reported(function: Function) -> Function:
     return function
 
 
-def as_dict(found: Any) -> dict[str, Any]:
+def as_dict(instance: Any) -> dict[str, Any]:
     """Return the fields and reported properties of a dataclass by name, as plain values."""
     values: dict[str, Any] = {}
-    for field in fields(found):
-        values |= _of_field(field, getattr(found, field.name))
-    return values | {name: plain_value(getattr(found, name)) for name in reported_properties(type(found))}
+    for field in fields(instance):
+        values |= _of_field(field, getattr(instance, field.name))
+    return values | {name: plain_value(getattr(instance, name)) for name in reported_properties(type(instance))}
 
 
 def _of_field(field: "Field[Any]", value: Any) -> dict[str, Any]:

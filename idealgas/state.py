@@ -38,7 +38,7 @@ class Gas:
 
     @property
     def partners(self) -> tuple[str, ...]:
-        """Names of the groups of partners for which the collisions of a species are counted separately.
+        """Names of the groups of partners whose collisions with a species are counted separately.
 
         The groups are the species, or a single group "all" if there are more than MOST_PAIRED species.
         """

@@ -183,7 +183,7 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
 
 
 def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Return random boxes and radii, close to those of a gas, for which the orbit exists."""
+    """Return random box sizes and radii for which the orbit exists, typical of a gas."""
     random = np.random.default_rng(seed)
     boxes: list[tuple[tuple[float, float], float]] = []
     while len(boxes) < number:

@@ -21,9 +21,9 @@ TARGET = 0.01  # relative error whose cost is given in a sentence
 LOST = 0.1  # rms distance beyond which a trajectory is considered lost, diameters
 
 
-def flat_row(row: AccuracyRow, found: Accuracy) -> dict[str, Any]:
+def flat_row(row: AccuracyRow, study: Accuracy) -> dict[str, Any]:
     """Return the row of the CSV file for a case; numbers that were not measured are None."""
-    averages, at = row.averages, nearest(found.collisions, 1.0)
+    averages, at = row.averages, nearest(study.collisions, 1.0)
     return {
         "case": row.case.name,
         "method": row.case.method,
@@ -44,7 +44,7 @@ def flat_row(row: AccuracyRow, found: Accuracy) -> dict[str, Any]:
         "energy_drift": averages.drift if averages else None,
         "deepest_overlap": averages.overlap if averages else None,
         "trajectory_error": None if row.trajectory is None else number(row.trajectory[at]),
-        "trajectory_lost_after": lost_after(row, found),
+        "trajectory_lost_after": lost_after(row, study),
         "way_back_error": row.way_back,
     }
 
@@ -66,11 +66,11 @@ def nearest(values: np.ndarray, target: float) -> int:
     return int(np.abs(values - target).argmin()) if len(values) else 0
 
 
-def lost_after(row: AccuracyRow, found: Accuracy) -> float | None:
+def lost_after(row: AccuracyRow, study: Accuracy) -> float | None:
     """Return the collisions per disc after which the rms error of the positions exceeds LOST; None if it never does."""
     if row.trajectory is None or not (gone := row.trajectory > LOST).any():
         return None
-    return float(found.collisions[int(gone.argmax())])
+    return float(study.collisions[int(gone.argmax())])
 
 
 # sentences

@@ -1,5 +1,6 @@
 """Specification of an effect: its table in a scene, its state in a run, and its columns in the log."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
@@ -20,14 +21,14 @@ class Tables(NamedTuple):
     """The part of a scene that an effect uses.
 
     Attributes:
-        own: table of the effect, None if absent; for an effect with an array of tables, a tuple with None for invalid
+        table: table of the effect, None if absent; for an effect with an array of tables, a tuple with None for invalid
             tables.
         size: width and height of the box, length.
         sides: kinds of the left, right, bottom and top side; empty while the table of the box is invalid.
         walls: wall segments, with None for invalid tables, followed by fixed discs.
     """
 
-    own: Any
+    table: Any
     size: tuple[float, float]
     sides: tuple[Any, ...]
     walls: tuple[Any, ...]
@@ -84,7 +85,7 @@ class Later(NamedTuple):
     sampled: Callable[[str], np.ndarray]
 
 
-class Effect(Generic[State]):
+class Effect(ABC, Generic[State]):
     """An effect. A subclass defines its tables, its state in a run and its columns in the log; its law is in `physics`.
 
     The state consists of arrays and numbers, which `make` returns and the engine changes. Most methods take it as their
@@ -124,9 +125,9 @@ class Effect(Generic[State]):
     samples: ClassVar[tuple[BenchmarkSample, ...]]
     sample_together: ClassVar[BenchmarkSample | None] = None
 
+    @abstractmethod
     def properties(self, tables: Tables) -> Properties | None:
         """Return the properties of a gas with these tables, or sides of the box; None if they change nothing."""
-        raise NotImplementedError
 
     def check(self, tables: Tables) -> Iterable[Issue]:
         """Return issues of the table that depend on the box or the walls; called if the scene has the effect."""
@@ -136,13 +137,17 @@ class Effect(Generic[State]):
         """Return the table, or tuple of tables, of a scene that continues from a later time."""
         return table.after(later.time) if hasattr(table, "after") else table
 
-    def make(self, tables: Tables, start: GasAtStart) -> State | None:
-        """Return the state at time 0 of an effect that the scene has."""
-        raise NotImplementedError
+    def exists(self, tables: Tables, start: GasAtStart) -> bool:
+        """Whether a run has a state of this effect, by default whether the scene has the effect."""
+        return self.find(tables) is not None
+
+    @abstractmethod
+    def make(self, tables: Tables, start: GasAtStart) -> State:
+        """Return the state at time 0; called only if the effect `exists`."""
 
     def state_at_start(self, tables: Tables, start: GasAtStart) -> State | None:
-        """Return the state at time 0; None if the scene does not have the effect."""
-        return self.make(tables, start) if self.find(tables) is not None else None
+        """Return the state at time 0; None if there is none."""
+        return self.make(tables, start) if self.exists(tables, start) else None
 
     def disc_state(self, state: State) -> Arrays:
         """Return the arrays of the state with an entry for each disc, which checkpoints store.
@@ -203,10 +208,10 @@ class Effect(Generic[State]):
         """Return the keys that turn the effect on and its properties; None if the scene does not have the effect."""
         keys: tuple[Key, ...]
         if self.many:
-            tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.own) if table is not None)
+            tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.table) if table is not None)
             keys = tuple(getattr(table, "place", key) for table, key in tables_and_keys)
         elif self.key:
-            keys = ((self.key,),) if tables.own is not None else ()
+            keys = ((self.key,),) if tables.table is not None else ()
         else:
             sides = zip(SIDES, tables.sides, strict=False)
             keys = tuple(("box", name) for name, side in sides if side == self.side or type(side) is self.side)

@@ -41,7 +41,7 @@ class GravityEffect(Effect[law.Gravity]):
     samples = (BenchmarkSample(tables=lambda side: f"[gravity]\nacceleration = [0, {-1 / side!r}]\n"),)
 
     def properties(self, tables: Tables) -> Properties:
-        (_, first), *later = steps_of(tables.own.acceleration)
+        (_, first), *later = steps_of(tables.table.acceleration)
         return Properties(
             uniform=False,
             straight_flight=False,
@@ -57,13 +57,17 @@ class GravityEffect(Effect[law.Gravity]):
     def check(self, tables: Tables) -> Iterator[Issue]:
         """Yield an issue if the acceleration is always zero."""
         key: Key = ("gravity", "acceleration")
-        steps = [acceleration for _, acceleration in steps_of(tables.own.acceleration)]
+        steps = [acceleration for _, acceleration in steps_of(tables.table.acceleration)]
         if not any(map(any, steps)):
             yield Issue((key,), "no acceleration", str(list(steps[0])), "a nonzero acceleration, or no [gravity]")
 
-    def state_at_start(self, _: Tables, start: GasAtStart) -> law.Gravity | None:
+    def exists(self, _: Tables, start: GasAtStart) -> bool:
+        """Other effects may accelerate the discs too."""
+        return any(start.acceleration) or bool(start.later_accelerations)
+
+    def make(self, _: Tables, start: GasAtStart) -> law.Gravity:
         """Return the acceleration summed over all effects, which is what moves the discs."""
-        return law.Gravity(*start.acceleration) if any(start.acceleration) or start.later_accelerations else None
+        return law.Gravity(*start.acceleration)
 
     def driving_speed(self, gravity: law.Gravity, gas: Gas) -> float:
         return math.sqrt(math.hypot(*gravity) * sum(gas.box))
@@ -74,7 +78,7 @@ class GravityEffect(Effect[law.Gravity]):
 
     def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:
         """Yield the changes of the acceleration along x (item 0) and along y (item 1)."""
-        for time, acceleration in steps_of(tables.own.acceleration)[1:]:
+        for time, acceleration in steps_of(tables.table.acceleration)[1:]:
             yield from (Change(time, axis, component) for axis, component in enumerate(acceleration))
 
     def change(self, gravity: law.Gravity, axis: int, component: float) -> law.Gravity:

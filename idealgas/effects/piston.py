@@ -185,7 +185,7 @@ class PistonEffect(Effect[np.ndarray]):
     samples = (BenchmarkSample(tables=_sample), BenchmarkSample("inner", tables=_inner_sample))
 
     def properties(self, tables: Tables) -> Properties:
-        pistons = [piston for piston in tables.own if piston is not None]
+        pistons = [piston for piston in tables.table if piston is not None]
         times = tuple(sorted({time for piston in pistons for time in piston.times}))
         return Properties(
             uniform=False,
@@ -203,7 +203,7 @@ class PistonEffect(Effect[np.ndarray]):
         """Yield issues of names of pistons that are taken or have no effect."""
         walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
         taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
-        for k, piston in enumerate(tables.own):
+        for k, piston in enumerate(tables.table):
             if piston is None:
                 continue
             key: Key = ("piston", k, "name" if piston.name else "inner")
@@ -225,9 +225,9 @@ class PistonEffect(Effect[np.ndarray]):
         return tuple(moved)
 
     def make(self, tables: Tables, start: GasAtStart) -> np.ndarray:
-        size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.own)
-        pistons = aligned(len(tables.own), law.PISTON)
-        for record, table in zip(pistons, tables.own, strict=True):
+        size, first = tables.size, FIRST_SEGMENT + len(tables.walls) - sum(p.inner is not None for p in tables.table)
+        pistons = aligned(len(tables.table), law.PISTON)
+        for record, table in zip(pistons, tables.table, strict=True):
             record.x, record.v = table.start(size), table.start_velocity
             record.a = table.acceleration(size, start.acceleration)
             record.m, record.length, record.axis = table.mass or 0.0, size[table.axis], table.axis
@@ -271,7 +271,7 @@ class PistonEffect(Effect[np.ndarray]):
 
     def schedule(self, tables: Tables, start: GasAtStart) -> Iterator[Change]:
         """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
-        for k, table in enumerate(tables.own):
+        for k, table in enumerate(tables.table):
             for time, _ in steps_of(table.pressure)[1:]:
                 yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))
             for time, velocity in table.velocity_steps[1:]:

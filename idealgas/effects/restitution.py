@@ -48,12 +48,12 @@ class RestitutionEffect(Effect[law.Restitution]):
     samples = (BenchmarkSample(tables=lambda side: "[restitution]\nnormal = 0.999\nwall = 0.999\n"),)
 
     def properties(self, tables: Tables) -> Properties | None:
-        if tables.own.elastic:
+        if tables.table.elastic:
             return None
         return Properties(uniform=False, elastic=False, dissipative=True)
 
     def make(self, tables: Tables, start: GasAtStart) -> law.Restitution:
-        table = tables.own
+        table = tables.table
         return law.Restitution(table.normal, table.wall, table.contact_duration, np.full(len(start.gas), -math.inf))
 
     def disc_state(self, restitution: law.Restitution) -> Arrays:

@@ -50,13 +50,13 @@ class RotationEffect(Effect[law.Rotation]):
     samples = (BenchmarkSample(tables=lambda side: "[rotation]\nroughness = 0.5\nwall_roughness = 0.5\n"),)
 
     def properties(self, tables: Tables) -> Properties:
-        rotation = tables.own
+        rotation = tables.table
         return Properties(
             dissipative=loses(rotation), inertia=rotation.inertia, has_rough_walls=rotation.wall_roughness > -1
         )
 
     def make(self, tables: Tables, start: GasAtStart) -> law.Rotation:
-        table, gas = tables.own, start.gas
+        table, gas = tables.table, start.gas
         omega, inertias = start.angular_velocity.copy(), law.moment_of_inertia(table.inertia, gas.mass, gas.radius)
         for k, name in enumerate(gas.species_names):
             ids = np.flatnonzero(gas.species == k)

@@ -40,22 +40,24 @@ class SteeringEffect(Effect[tuple[float, ...]]):
 
     def properties(self, tables: Tables) -> Properties:
         return Properties(
-            allows_monte_carlo=False, allows_time_steps=False, varies=True, changes=as_times(tables.own.reversed_at)
+            allows_monte_carlo=False, allows_time_steps=False, varies=True, changes=as_times(tables.table.reversed_at)
         )
 
     def check(self, tables: Tables) -> Iterator[Issue]:
-        times = as_times(tables.own.reversed_at)
+        times = as_times(tables.table.reversed_at)
         if sorted(set(times)) != list(times) or 0 in times:
             yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
 
-    def state_at_start(self, tables: Tables, start: GasAtStart) -> tuple[float, ...] | None:
-        """Return the times of the reversals: an empty tuple if only gravity steers discs, None if nothing does."""
-        if tables.own is None:
-            return () if start.later_accelerations else None
-        return as_times(tables.own.reversed_at)
+    def exists(self, tables: Tables, start: GasAtStart) -> bool:
+        """Steps of gravity steer the discs too."""
+        return tables.table is not None or bool(start.later_accelerations)
+
+    def make(self, tables: Tables, start: GasAtStart) -> tuple[float, ...]:
+        """Return the times of the reversals; an empty tuple if only gravity steers the discs."""
+        return () if tables.table is None else as_times(tables.table.reversed_at)
 
     def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
-        return (Change(time, 0, 0.0) for time in as_times(tables.own.reversed_at))
+        return (Change(time, 0, 0.0) for time in as_times(tables.table.reversed_at))
 
 
 EFFECT = SteeringEffect()

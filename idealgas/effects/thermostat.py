@@ -48,7 +48,7 @@ class ThermostatEffect(Effect[law.Thermostat]):
     samples = (BenchmarkSample(tables=lambda side: "[thermostat]\ntemperature = 1\nrate = 0.053\n"),)
 
     def properties(self, tables: Tables) -> Properties:
-        first, *later = steps_of(tables.own.temperature)
+        first, *later = steps_of(tables.table.temperature)
         return Properties(
             allows_monte_carlo=False,
             allows_time_steps=False,
@@ -57,11 +57,11 @@ class ThermostatEffect(Effect[law.Thermostat]):
             later_temperatures=tuple(temperature for _, temperature in later),
             changes=tuple(time for time, _ in later),
             varies=bool(later),
-            thermostat_rate=tables.own.rate,
+            thermostat_rate=tables.table.rate,
         )
 
     def make(self, tables: Tables, start: GasAtStart) -> law.Thermostat:
-        table, n = tables.own, len(start.gas)
+        table, n = tables.table, len(start.gas)
         temperature = value_at(table.temperature, 0.0)
         thermostat = law.Thermostat(temperature, table.rate, np.uint64(start.seed), np.empty(n), np.zeros(n, np.uint64))
         law.draw_first_collisions(thermostat)
@@ -81,7 +81,7 @@ class ThermostatEffect(Effect[law.Thermostat]):
         law.end_epoch(thermostat, length)
 
     def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
-        return changes_of(tables.own.temperature, 0)
+        return changes_of(tables.table.temperature, 0)
 
     def change(self, thermostat: law.Thermostat, item: int, temperature: float) -> law.Thermostat:
         return thermostat._replace(temperature=temperature)

@@ -257,7 +257,7 @@ class WallEffect(Effect[np.recarray]):
     sample_together = BenchmarkSample(tables=lambda side: _polygon(side, 6, 5.0) + "temperature = 1\n")
 
     def properties(self, tables: Tables) -> Properties:
-        walls = [wall for wall in tables.own if wall is not None]
+        walls = [wall for wall in tables.table if wall is not None]
         removed = (wall.absences[-1] if wall.absences else (math.inf, math.inf) for wall in walls)
         times = {t for wall in walls for absence in wall.absences for t in absence}
         return Properties(
@@ -272,7 +272,7 @@ class WallEffect(Effect[np.recarray]):
     def check(self, tables: Tables) -> Iterator[Issue]:
         """Yield issues of single walls, and of names that are taken."""
         first: dict[str, int] = {}
-        for i, wall in enumerate(tables.own):
+        for i, wall in enumerate(tables.table):
             if wall is None:
                 continue
             if isinstance(wall, FixedDisc):
@@ -293,12 +293,12 @@ class WallEffect(Effect[np.recarray]):
         return tuple(wall.for_species(later.species) for wall in walls if wall is not None)
 
     def make(self, tables: Tables, _: GasAtStart) -> np.recarray:
-        start, end = (np.array([getattr(wall, name) for wall in tables.own]) for name in ("start", "end"))
-        active, radius = [wall.is_present(0.0) for wall in tables.own], [wall.radius for wall in tables.own]
+        start, end = (np.array([getattr(wall, name) for wall in tables.table]) for name in ("start", "end"))
+        active, radius = [wall.is_present(0.0) for wall in tables.table], [wall.radius for wall in tables.table]
         return make_segments(start, end, np.array(active), np.array(radius))
 
     def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:
-        for k, wall in enumerate(tables.own):
+        for k, wall in enumerate(tables.table):
             for times, active in zip(zip(*wall.absences, strict=True), (0.0, 1.0), strict=False):
                 yield from (Change(time, k, active) for time in times if 0 < time < math.inf)
 

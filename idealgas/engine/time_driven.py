@@ -1,4 +1,4 @@
-"""The time-driven method: in each step all discs move, and then discs that overlap, or leave the box, collide.
+"""The time-driven method: all discs move by a time step, then those that overlap or are outside the box collide.
 
 It serves for comparison with the event-driven method; its errors grow with the step. A contact is found late, by half a
 step on average, and with a rotated line of centres; a contact that begins and ends between two steps is missed. The

@@ -1,4 +1,4 @@
-"""The log of a run, open for reading, even during the run or after it was interrupted or killed."""
+"""Log of a run, open for reading. The run may be active, or may have been interrupted or killed."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -34,9 +34,9 @@ class QuantityRow(NamedTuple):
     values: Mapping[str, float | None]
 
 
-def rows(found: Any, name: str) -> Iterator[QuantityRow]:
+def rows(values: Any, name: str) -> Iterator[QuantityRow]:
     """Yield the numbers in the plain values of a result; name: name of the analysis."""
-    return _rows(found, (name,), (), None)
+    return _rows(values, (name,), (), None)
 
 
 def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int | None) -> Iterator[QuantityRow]:

@@ -132,7 +132,7 @@ def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
 
 
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
-    """Return a table of series (n,), a column for each that is not None; the terminal shows SHOWN_ROWS instants.
+    """Return a table with a column for each series (n,) that is not None; the terminal shows SHOWN_ROWS of its rows.
 
     Values that are not finite give empty cells. A column whose name begins with ± contains the errors of the column
     before it.

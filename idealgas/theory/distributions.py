@@ -25,7 +25,7 @@ class Law(Protocol):
         """Mean of the quantity, in its unit."""
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the probability density at the values x, 1/unit of the quantity; same shape as x."""
+        """Return the probability density at x, of the shape of x, in 1/unit of the quantity."""
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
         """Return the probability of a value of at most x; same shape as x."""

@@ -57,16 +57,16 @@ EFFECT = '''
                 straight_flight=False,
                 allows_monte_carlo=False,
                 drives_discs=True,
-                acceleration=tilted(tables.own.strength, tables.own.angle),
+                acceleration=tilted(tables.table.strength, tables.table.angle),
             )
 
         def check(self, tables):
-            strength = tables.own.strength
+            strength = tables.table.strength
             if strength > max(tables.size):
                 yield Issue((("tilt", "strength"),), "too strong", str(strength), "at most the size of the box")
 
         def make(self, tables, start):
-            return tables.own.strength
+            return tables.table.strength
 
 
     EFFECT = TiltEffect()
@@ -232,7 +232,7 @@ DELTA_EFFECT = '''
             return Properties(elastic=False, collisions_give_energy=True)
 
         def make(self, tables, start):
-            return tables.own.speed
+            return tables.table.speed
 
 
     EFFECT = DeltaEffect()

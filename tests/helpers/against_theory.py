@@ -22,11 +22,11 @@ def agrees(found: Estimate, resolution: float) -> None:
 
 def all_agree(log: Log, resolution: float, analysis: str, *quantities: str, **options: Any) -> None:
     """Estimates of an analysis agree with theory. quantities: patterns of their names in CSV, without the analysis."""
-    found = list(estimates(log, of(analysis, *quantities, **options)))
-    assert found
-    for name, one, _ in found:
-        print(name, one)
-        agrees(one, resolution)
+    rows = list(estimates(log, of(analysis, *quantities, **options)))
+    assert rows
+    for name, estimate, _ in rows:
+        print(name, estimate)
+        agrees(estimate, resolution)
 
 
 def of_runs(values, expected) -> Estimate:

@@ -21,13 +21,13 @@ def combine_pressure(results: Sequence[Pressure | PressureSample]) -> Pressure |
     return equation_of_state([sample_of(result) if isinstance(result, Pressure) else result for result in results])
 
 
-def restore_pressure(found: dict[str, Any], label: str) -> PressureSample:
+def restore_pressure(values: dict[str, Any], label: str) -> PressureSample:
     """Return the compressibility factor of the point of a sweep that is named `label`, from its stored values.
 
     Raises:
         UserError: if the gas has no equation of state.
     """
-    if not found["routes"]:
-        raise UserError(f"{label}: {found['no_theory']}")
-    pairs = next(route["compressibility_factor"] for route in found["routes"] if route["route"] == PAIRS)
-    return PressureSample(found["packing_fraction"], found["number"], Estimate.from_dict(pairs))
+    if not values["routes"]:
+        raise UserError(f"{label}: {values['no_theory']}")
+    pairs = next(route["compressibility_factor"] for route in values["routes"] if route["route"] == PAIRS)
+    return PressureSample(values["packing_fraction"], values["number"], Estimate.from_dict(pairs))

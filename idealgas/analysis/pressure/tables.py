@@ -15,7 +15,7 @@ CLEAR = 5.0
 """Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
 
 MOST_WALLS = 4
-"""Largest number of pressures in the headline; if there are more, it quotes only the lowest and the highest."""
+"""Number of pressures above which the headline quotes only the lowest and the highest."""
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "

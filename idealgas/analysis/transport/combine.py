@@ -68,13 +68,13 @@ def combine_transport(results: Sequence[Transport | TransportSample]) -> Transpo
     return States(tuple(_state(kind, runs) for kind, runs in by_state(samples)))
 
 
-def restore_transport(found: dict[str, Any], label: str) -> TransportSample:
+def restore_transport(values: dict[str, Any], label: str) -> TransportSample:
     """Return the coefficients of the point of a sweep that is named `label`, from its stored values."""
-    whole, diffusion = found["collective"] or {}, found["diffusion"]
+    whole, diffusion = values["collective"] or {}, values["diffusion"]
     coefficients = {DIFFUSION: diffusion[0]["coefficient"]} if len(diffusion) == 1 else {}
     coefficients |= {symbol: whole[name]["coefficient"] for name, symbol in SYMBOLS.items() if name in whole}
     estimates = {symbol: Estimate.from_dict(estimate) for symbol, estimate in coefficients.items() if estimate}
-    return TransportSample(found["packing_fraction"], found["number"], _over_theory(estimates))
+    return TransportSample(values["packing_fraction"], values["number"], _over_theory(estimates))
 
 
 def _sample_of(result: Transport) -> TransportSample:

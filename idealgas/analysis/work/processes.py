@@ -108,12 +108,12 @@ def joined(same: Sequence[WorkProcess], temperature: float, number: int) -> Work
     return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
-def poorly_sampled(one: WorkProcess, temperature: float) -> Iterator[str]:
+def poorly_sampled(process: WorkProcess, temperature: float) -> Iterator[str]:
     """Yield a caveat if few strokes dominate the mean of exp(-W/T)."""
-    weight = np.exp(-(one.work - one.work.min()) / temperature)
+    weight = np.exp(-(process.work - process.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ {one.name} has an effective number of only {effective:.3g} strokes; below "
+            f"⟨exp(−W/T)⟩ {process.name} has an effective number of only {effective:.3g} strokes; below "
             f"{FEWEST_EFFECTIVE:g} its error may be too small."
         )
 
