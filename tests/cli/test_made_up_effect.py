@@ -27,7 +27,7 @@ EFFECT = '''
 
     from pydantic import Field
 
-    from idealgas.effects.effect import Effect, Sample
+    from idealgas.effects.effect import BenchmarkSample, Effect
     from idealgas.effects.properties import Properties
     from idealgas.physics.tilt import tilted
     from idealgas.toml.issues import Issue
@@ -49,7 +49,7 @@ EFFECT = '''
         key = "tilt"
         table = TiltTable
         description = "[tilt]: strength, angle"
-        samples = (Sample(tables=lambda side: "[tilt]\\nstrength = 0.01\\n"),)
+        samples = (BenchmarkSample(tables=lambda side: "[tilt]\\nstrength = 0.01\\n"),)
 
         def properties(self, tables):
             return Properties(
@@ -207,7 +207,7 @@ DELTA_EFFECT = '''
 
     from pydantic import Field
 
-    from idealgas.effects.effect import Effect, Sample
+    from idealgas.effects.effect import BenchmarkSample, Effect
     from idealgas.effects.properties import Properties
     from idealgas.toml.table import Positive, Table
 
@@ -226,7 +226,7 @@ DELTA_EFFECT = '''
         key = "delta"
         table = DeltaTable
         description = "[delta]: speed"
-        samples = (Sample(tables=lambda side: "[delta]\\nspeed = 0.001\\n"),)
+        samples = (BenchmarkSample(tables=lambda side: "[delta]\\nspeed = 0.001\\n"),)
 
         def properties(self, tables):
             return Properties(elastic=False, collisions_give_energy=True)
