@@ -8,9 +8,9 @@ import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, Column, Kind
 from idealgas.errors import NotApplicableError
+from idealgas.log.check_parts import check_boundary, check_images, check_species, check_walls
 from idealgas.log.errors import LogError
 from idealgas.log.log_file import LogFile
-from idealgas.log.rules import check_boundary, check_images, check_species, check_walls
 from idealgas.log.schema import DISC_COLUMNS, ROOT_ATTRIBUTES, RUN_COLUMNS, VERSIONS, Wall
 from idealgas.state import Gas
 

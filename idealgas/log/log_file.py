@@ -17,12 +17,13 @@ from idealgas.columns import COUNTED, Column
 from idealgas.files import HEAD, describe_file_type
 from idealgas.locks import is_locked
 from idealgas.log import schema
+from idealgas.log.check_parts import box_of, check_names, check_sizes
 from idealgas.log.errors import DamageError, LogError, reason
 from idealgas.log.hdf5.chunks import keep_freed_memory
 from idealgas.log.hdf5.column import StoredColumn
 from idealgas.log.hdf5.commit import Commit, commit_of, table_of
 from idealgas.log.hdf5.superblock import ReadableFile
-from idealgas.log.rules import Rules, box_of, check_names, check_sizes
+from idealgas.log.rules import Rules
 
 _CACHED = 64
 """Number of chunks of events in the cache, up to 64 MiB.

@@ -114,56 +114,88 @@ def _swept(wall: WallTable, forwards: bool) -> float:
 def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]) -> float:
     """Area of a box that is covered by fixed discs, length²; the discs may overlap each other and the sides.
 
-    It is the integral of x dy along the boundary of the covered part of the box: the arcs of the rims that are in the
-    box and outside all other discs, and the parts of the right side that are inside discs.
+    By Green's theorem, an area is the integral of x dy along its boundary, counterclockwise. The boundary of the
+    covered part of the box consists of arcs of rims and of parts of the sides:
+
+        ┌──────────────────┐
+        │    ╭───╮         │   rims: the arcs that are in the box and not inside another disc;
+        │   │   ╭┼──╮    ╭─┤
+        │   │   ││   │  │  │   right side: the parts that are inside discs, where x is the width of the box;
+        │    ╰──┼╯   │   ╰─┤
+        │        ╰──╯      │   other sides: nothing, because x = 0 on the left, and dy = 0 at the bottom and the top.
+        └──────────────────┘
     """
     width, height = size
-    shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
-    moves = list(product(*shifts))
-    x, y, r = images = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
-    x, y, r = np.unique(images[:, (x > -r) & (x < width + r) & (y > -r) & (y < height + r)], axis=1)
+    x, y, r = _images_in_box(discs, size, periodic)
     arcs = [(k, *arc) for k, hidden in enumerate(_hidden(x, y, r, size)) for arc in _gaps(hidden, 2 * math.pi)]
-    if not arcs:
+    if not arcs:  # a box that is not covered completely contains a part of a rim
         return width * height
     owner, (start, end) = np.array([k for k, *_ in arcs]), np.array([arc for _, *arc in arcs]).T
+    # The integral of (x + r cos φ) r cos φ dφ from start to end, divided by r.
     swept = x[owner] * (np.sin(end) - np.sin(start))
     swept += r[owner] / 2 * (end - start + (np.sin(2 * end) - np.sin(2 * start)) / 2)
-    half = np.sqrt(np.maximum(r**2 - (width - x) ** 2, 0.0))
+    half = np.sqrt(np.maximum(r**2 - (width - x) ** 2, 0.0))  # half of the chord that the right side cuts off
     side = np.clip((y - half, y + half), 0.0, height)[:, half > 0].T.tolist()
     free = math.fsum(high - low for low, high in _gaps(side, height))
     return math.fsum((r[owner] * swept).tolist()) + width * (height - free)
 
 
-def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
-    """Intervals of angle in which the rim of each disc is inside other discs or outside a box.
+def _images_in_box(
+    discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates x and y and radii of all images of discs that reach into a box, sorted by x, each image once."""
+    shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
+    moves = list(product(*shifts))
+    x, y, r = images = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
+    reaches = (x > -r) & (x < size[0] + r) & (y > -r) & (y < size[1] + r)
+    x, y, r = np.unique(images[:, reaches], axis=1)
+    return x, y, r
 
-    The discs must be in order of x and differ from each other.
+
+def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
+    """Intervals of angle in which the rim of each disc is inside other discs or outside a box; they may be empty.
+
+    Every partner and every side hides the part of the rim beyond a straight line: the line through the two points where
+    the two rims cross, or the side itself. If its distance from the centre is h in the direction θ, it hides all angles
+    within arccos(h/r) of θ:
+
+           ╭───┬╮
+          │    │ │        r cos(φ - θ) > h
+          │  · │ │ ──→ θ
+          │    │ │        For a partner of radius R at a distance d, h = (d + (r² - R²)/d)/2: the two
+           ╰───┴╯         triangles with the sides r and R have the height r² - h² = R² - (d - h)².
+             └─┘
+              h
     """
+    disc, partner = _crossing(x, y, r)
+    dx, dy = x[partner] - x[disc], y[partner] - y[disc]
+    distance = np.hypot(dx, dy)
+    within = distance <= r[partner] - r[disc]  # the whole disc is inside the partner
+    chord = (distance + (r[disc] ** 2 - r[partner] ** 2) / np.where(within, 1.0, distance)) / 2
+    # The partners of all discs, followed by the right, upper, left and lower side for each disc.
+    owner = np.concatenate((disc, *[np.arange(len(r))] * 4))
+    towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
+    line = np.concatenate((np.where(within, -r[disc], chord), size[0] - x, size[1] - y, x, y))
+    half = np.arccos(np.clip(line / r[owner], -1.0, 1.0))
+    low, width = (towards - half) % (2 * math.pi), 2 * half
+    hidden: list[list[tuple[float, float]]] = [[] for _ in r]
+    for k, first, last in zip(owner.tolist(), low.tolist(), (low + width).tolist(), strict=True):
+        hidden[k].append((first, last))
+        hidden[k].append((0.0, last - 2 * math.pi))  # the part beyond a full turn, if there is one
+    return hidden
+
+
+def _crossing(x: np.ndarray, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of discs and of the partners inside which a part of their rims is; the discs are sorted by x."""
     indices = np.arange(len(r))
-    # Number of later discs that are near along x.
+    # Each disc with the discs behind it whose x differs by at most the largest diameter.
     number = x.searchsorted(x + 2 * r.max(initial=0.0), "right") - indices - 1
     low = np.repeat(indices, number)
     high = low + 1 + np.arange(len(low)) - np.repeat(np.cumsum(number) - number, number)
     disc, partner = np.concatenate((low, high)), np.concatenate((high, low))
-    dx, dy = x[partner] - x[disc], y[partner] - y[disc]
-    distance = np.hypot(dx, dy)
-    meet = (distance < r[disc] + r[partner]) & (distance > r[disc] - r[partner])
-    disc, partner, dx, dy, distance = disc[meet], partner[meet], dx[meet], dy[meet], distance[meet]
-    within = distance <= r[partner] - r[disc]
-    nearest = np.where(
-        within, -r[disc], (distance + (r[disc] ** 2 - r[partner] ** 2) / np.where(within, 1.0, distance)) / 2
-    )
-    owner = np.concatenate((disc, *[indices] * 4))
-    towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
-    reach = np.concatenate((nearest, size[0] - x, size[1] - y, x, y)) / r[owner]
-    half = np.arccos(np.clip(reach, -1.0, 1.0))
-    hidden: list[list[tuple[float, float]]] = [[] for _ in indices]
-    for k, low, high in zip(
-        owner.tolist(), ((towards - half) % (2 * math.pi)).tolist(), (2 * half).tolist(), strict=True
-    ):
-        hidden[k].append((low, low + high))
-        hidden[k].append((0.0, low + high - 2 * math.pi))
-    return hidden
+    distance = np.hypot(x[partner] - x[disc], y[partner] - y[disc])
+    crosses = (distance < r[disc] + r[partner]) & (distance > r[disc] - r[partner])  # they overlap, no partner inside
+    return disc[crosses], partner[crosses]
 
 
 def _gaps(covered: Iterable[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:

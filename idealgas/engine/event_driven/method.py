@@ -20,8 +20,9 @@ from idealgas.engine.event_driven.kernel import advance_events, place
 from idealgas.engine.event_driven.state import EventDrivenState, make_state
 from idealgas.engine.event_driven.wall_cells import WallCells, make_wall_cells
 from idealgas.engine.method import Limits, Method, Threads
-from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers
+from idealgas.engine.parallel.decomposition import DomainDecomposition
 from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, choose_threads
+from idealgas.engine.parallel.workers import Workers
 from idealgas.engine.records import make_discs
 from idealgas.state import Gas
 

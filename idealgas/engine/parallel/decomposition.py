@@ -5,35 +5,26 @@ the wrong order, the slice is aborted: all its changes are rolled back, and one 
 """
 
 import time
-from collections import Counter
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any
 
 import numpy as np
 
-from idealgas.columns import EVENT_COLUMNS, EventBatch, empty_batch
+from idealgas.columns import EventBatch
 from idealgas.effects.bundle import Effects, add_sums_of, clear_sums, with_own_sums
 from idealgas.engine.event_driven.kernel import advance_events
 from idealgas.engine.event_driven.prefetch import make_pipeline
 from idealgas.engine.event_driven.scheduler import build, make_tree
 from idealgas.engine.event_driven.state import EventDrivenState
 from idealgas.engine.method import Limits
-from idealgas.engine.parallel.autotuner import ThreadAutotuner
 from idealgas.engine.parallel.merge import PendingRows, TiedRowsError, time_order
-from idealgas.engine.parallel.slabs import DEFAULT_TUNING, Tuning, make_subdomains, reset, slab_edges
-from idealgas.engine.parallel.subdomain import CLOCK, FAILED, FLAG, FULL, TIE, VIOLATION, Subdomain
+from idealgas.engine.parallel.slabs import make_subdomains, reset, slab_edges
+from idealgas.engine.parallel.subdomain import FAILED, FLAG, TIE, Subdomain
+from idealgas.engine.parallel.workers import REASONS, STOP, Workers
 from idealgas.engine.records import COUNTERS, UNLIMITED, Discs
 from idealgas.jit import aligned
 from idealgas.physics import stress
 from idealgas.physics.absorbing import inside
 from idealgas.physics.periodic import periodic_axes
-
-REASONS = {VIOLATION: "causality", TIE: "tie", FULL: "full", CLOCK: "clock", FAILED: "error"}
-"""Names of the reasons for which a slice is aborted."""
-
-STOP = "stop"
-"""A further reason: the slice exceeded a limit on the number of events."""
 
 SLICE_FRACTION = 0.8
 """Planned events of a slice as a fraction of the events up to a limit; a slice that exceeds the limit is wasted."""
@@ -56,53 +47,6 @@ PREDICTIONS_PER_EVENT = 6
 
 RATE_DIVISOR = 8
 """Divisor of a rate that predicted far too many events."""
-
-
-class Workers:
-    """Threads, memory and measurements that last for a run.
-
-    Attributes:
-        counts: numbers of shared slices, of aborted slices by reason, and of migrations and their side effects.
-        rate: rates of all events and of collisions of two discs in the last slice, 1/time; None before the first.
-        autotuner: choice between several threads and one; None to always use several threads.
-    """
-
-    def __init__(self, tuning: Tuning = DEFAULT_TUNING) -> None:
-        """Begin without threads."""
-        self.tuning = tuning
-        self.autotuner = ThreadAutotuner() if tuning.autotune else None
-        self.counts: Counter[str] = Counter()
-        self.rate: tuple[float, float] | None = None
-        self._pool: ThreadPoolExecutor | None = None
-        self._rows: EventBatch | None = None
-
-    @property
-    def aborted(self) -> int:
-        """Number of aborted slices in the run so far."""
-        return sum(self.counts[why] for why in (*REASONS.values(), STOP))
-
-    def memory(self, batch: EventBatch | None, slabs: int) -> EventBatch | None:
-        """Memory for the rows of all slabs, in equal parts, with the columns of a batch; None without a log."""
-        if batch is None:
-            return None
-        rows = self.tuning.buffer * slabs
-        if self._rows is None or len(self._rows.time) != rows:
-            self._rows = empty_batch(rows, [c for c in EVENT_COLUMNS if getattr(batch, c.name) is not None])
-        return self._rows
-
-    def run(self, work: Callable[[int], None], number: int, abort_slice: Callable[[], None]) -> None:
-        """Call work(0) to work(number - 1) in parallel, the first in this thread and each of the others in its own."""
-        self._pool = self._pool or ThreadPoolExecutor(number - 1, "slab")
-        futures = [self._pool.submit(work, k) for k in range(1, number)]
-        try:
-            work(0)
-            wait(futures)
-        finally:  # Ctrl-C interrupts this thread
-            if not all(future.done() for future in futures):
-                abort_slice()
-                wait(futures)
-        for future in futures:
-            future.result()
 
 
 class DomainDecomposition:
@@ -150,9 +94,8 @@ class DomainDecomposition:
             if autotuner is not None and not shared and autotuner.is_trial(shared):
                 limits = limits._replace(events=min(limits.events, self._trial_events(SERIAL_TRIAL)))
             rows, arrived = self._run_serial(limits, epoch_start, batch, counters)
-        if (
-            autotuner is not None and aborted != STOP
-        ):  # when the rate of events rises, as in a melting lattice, a slice is wasted although threads are not slow
+        # When the rate of events rises, as in a melting lattice, a slice is wasted although threads are not slow.
+        if autotuner is not None and aborted != STOP:
             autotuner.note(shared, self._work_done(counters) - before, time.perf_counter() - started)
         return rows, arrived
 
@@ -205,44 +148,63 @@ class DomainDecomposition:
     def _run_slice(
         self, end: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> str:
-        """Share a slice up to a local time; return why it was aborted and rolled back, or an empty string."""
-        counts = self._workers.counts
-        counts["slices"] += 1
+        """Share a slice up to a local time; return why it was aborted and rolled back, or an empty string.
+
+        Like a transaction of a database, a slice happens completely or not at all: either everything that the threads
+        have done is accepted, or everything is undone, also if they are interrupted.
+        """
+        self._workers.counts["slices"] += 1
         self._save()
         try:
-            why = self._run_threads(end, batch, 0)
-            slabs, total = self._slabs, counters.copy()
-            for slab in slabs:
-                for name in ("events", "disc_collisions", "wall_hits", "thermostat_collisions"):
-                    total[name] += slab.counters[name]
-            last = max(slabs, key=lambda slab: slab.counters[0]["time"]).counters[0]
-            done = {name: int(total[0][name] - counters[0][name]) for name in ("events", "disc_collisions")}
-            if not why and (done["events"] >= limits.events or done["disc_collisions"] >= limits.collisions):
-                why = STOP
-            if not why and self._rows is not None:
-                order = time_order(self._rows.time, [slab.filled for slab in slabs])
-                self._pending = PendingRows(self._rows, order, epoch_start)
-        except TiedRowsError:
-            why = REASONS[TIE]
+            why = self._run_threads(end, batch, 0) or self._exceeds(limits) or self._merge_rows(epoch_start)
         except BaseException:
             self._roll_back()
             raise
         if why:
-            counts[why] += 1
+            self._workers.counts[why] += 1
             self._roll_back()
-            return why
-        self._state.unpredicted[0] = False
-        for slab in slabs:
-            add_sums_of(self._effects, slab.effects)
-        if done["events"]:
-            total["time"], total["events_at_this_time"] = last["time"], last["events_at_this_time"]
-        self._measure_rate(counters[0], total[0], end)
-        if done["events"] < MIN_RATE_EVENTS and self._workers.rate is not None:  # the rate has fallen
-            self._workers.rate = self._workers.rate[0] / RATE_DIVISOR, self._workers.rate[1] / RATE_DIVISOR
-        self._reached = end
-        counters[:] = total
-        self._reaches_limit = end == limits.until
+        else:
+            self._accept(end, counters)
+            self._reaches_limit = end == limits.until
+        return why
+
+    def _done(self, name: str) -> int:
+        """Number of events of a kind in the slice, of all threads; name: field of COUNTERS."""
+        return sum(int(slab.counters[0][name]) for slab in self._slabs)
+
+    def _exceeds(self, limits: Limits) -> str:
+        """Return STOP if the slice reached a limit on the number of events, otherwise an empty string.
+
+        The threads do not check these limits: which event reaches the limit depends on the order of all their events.
+        """
+        exceeds = self._done("events") >= limits.events or self._done("disc_collisions") >= limits.collisions
+        return STOP if exceeds else ""
+
+    def _merge_rows(self, epoch_start: float) -> str:
+        """Prepare the rows of all threads for delivery; return the reason if their order is undefined."""
+        if self._rows is not None:
+            try:
+                order = time_order(self._rows.time, [slab.filled for slab in self._slabs])
+            except TiedRowsError:
+                return REASONS[TIE]
+            self._pending = PendingRows(self._rows, order, epoch_start)
         return ""
+
+    def _accept(self, end: float, counters: np.ndarray) -> None:
+        """Add the sums and counters of all threads to the totals, and measure the rate of events."""
+        before, events = counters.copy(), self._done("events")
+        for slab in self._slabs:
+            add_sums_of(self._effects, slab.effects)
+        for name in ("events", "disc_collisions", "wall_hits", "thermostat_collisions"):
+            counters[name] += self._done(name)
+        if events:
+            last = max((slab.counters[0] for slab in self._slabs), key=lambda counter: counter["time"])
+            counters["time"], counters["events_at_this_time"] = last["time"], last["events_at_this_time"]
+        self._measure_rate(before[0], counters[0], end)
+        if events < MIN_RATE_EVENTS and self._workers.rate is not None:  # the rate has fallen
+            self._workers.rate = self._workers.rate[0] / RATE_DIVISOR, self._workers.rate[1] / RATE_DIVISOR
+        self._state.unpredicted[0] = False
+        self._reached = end
 
     def _deliver(self, batch: EventBatch | None) -> tuple[int, bool]:
         """Fill the batch with rows of the last slice; the slice is over when all its rows are delivered."""

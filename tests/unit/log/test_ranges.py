@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from idealgas.columns import Kind
-from idealgas.log.rules import LEAST, LONGEST, MOST, SLOWEST, Rules, box_of, check_images, check_sizes, check_species
+from idealgas.log.check_parts import box_of, check_images, check_sizes, check_species
+from idealgas.log.rules import LEAST, LONGEST, MOST, SLOWEST, Rules
 
 pytestmark = pytest.mark.interpreted
 

@@ -6,7 +6,8 @@ from helpers.thread_samples import EAGER, SMALLEST_CELLS, log_with, tall_scene
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
-from idealgas.engine.parallel.decomposition import STOP, DomainDecomposition
+from idealgas.engine.parallel.decomposition import DomainDecomposition
+from idealgas.engine.parallel.workers import STOP
 from idealgas.engine.simulation import Stop
 
 

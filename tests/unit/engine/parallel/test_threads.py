@@ -24,7 +24,8 @@ from hypothesis import strategies as st
 
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.parallel.autotuner import ThreadAutotuner
-from idealgas.engine.parallel.decomposition import DomainDecomposition, Workers, _Slab
+from idealgas.engine.parallel.decomposition import DomainDecomposition, _Slab
+from idealgas.engine.parallel.workers import Workers
 from idealgas.engine.records import UNLIMITED
 from idealgas.engine.simulation import Simulation, Stop
 from idealgas.run.resume import resume
