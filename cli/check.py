@@ -81,20 +81,21 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
     return f"{shape}, strain {lattice.strain:+.3g} across them; without strain: box.size = {list(lattice.unstrained)}"
 
 
-def _rest_lines(rest: "RestingDisc", number: int) -> Iterator[str]:
+def _rest_lines(resting: "RestingDisc", number: int) -> Iterator[str]:
     """Yield lines about the bouncing of discs that have come to rest, with a warning if it dominates the run."""
-    least, most = rest.hits
-    if most is None or rest.per_free_time is None:
+    least, most = resting.hits
+    if most is None or resting.per_free_time is None:
         yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."
         return
     yield (
         f"at rest: a disc keeps bouncing, with {least:.4g} to {most:.4g} hits per unit time, up to a height of "
-        f"{rest.height:.3g} and an energy of {rest.energy:.3g} times its mass"
+        f"{resting.height:.3g} and an energy of {resting.energy:.3g} times its mass"
     )
-    if rest.per_free_time > MANY_HITS:
+    if resting.per_free_time > MANY_HITS:
         yield (
-            f"warning: A disc at rest has up to {rest.per_free_time:.3g} times as many events as a disc of the initial "
-            f"gas, all {number} together {number * most:.3g} per unit time; a longer contact duration reduces them."
+            f"warning: A disc at rest has up to {resting.per_free_time:.3g} times as many events as a disc of the "
+            f"initial gas, all {number} together {number * most:.3g} per unit time; a longer contact duration reduces "
+            "them."
         )
 
 

@@ -42,12 +42,12 @@ def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     return f', did you mean "{close[0]}"?' if close else ""
 
 
-def unknown(what: str, got: str, allowed: Sequence[str]) -> UserError:
+def unknown(kind: str, got: str, allowed: Sequence[str]) -> UserError:
     """Return a UserError for an unknown name, which suggests the most similar allowed name.
 
     Args:
-        what: what the name stands for.
+        kind: what the name stands for.
         got: the unknown name.
         allowed: all allowed names.
     """
-    return UserError(f"unknown {what}{did_you_mean(got, allowed)} (got {got}; allowed {', '.join(allowed)})")
+    return UserError(f"unknown {kind}{did_you_mean(got, allowed)} (got {got}; allowed {', '.join(allowed)})")

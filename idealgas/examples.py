@@ -35,8 +35,8 @@ def names() -> list[str]:
 def first_sentence(description: str) -> tuple[str, str]:
     """Return the first sentence of the description of a scene on one line, and the text that follows it."""
     paragraph, *following = description.strip("\n").split("\n\n", maxsplit=1)
-    sentence, *rest = re.split(r"(?<=\.)\s+", paragraph, maxsplit=1)
-    return " ".join(sentence.split()), "\n\n".join((*rest, *following))
+    sentence, *remainder = re.split(r"(?<=\.)\s+", paragraph, maxsplit=1)
+    return " ".join(sentence.split()), "\n\n".join((*remainder, *following))
 
 
 def load_example(name: str, overrides: Sequence[str] = ()) -> "Scene":

@@ -28,13 +28,13 @@ ROUNDING = 1e-9  # magnitude below which an error of an average is due to roundi
 SHOWN_STEPS = 4  # number of evenly spaced points that are labelled with their time step
 
 
-def accuracy_figure(found: Accuracy) -> Figure:
+def accuracy_figure(study: Accuracy) -> Figure:
     """Return a figure of the error of an average against CPU time, and of the trajectories in each precision."""
-    figure, axes = panels(1 + bool(len(found.collisions)))
-    _cost(axes[0], found)
+    figure, axes = panels(1 + bool(len(study.collisions)))
+    _cost(axes[0], study)
     if len(axes) > 1:
-        _digits(axes[1], found)
-    return add_title(figure, f"{found.title}: CPU time and accuracy")
+        _digits(axes[1], study)
+    return add_title(figure, f"{study.title}: CPU time and accuracy")
 
 
 def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.ndarray:
@@ -87,22 +87,22 @@ def _digits(ax: Panel, study: Accuracy) -> None:
     ax.legend()
 
 
-def details_figure(found: Accuracy) -> Figure:
+def details_figure(study: Accuracy) -> Figure:
     """Return a figure of all errors of averages and of the motion against CPU time, and of all trajectories."""
-    motion = bool(len(found.collisions))
+    motion = bool(len(study.collisions))
     figure, axes = panels(3 if motion else 1)
-    _errors_against_time(axes[0], found, AVERAGES, ROUNDING)
+    _errors_against_time(axes[0], study, AVERAGES, ROUNDING)
     axes[0].set_ylabel("error of averages (no unit)")
     if motion:
-        picks = [nearest(found.collisions, count) for count in PATHS]
-        paths = {f"path at {found.collisions[k]:.2g} collisions per disc": f"trajectory {k}" for k in picks}
+        picks = [nearest(study.collisions, count) for count in PATHS]
+        paths = {f"path at {study.collisions[k]:.2g} collisions per disc": f"trajectory {k}" for k in picks}
         _errors_against_time(
-            axes[1], found, paths | {"reversal (σ)": "way_back_error", "energy drift (relative)": "energy_drift"}
+            axes[1], study, paths | {"reversal (σ)": "way_back_error", "energy drift (relative)": "energy_drift"}
         )
         axes[1].set_ylabel("error of the motion (diameters)")
-        _trajectories(axes[2], found)
+        _trajectories(axes[2], study)
     figure.set_figheight(4.6 * len(axes))
-    return add_title(figure, f"{found.title}: every error")
+    return add_title(figure, f"{study.title}: every error")
 
 
 def _errors_against_time(ax: Panel, study: Accuracy, errors: dict[str, str], least: float = 0.0) -> None:
@@ -149,19 +149,19 @@ def _trajectories(ax: Panel, study: Accuracy) -> None:
     ax.legend()
 
 
-def orbit_figure(found: OrbitStudy) -> Figure:
+def orbit_figure(study: OrbitStudy) -> Figure:
     """Return a figure of the lifetime of the orbit against digits: all boxes, the medians, and a line through them."""
     figure, (ax,) = panels(1)
-    for k, survival in enumerate(found.survivals):
+    for k, survival in enumerate(study.survivals):
         x = survival.digits + np.linspace(-0.5, 0.5, len(survival.times))
         label = "one box and radius" if k == 0 else None
         ax.plot(x, survival.times, ".", color=COLOURS[5], label=label)
         ax.annotate(survival.precision, (survival.digits, survival.median), (8, -14), textcoords="offset points")
-    digits, median = np.array([(s.digits, s.median) for s in found.survivals]).T
-    ax.plot(digits, median, "D", color=COLOURS[0], label=f"median of {found.placements}")
+    digits, median = np.array([(s.digits, s.median) for s in study.survivals]).T
+    ax.plot(digits, median, "D", color=COLOURS[0], label=f"median of {study.placements}")
     x = np.array([0.0, 1.05 * digits.max()])
-    line = median.mean() + found.time_per_digit * (x - digits.mean())
-    ax.plot(x, line, "--", color=COLOURS[1], label=f"{found.time_per_digit:.3g} time units per digit")
+    line = median.mean() + study.time_per_digit * (x - digits.mean())
+    ax.plot(x, line, "--", color=COLOURS[1], label=f"{study.time_per_digit:.3g} time units per digit")
     ax.set_xlim(0, 1.2 * digits.max())
     ax.set_ylim(bottom=0)
     ax.set(xlabel="decimal digits carried (no unit)", ylabel="orbit lasts (time, at speed 1)")

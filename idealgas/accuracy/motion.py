@@ -83,21 +83,21 @@ def first_collisions(start: EquilibratedStart, case: Case, duration: float) -> t
 
 
 def flown_through(
-    truth: tuple[np.ndarray, np.ndarray], found: tuple[np.ndarray, np.ndarray], dt: float
+    truth: tuple[np.ndarray, np.ndarray], measured: tuple[np.ndarray, np.ndarray], dt: float
 ) -> tuple[int, int]:
     """Return the number of compared and of missed collisions of pairs whose first collision is with each other.
 
     Args:
         truth: times and partners of the first collisions in the event-driven run.
-        found: the same in the case.
+        measured: times and partners of the first collisions in the case.
         dt: time step of the case.
     """
     time, partner = truth
     i = np.flatnonzero(partner >= 0)
     i = i[(partner[partner[i]] == i) & (i < partner[i])]
     j = partner[i]
-    by_then = np.minimum(found[0][i], found[0][j]) > time[i] + dt
-    met = (found[1][i] == j) & (found[1][j] == i)
+    by_then = np.minimum(measured[0][i], measured[0][j]) > time[i] + dt
+    met = (measured[1][i] == j) & (measured[1][j] == i)
     return int((met | by_then).sum()), int((by_then & ~met).sum())
 
 
@@ -141,5 +141,5 @@ def _error_on_precise_return(start: EquilibratedStart, precision: str, duration:
 
 def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the difference of two columns of nearly equal numbers, as float64."""
-    rest = a.astype(float) - b
-    return rest if rest.ndim == 1 else rest.sum(axis=1)
+    difference = a.astype(float) - b
+    return difference if difference.ndim == 1 else difference.sum(axis=1)

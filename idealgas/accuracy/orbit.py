@@ -145,10 +145,10 @@ def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
             numbers[:, 1] = [float(value - Decimal(h)) for value, h in zip(values, high.tolist(), strict=True)]
         return numbers
 
-    rest = (*gas.velocity.T, np.zeros(3), gas.radius, gas.mass, np.array(gas.box))
+    other_columns = (*gas.velocity.T, np.zeros(3), gas.radius, gas.mass, np.array(gas.box))
     with localcontext() as context:
         context.prec = 50
-        return Columns(column(orbit.x), column(orbit.y), *(column_of(values, precision) for values in rest))
+        return Columns(column(orbit.x), column(orbit.y), *(column_of(values, precision) for values in other_columns))
 
 
 def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:

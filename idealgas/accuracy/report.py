@@ -76,12 +76,12 @@ def lost_after(row: AccuracyRow, study: Accuracy) -> float | None:
 # sentences
 
 
-def sentences(found: Accuracy) -> list[str]:
+def sentences(study: Accuracy) -> list[str]:
     """Return the results in sentences."""
-    rate = price(found, "the collision rate", found.rate_law)
-    results = [rate, _pressure(found), _missed(found), *_motion(found)]
-    if found.left_out:
-        results.append(f"No trajectories were compared: {found.left_out}.")
+    rate = price(study, "the collision rate", study.rate_law)
+    results = [rate, _pressure(study), _missed(study), *_motion(study)]
+    if study.left_out:
+        results.append(f"No trajectories were compared: {study.left_out}.")
     return [sentence for sentence in results if sentence]
 
 
@@ -97,16 +97,16 @@ def cost_of(dt: float, rows: list[AccuracyRow]) -> float:
     return float(math.exp(costs[k] + slope * (math.log(dt) - steps[k])))
 
 
-def price(found: Accuracy, what: str, law: BiasLaw | None) -> str:
+def price(study: Accuracy, quantity: str, law: BiasLaw | None) -> str:
     """Return a sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
     if law is None:
         return ""
     dt = law.step(TARGET)
-    cost, finer = cost_of(dt, found.steps), cost_of(law.step(TARGET / 10), found.steps)
-    times = cost / found.event_driven.timing.median
+    cost, finer = cost_of(dt, study.steps), cost_of(law.step(TARGET / 10), study.steps)
+    times = cost / study.event_driven.timing.median
     return (
-        f"To compute {what} to {TARGET:.0%}, time steps require dt = {dt:.2g} and {times:.2g} times the CPU time of "
-        f"the event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt "
+        f"To compute {quantity} to {TARGET:.0%}, time steps require dt = {dt:.2g} and {times:.2g} times the CPU time "
+        f"of the event-driven run, which has no such error (bias = ({law.first:+.2g} ± {law.error:.1g}) dt "
         f"{law.second:+.2g} dt²); a further factor of 10 in accuracy costs a factor of {finer / cost:.2g}."
     )
 
@@ -166,20 +166,20 @@ def _motion(study: Accuracy) -> list[str]:
 # files
 
 
-def accuracy_dict(found: Accuracy) -> dict[str, Any]:
+def accuracy_dict(study: Accuracy) -> dict[str, Any]:
     """Return plain values, ready for JSON: the rows of the CSV file, the trajectories and the sentences."""
     rows = []
-    for row in found.rows:
+    for row in study.rows:
         error = None if row.trajectory is None else [number(value) for value in row.trajectory]
-        rows.append(flat_row(row, found) | {"trajectory": error})
+        rows.append(flat_row(row, study) | {"trajectory": error})
     return {
-        "title": found.title,
-        "number": found.number,
-        "until": found.until,
-        "repeats": found.repeats,
-        "collisions_per_disc": found.collisions.tolist(),
+        "title": study.title,
+        "number": study.number,
+        "until": study.until,
+        "repeats": study.repeats,
+        "collisions_per_disc": study.collisions.tolist(),
         "rows": rows,
-        "sentences": sentences(found),
+        "sentences": sentences(study),
     }
 
 

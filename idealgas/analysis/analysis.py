@@ -318,7 +318,7 @@ class Analysis:
 
         names: dict[tuple[tuple[float, float], ...], str] = {}
         for table in cls.shown_tables(combined):
-            for row, estimate in zip(table.rows, table.found, strict=False):
+            for row, estimate in zip(table.rows, table.estimates, strict=False):
                 names.setdefault(estimate.blocks, str(row[0]))
         names.pop((), None)
         if not names:

@@ -39,14 +39,14 @@ PEERS = (
 """Other programs; their speeds are stated values, which the benchmark does not measure."""
 
 
-def bench_figure(found: Bench) -> Figure:
+def bench_figure(bench: Bench) -> Figure:
     """Return a figure of collisions per second and time per collision against N, without the log.
 
     It has a line for each packing fraction and number of threads.
     """
     figure, (rates, times) = panels(1, 2)
     series: dict[tuple[float, int], dict[int, float]] = {}
-    for row in found.rows:
+    for row in bench.rows:
         if not row.log:
             series.setdefault((row.phi, row.threads), {})[row.N] = row.collisions_per_s
     colour = dict(zip(sorted({phi for phi, _ in series}), COLOURS, strict=False))

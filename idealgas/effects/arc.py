@@ -12,10 +12,10 @@ FLATTEST = 100.0
 """Largest radius of an arc in units of the box's longer side; rounding errors of contacts grow in this ratio."""
 
 
-def make_arcs(found: list[Arc | None]) -> np.recarray:
-    """Return (W,) ARC for all walls inside the box; found: the arc of each wall, None for a straight wall."""
-    arcs = aligned(len(found), law.ARC)
-    for k, arc in enumerate(found):
+def make_arcs(arcs_of_walls: list[Arc | None]) -> np.recarray:
+    """Return (W,) ARC for all walls inside the box; arcs_of_walls: the arc of each wall, None for a straight wall."""
+    arcs = aligned(len(arcs_of_walls), law.ARC)
+    for k, arc in enumerate(arcs_of_walls):
         if arc is not None:
             arcs[k] = tuple(arc)
     return arcs

@@ -157,9 +157,9 @@ class Properties:
         )
         return x and not self.shear, y
 
-    def __and__(self, other: "Properties") -> "Properties":
+    def __and__(self, properties: "Properties") -> "Properties":
         """Return the properties of a gas with the effects of both."""
-        pairs = ((entry, getattr(self, entry.name), getattr(other, entry.name)) for entry in fields(self))
+        pairs = ((entry, getattr(self, entry.name), getattr(properties, entry.name)) for entry in fields(self))
         return Properties(**{entry.name: entry.metadata["combine"](first, second) for entry, first, second in pairs})
 
 

@@ -139,14 +139,14 @@ def image_range(periodic, along_y):
 
 
 @inline
-def sheared_range(shear, most, others):
-    """Range of the images along an axis: -most to most if sides are sheared, otherwise `others`.
+def sheared_range(shear, most, unsheared):
+    """Range of the images along an axis: -most to most if sides are sheared, otherwise `unsheared`.
 
     An image starts up to one box ahead and moves by up to one box in an epoch, and discs are up to one box apart.
     """
     if shear is not None:
         return (-most, most + 1)
-    return others
+    return unsheared
 
 
 @inline

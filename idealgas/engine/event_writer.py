@@ -19,11 +19,11 @@ def batch_capacity(batch):
 
 
 @inline
-def write_event(batch, row, time, own, partner, kind, disc, position, rotation, periodic):
+def write_event(batch, row, time, disc_id, partner, kind, disc, position, rotation, periodic):
     """Write a disc's row of an event: its state after the event, in the columns that the batch has."""
     u = U(row)
     batch.time[u] = time
-    batch.disc[u] = own
+    batch.disc[u] = disc_id
     batch.partner[u] = partner
     batch.kind[u] = kind
     batch.velocity[u, 0] = disc.vx
@@ -32,10 +32,10 @@ def write_event(batch, row, time, own, partner, kind, disc, position, rotation, 
         position[u, 0] = disc.x
         position[u, 1] = disc.y
     if rotation is not None:
-        batch.angular_velocity[u] = rotation.omega[U(own)]
+        batch.angular_velocity[u] = rotation.omega[U(disc_id)]
     if periodic is not None:
-        batch.image[u, 0] = periodic.image[U(own), 0]
-        batch.image[u, 1] = periodic.image[U(own), 1]
+        batch.image[u, 0] = periodic.image[U(disc_id), 0]
+        batch.image[u, 1] = periodic.image[U(disc_id), 1]
 
 
 @inline
@@ -80,10 +80,12 @@ def write_trial(batch, row, trial):
 
 
 @inline
-def write_hit(batch, row, time, own, partner, kind, disc, effects):
+def write_hit(batch, row, time, disc_id, partner, kind, disc, effects):
     """Write the row of an event that involves a single disc; partner: -1 - k for wall k, or BATH."""
     if batch is not None:
         rotation, periodic = effects.rotation, effects.periodic
-        write_event(batch, row, time, np.int64(own), np.int64(partner), kind, disc, batch.position, rotation, periodic)
+        write_event(
+            batch, row, time, np.int64(disc_id), np.int64(partner), kind, disc, batch.position, rotation, periodic
+        )
         return 1
     return 0

@@ -1,7 +1,4 @@
-"""Effect of an event on the records: the discs, or a disc and a wall, move to its time and collide, and it is counted.
-
-In all functions `own` is the id of the disc.
-"""
+"""Effect of an event on the records: discs, or a disc and a wall, move to its time and collide, and it is counted."""
 
 import numpy as np
 
@@ -29,12 +26,12 @@ TOP = SIDES.index("top")
 
 
 @inline
-def energy_of(disc, own, rotation):
+def energy_of(disc, disc_id, rotation):
     """Kinetic energy of a disc, spin included, mass length²/time²."""
     energy = 0.5 * disc.m * (disc.vx * disc.vx + disc.vy * disc.vy)
     if rotation is not None:
-        omega = rotation.omega[U(own)]
-        energy += 0.5 * rotation.inertia[U(own)] * (omega * omega)
+        omega = rotation.omega[U(disc_id)]
+        energy += 0.5 * rotation.inertia[U(disc_id)] * (omega * omega)
     return energy
 
 
@@ -46,21 +43,21 @@ def add_energy(sums, k, energy):
 
 
 @inline
-def record_wall_energy(wall, given, lost, wall_energy, dissipated, thermal):
+def record_wall_energy(wall, received, lost, wall_energy, dissipated, thermal):
     """Record the energy that a wall gave to a disc, and the energy dissipated; a thermal wall dissipates none."""
     if wall_energy is not None:
-        add(wall_energy[U(wall)], given)
+        add(wall_energy[U(wall)], received)
     if dissipated is not None and not is_thermal(thermal, wall):
         add(dissipated[U(1 + wall)], lost)
 
 
 @inline
-def finish(disc, own, time, restitution, periodic):
+def finish(disc, disc_id, time, restitution, periodic):
     """Wrap a disc's record after an event, store the time of the collision, and count the event."""
     if periodic is not None:
-        wrap(disc, own, periodic)
+        wrap(disc, disc_id, periodic)
     if restitution is not None:
-        record_collision(restitution, own, time)
+        record_collision(restitution, disc_id, time)
     disc.count += np.uint32(1)
 
 
@@ -110,98 +107,98 @@ def arrive(disc, time, flow, gravity):
 
 
 @inline
-def bounce(disc, own, nx, ny, wall, time, effects):
+def bounce(disc, disc_id, nx, ny, wall, time, effects):
     """Reflect or emit a disc at a wall at rest, and record the energies; the record must be at the time of contact.
 
     wall: number of the wall. Returns the momentum (px, py) that the disc received, mass length/time.
     """
-    energy = energy_of(disc, own, effects.rotation)
+    energy = energy_of(disc, disc_id, effects.rotation)
     vx = disc.vx
     vy = disc.vy
-    collide_with_wall(disc, own, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
-    energy -= energy_of(disc, own, effects.rotation)
+    collide_with_wall(disc, disc_id, nx, ny, wall, effects.restitution, effects.rotation, effects.thermal)
+    energy -= energy_of(disc, disc_id, effects.rotation)
     record_wall_energy(wall, -energy, energy, effects.wall_energy, effects.dissipated, effects.thermal)
-    finish(disc, own, time, effects.restitution, effects.periodic)
+    finish(disc, disc_id, time, effects.restitution, effects.periodic)
     return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
 
 @inline
-def absorb(disc, own, wall, time, effects):
+def absorb(disc, disc_id, wall, time, effects):
     """Absorb a disc at a wall, which takes its whole energy and momentum; the record must be at the time of contact.
 
     Returns the momentum (px, py) that the disc received, mass length/time.
     """
-    finish(disc, own, time, effects.restitution, effects.periodic)
-    place = place_in_space(disc, own, effects.periodic)
-    energy = energy_of(disc, own, effects.rotation) + potential_energy(disc.m, place, effects.gravity)
+    finish(disc, disc_id, time, effects.restitution, effects.periodic)
+    place = place_in_space(disc, disc_id, effects.periodic)
+    energy = energy_of(disc, disc_id, effects.rotation) + potential_energy(disc.m, place, effects.gravity)
     record_wall_energy(wall, -energy, 0.0, effects.wall_energy, effects.dissipated, effects.thermal)
     return -(disc.m * disc.vx), -(disc.m * disc.vy)
 
 
 @inline
-def meet_segment(disc, own, nx, ny, segment, segments, at_end, time, absorbing, effects):
+def meet_segment(disc, disc_id, nx, ny, segment, segments, at_end, time, absorbing, effects):
     """Reflect, emit or absorb a disc at a wall inside the box.
 
     Returns the momentum (px, py) that the disc received, mass length/time, and the kind of the event.
     """
     if absorbing is not None and absorbing[U(segment)]:
-        px, py = absorb(disc, own, FIRST_SEGMENT + segment, time, effects)
+        px, py = absorb(disc, disc_id, FIRST_SEGMENT + segment, time, effects)
         return px, py, ESCAPED
-    px, py = bounce(disc, own, nx, ny, FIRST_SEGMENT + segment, time, effects)
+    px, py = bounce(disc, disc_id, nx, ny, FIRST_SEGMENT + segment, time, effects)
     if segments[U(segment)].radius > 0.0:
         return px, py, FIXED_DISC
     return px, py, WALL_END if at_end else WALL
 
 
 @inline
-def bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects):
+def bounce_off_vibrating(disc, disc_id, nx, ny, side, time, vibration, effects):
     """Do the work of `bounce` at a side of the box that may vibrate."""
     speed = side_velocity(vibration, side, time)
-    before = energy_of(disc, own, effects.rotation)
+    before = energy_of(disc, disc_id, effects.rotation)
     vx = disc.vx
     vy = disc.vy
     disc.vx -= speed * nx
     disc.vy -= speed * ny
-    lost = energy_of(disc, own, effects.rotation)
-    collide_with_wall(disc, own, nx, ny, side, effects.restitution, effects.rotation, effects.thermal)
-    lost -= energy_of(disc, own, effects.rotation)
+    lost = energy_of(disc, disc_id, effects.rotation)
+    collide_with_wall(disc, disc_id, nx, ny, side, effects.restitution, effects.rotation, effects.thermal)
+    lost -= energy_of(disc, disc_id, effects.rotation)
     disc.vx += speed * nx
     disc.vy += speed * ny
-    given = energy_of(disc, own, effects.rotation) - before
-    record_wall_energy(side, given, lost, effects.wall_energy, effects.dissipated, effects.thermal)
-    finish(disc, own, time, effects.restitution, effects.periodic)
+    received = energy_of(disc, disc_id, effects.rotation) - before
+    record_wall_energy(side, received, lost, effects.wall_energy, effects.dissipated, effects.thermal)
+    finish(disc, disc_id, time, effects.restitution, effects.periodic)
     return disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
 
 
 @inline
-def resolve_side(disc, own, side, time, effects):
+def resolve_side(disc, disc_id, side, time, effects):
     """Collide a disc with a side of the box at a local time, or let it cross a sheared side."""
     arrive(disc, time, effects.flow, effects.gravity)
-    meet_side(disc, own, side, time, effects.shear, effects.vibration, effects.flow, effects)
+    meet_side(disc, disc_id, side, time, effects.shear, effects.vibration, effects.flow, effects)
 
 
 @inline
-def meet_side(disc, own, side, time, shear, vibration, flow, effects):
+def meet_side(disc, disc_id, side, time, shear, vibration, flow, effects):
     """Do the work of `resolve_side`; the record must be at the time of contact."""
     if shear is not None:
-        cross_side(disc, own, side, shear, effects)
+        cross_side(disc, disc_id, side, shear, effects)
         return
     nx, ny = inward_normal(side)
     if vibration is not None:
-        px, py = bounce_off_vibrating(disc, own, nx, ny, side, time, vibration, effects)
+        px, py = bounce_off_vibrating(disc, disc_id, nx, ny, side, time, vibration, effects)
     else:
-        px, py = bounce(disc, own, nx, ny, side, time, effects)
+        px, py = bounce(disc, disc_id, nx, ny, side, time, effects)
     if flow is not None:
         record_hit(flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
 
 
 @inline
-def cross_side(disc, own, side, shear, effects):
+def cross_side(disc, disc_id, side, shear, effects):
     """Move a disc that has reached a sheared side to the opposite side; this does not begin a contact duration."""
     vx = disc.vx
     rows = cross(disc, side, shear)
     add_energy(effects.wall_energy, side, 0.5 * disc.m * (disc.vx - vx) * (disc.vx + vx))
-    enter_opposite_side(disc, own, rows, effects.periodic)
+    enter_opposite_side(disc, disc_id, rows, effects.periodic)
     disc.count += np.uint32(1)
 
 
@@ -212,15 +209,15 @@ def face_of(wall, left):
 
 
 @inline
-def resolve_segment(disc, own, segment, time, images, segments, effects):
+def resolve_segment(disc, disc_id, segment, time, images, segments, effects):
     """Collide a disc with a wall inside the box at a local time; return the kind of the event."""
     if segments is not None:
         arrive(disc, time, effects.flow, effects.gravity)
-        passage = passage_of(effects.permeable, own, segment)
+        passage = passage_of(effects.permeable, disc_id, segment)
         nx, ny, at_end, tx, ty, left = wall_frame(
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
         )
-        px, py, kind = meet_segment(disc, own, nx, ny, segment, segments, at_end, time, effects.absorbing, effects)
+        px, py, kind = meet_segment(disc, disc_id, nx, ny, segment, segments, at_end, time, effects.absorbing, effects)
         face = face_of(FIRST_SEGMENT + segment, left > 0.0)
         record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
         return kind
@@ -228,22 +225,22 @@ def resolve_segment(disc, own, segment, time, images, segments, effects):
 
 
 @inline
-def resolve_piston(disc, own, k, time, piston, effects):
+def resolve_piston(disc, disc_id, k, time, piston, effects):
     """Collide a disc with piston k at a local time; return the wall number of the piston."""
     if piston is not None:
         p = piston[U(k)]
         arrive(disc, time, effects.flow, effects.gravity)
         advance_piston(p, time)
-        energy = energy_of(disc, own, effects.rotation)
+        energy = energy_of(disc, disc_id, effects.rotation)
         loss = energy_at_piston(disc, energy, p)
         nx, ny = normal_of_piston(disc, p)
         vx = disc.vx
         vy = disc.vy
-        collide_with_piston(disc, own, p, effects.restitution)
-        after = energy_of(disc, own, effects.rotation)
+        collide_with_piston(disc, disc_id, p, effects.restitution)
+        after = energy_of(disc, disc_id, effects.rotation)
         loss -= energy_at_piston(disc, after, p)
         record_wall_energy(p.wall, after - energy, loss, effects.wall_energy, effects.dissipated, effects.thermal)
-        finish(disc, own, time, effects.restitution, effects.periodic)
+        finish(disc, disc_id, time, effects.restitution, effects.periodic)
         px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         face = np.int64(p.wall)
         if p.outward == 0.0:
@@ -264,13 +261,13 @@ def resolve_stop(k, time, piston):
 
 
 @inline
-def resolve_thermostat_collision(disc, own, time, thermostat, effects):
+def resolve_thermostat_collision(disc, disc_id, time, thermostat, effects):
     """Give a disc a new velocity from the heat bath at a local time; this does not begin a contact duration."""
     if thermostat is not None:
         arrive(disc, time, effects.flow, effects.gravity)
-        energy = energy_of(disc, own, effects.rotation)
-        andersen_collision(disc, own, thermostat, effects.rotation)
+        energy = energy_of(disc, disc_id, effects.rotation)
+        andersen_collision(disc, disc_id, thermostat, effects.rotation)
         add_flow(disc, effects.shear)
-        add_energy(effects.bath_energy, 0, energy_of(disc, own, effects.rotation) - energy)
-        wrap(disc, own, effects.periodic)
+        add_energy(effects.bath_energy, 0, energy_of(disc, disc_id, effects.rotation) - energy)
+        wrap(disc, disc_id, effects.periodic)
         disc.count += np.uint32(1)

@@ -26,7 +26,7 @@ def make_gas(scene: Scene) -> Gas:
     if rate := scene.properties.shear:  # given velocities remain unchanged
         explicit = [names.index(s.name) for s in scene.species if s.velocities is not None]
         drawn = ~np.isin(species, explicit)
-        drawn[: 0 if scene.draws_velocities else len(scene.given)] = False
+        drawn[: 0 if scene.draws_velocities else len(scene.explicit_discs)] = False
         velocity[drawn, 0] += flow_at(position[drawn, 1], rate, scene.box.size[1])
     gas = Gas(
         box=scene.box.size,
@@ -45,7 +45,7 @@ def make_gas(scene: Scene) -> Gas:
 
 def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
     """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
-    given, tables = scene.given, [s.name for s in scene.species]
+    given, tables = scene.explicit_discs, [s.name for s in scene.species]
     names = (*(name for name in given.names if name not in tables), *tables)
     number = {name: k for k, name in enumerate(names)}
     count = [s.count for _, s in scene.placed]
@@ -74,8 +74,8 @@ def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: 
     mass, species: (N,) of all discs. names: names of the species.
     """
     velocity = np.empty((len(species), 2))
-    kept = 0 if scene.draws_velocities else len(scene.given)
-    velocity[:kept] = scene.given.velocity[:kept]
+    kept = 0 if scene.draws_velocities else len(scene.explicit_discs)
+    velocity[:kept] = scene.explicit_discs.velocity[:kept]
     for s in scene.species if scene.draws_velocities else [s for _, s in scene.placed]:
         members = kept + np.flatnonzero(species[kept:] == names.index(s.name))
         velocity[members] = _velocities(s, mass[members], rng(scene.scene.seed, f"velocities {s.name}"))
@@ -131,8 +131,10 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
     room = make_room(box.size, radius, periodic, walls, scene.solids.walls)
     random = rng(scene.scene.seed, "placement")
-    ids = np.split(np.arange(len(radius)), np.cumsum([len(scene.given), *(s.count for _, s in scene.placed)])[:-1])
-    position[ids[0]] = scene.given.position
+    ids = np.split(
+        np.arange(len(radius)), np.cumsum([len(scene.explicit_discs), *(s.count for _, s in scene.placed)])[:-1]
+    )
+    position[ids[0]] = scene.explicit_discs.position
     placed = ids[0]
     by_region: dict[tuple[float, ...], list[int]] = {}
     triangular: list[int] = []

@@ -65,7 +65,7 @@ def _first(accelerations: np.ndarray) -> np.ndarray:
 
 def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
     """Key of the scene that sets disc i's velocity."""
-    if i < len(scene.given) and not scene.draws_velocities:
+    if i < len(scene.explicit_discs) and not scene.draws_velocities:
         return ("start", "velocities") if scene.start else ("disc", i, "velocity")
     names = [s.name for s in scene.species]
     k = names.index(gas.species_names[gas.species[i]])

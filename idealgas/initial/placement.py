@@ -60,8 +60,8 @@ def place_at_random(
         number = insert(*(plain, *lists, random, number, refusals))
         state = [np.array(values) for values in lists[:4]]
     if number < len(ids) and refusals < max_refusals:
-        rest = max_refusals - refusals
-        number = insert_compiled(for_kernels(room), *state, radius, bounds, ids, random, number, rest)
+        remainder = max_refusals - refusals
+        number = insert_compiled(for_kernels(room), *state, radius, bounds, ids, random, number, remainder)
     position[ids] = np.column_stack(state[2:])[ids]
     return number
 

@@ -118,8 +118,8 @@ def _placed(rows: np.ndarray) -> list[PlacedWall]:
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
     """Numbers (W, 12) of walls and of their images next to the box along periodic axes."""
     shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
-    rest = np.zeros(walls.shape[1] - 4)
-    return np.concatenate([walls + np.array((dx, dy, dx, dy, *rest)) for dx in shifts[0] for dy in shifts[1]])
+    remainder = np.zeros(walls.shape[1] - 4)
+    return np.concatenate([walls + np.array((dx, dy, dx, dy, *remainder)) for dx in shifts[0] for dy in shifts[1]])
 
 
 def _cells_near(wall: np.ndarray, shape: tuple[int, int], size: np.ndarray, reach: float) -> np.ndarray:

@@ -115,13 +115,13 @@ def flat_samples(
     )
 
 
-def check_choice(path: Path, what: str, choice: Mapping[str, Any]) -> None:
+def check_choice(path: Path, table: str, choice: Mapping[str, Any]) -> None:
     """Raise LogError for an unknown table, or if arguments, given by name, do not apply to the table."""
-    if what not in CHOSEN_BY:
-        raise LogError(f"{path}: no table of {what} (allowed: {', '.join(CHOSEN_BY)})")
-    if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[what]]:
-        allowed = ", ".join(CHOSEN_BY[what])
-        raise LogError(f"{path}: {', '.join(useless)} does not apply to {what} (allowed: {allowed})")
+    if table not in CHOSEN_BY:
+        raise LogError(f"{path}: no table of {table} (allowed: {', '.join(CHOSEN_BY)})")
+    if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[table]]:
+        allowed = ", ".join(CHOSEN_BY[table])
+        raise LogError(f"{path}: {', '.join(useless)} does not apply to {table} (allowed: {allowed})")
 
 
 def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]]) -> "DataFrame":

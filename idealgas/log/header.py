@@ -72,7 +72,7 @@ class LogHeader:
         from idealgas.scene import Scene, parse_scene
 
         def read() -> Scene:
-            scene = parse_scene(self.scene_text, "scene", discs=self.given, changes=self.changes)
+            scene = parse_scene(self.scene_text, "scene", discs=self.initial_discs, changes=self.changes)
             columns = {*self._file.names("events"), *self._file.names("checkpoints")}
             discs, kinds = self._stored_discs, self._file.kinds
             check_scene(
@@ -153,7 +153,7 @@ class LogHeader:
         return Gas(self.box, **columns, species_names=names)
 
     @property
-    def given(self) -> "InitialDiscs":
+    def initial_discs(self) -> "InitialDiscs":
         """The discs at the start of the run, in the form from which a scene can start."""
         from idealgas.scene.discs import InitialDiscs
 

@@ -30,7 +30,7 @@ _CACHED = 64
 
 With this number, several analyses together read a log of half a million rows only once.
 """
-_CACHED_OTHERS = 16
+_CACHED_SMALL = 16
 """Number of small chunks of other tables in the cache."""
 _SMALL = 2**20
 """Largest size of a small chunk, bytes."""
@@ -72,7 +72,7 @@ class LogFile:
         self._opened: list[Any] = []
         weakref.finalize(self, _close_all, self._opened)  # before Python ends, as HDF5 can no longer read after that
         self._events = lru_cache(_CACHED)(self._chunk)
-        self._others = lru_cache(_CACHED_OTHERS)(self._chunk)
+        self._small_chunks = lru_cache(_CACHED_SMALL)(self._chunk)
         keep_freed_memory()
         try:
             self._read(self._open)
@@ -84,7 +84,7 @@ class LogFile:
         """Read what the writer has committed since the file was opened or last refreshed."""
         self._read(self._open)
         self._events.cache_clear()
-        self._others.cache_clear()
+        self._small_chunks.cache_clear()
 
     def close(self) -> None:
         """Close the file."""
@@ -122,7 +122,7 @@ class LogFile:
             return self._events(path, start)
         column = self._columns[path]
         small = math.prod(column.chunk) * column.dtype.itemsize <= _SMALL
-        return self._others(path, start) if small else self._chunk(path, start)
+        return self._small_chunks(path, start) if small else self._chunk(path, start)
 
     def column(self, path: str, step: int = 1) -> np.ndarray:
         """Return all committed rows of a column of a short table, or every `step`-th row from the first one on."""
@@ -148,14 +148,14 @@ class LogFile:
         texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
         return self.checked(lambda: [text.decode() for text in texts], name)
 
-    def checked(self, action: Callable[[], Result], what: str = "") -> Result:
+    def checked(self, action: Callable[[], Result], name: str = "") -> Result:
         """Return the result of an action that raises ValueError for invalid data.
 
         Args:
             action: function to call.
-            what: name of the data, with which the error message begins.
+            name: name of the data, with which the error message begins.
         """
-        return self._read(action, what and f"{what}: ")
+        return self._read(action, name and f"{name}: ")
 
     def attribute(self, name: str, attribute: str) -> Any:
         """Return the value of an attribute of a dataset or group."""
@@ -236,7 +236,7 @@ class LogFile:
         data.flags.writeable = False
         return data
 
-    def _read(self, action: Callable[[], Result], what: str = "") -> Result:
+    def _read(self, action: Callable[[], Result], prefix: str = "") -> Result:
         """Return the result of an action; if it fails while a writer may be changing the same bytes, try again."""
         attempt = 1
         while True:
@@ -246,7 +246,7 @@ class LogFile:
                 if attempt == ATTEMPTS or not is_locked(self.path):
                     if self._was_changed():
                         raise LogError(f"{self.path}: was changed by a run while it was read") from error
-                    raise DamageError(self.path, f"{what}{reason(error)}") from error
+                    raise DamageError(self.path, f"{prefix}{reason(error)}") from error
             attempt += 1
             time.sleep(PAUSE)
 

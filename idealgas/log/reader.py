@@ -189,7 +189,7 @@ class Log(LogHistory):
 
     def to_pandas(
         self,
-        what: Literal["events", "flights", "discs", "observables"] = "events",
+        table: Literal["events", "flights", "discs", "observables"] = "events",
         *,
         disc: int | None = None,
         t0: float | None = None,
@@ -211,7 +211,7 @@ class Log(LogHistory):
         Requires pandas: .venv/bin/pip install -e ".[notebook]".
 
         Args:
-            what: name of the table.
+            table: name of the table.
             disc: id of a disc; all discs by default.
             t0: start of the window; by default the start of the log.
             t1: end of the window; by default the end of the log.
@@ -221,15 +221,15 @@ class Log(LogHistory):
             LogError: if pandas is missing, if the log has no events or does not cover a time, or if an argument does
                 not apply to the table.
         """
-        check_choice(self.path, what, {"disc": disc, "t0": t0, "t1": t1, "times": times})
-        if what == "events":
+        check_choice(self.path, table, {"disc": disc, "t0": t0, "t1": t1, "times": times})
+        if table == "events":
             self.require_events()
             return data_frame(flat_events(self.events(disc, t0, t1), self.columns), {"kind": KIND_NAMES})
-        if what == "flights":
+        if table == "flights":
             edges = None if times is None else list(times)
             names = {"kind": KIND_NAMES, "species": self.discs.species_names}
             return data_frame(flat_flights(self.flights(edges, discs=disc)), names)
-        if what == "discs":
+        if table == "discs":
             states = [LogState(self.start_time, **self._start_arrays())] if times is None else self.frames(times)
             return data_frame(flat_discs(self.discs, states, disc), {"species": self.discs.species_names})
         return data_frame([flat_samples(self.observables, self.walls, t0, t1)], {})

@@ -70,10 +70,10 @@ class Summary:
     escaped: int = 0
 
     @classmethod
-    def of(cls, found: Mapping[str, Any]) -> Self:
-        """Return a summary with the given fields. If one is missing and not optional, `found` raises its error."""
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """Return a summary with the given fields. If one is missing and not optional, `values` raises its error."""
         names = [field.name for field in fields(cls)]
-        return cls(**{name: found[name] for name in names if name in found or name not in OPTIONAL})
+        return cls(**{name: values[name] for name in names if name in values or name not in OPTIONAL})
 
     def as_dict(self) -> dict[str, Any]:
         """Return the fields by name, ready for JSON; `steered` and `escaped` are omitted if they are 0."""

@@ -102,7 +102,7 @@ class Painter:
         pistons: Sequence[PistonTrack],
         rms_speed: float,
         times: tuple[float, float] = (0.0, 1.0),
-        some: Sequence[LogState] = (),
+        sample: Sequence[LogState] = (),
         maxwell: bool = True,
         *,
         size: tuple[int, int] | None = None,
@@ -120,7 +120,7 @@ class Painter:
             rms_speed: approximate largest root-mean-square speed in the film, length/time. Speeds are relative to a
                 conserved motion of the whole gas.
             times: start and end of the film.
-            some: sample of its states, from which the range of the density panel is determined.
+            sample: states of the film, from which the range of the density panel is determined.
             maxwell: whether to compare the speeds with the Maxwell-Boltzmann distribution.
             size: see `Look`.
             colouring: see `Look`.
@@ -147,7 +147,7 @@ class Painter:
         self._shades = colormaps[COLOUR_MAP](np.linspace(DARKEST if dark else 0, 1 if dark else PALEST, SHADES))
         self._brightest = BRIGHTEST * rms_speed or BRIGHTEST / FASTEST
         with rc_context(DARK if dark else {"grid.color": GRID}):
-            self._draw_still(rms_speed, times, some)
+            self._draw_still(rms_speed, times, sample)
 
     def _draw_still(self, rms_speed: float, times: tuple[float, float], states: Sequence[LogState]) -> None:
         """Draw what is the same in all frames, and prepare the parts that are drawn on top."""

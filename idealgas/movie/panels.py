@@ -84,15 +84,15 @@ class SpeedPanel:
 class DensityPanel:
     """Number density in strips along the direction of gravity or, without gravity, along the longer side of the box."""
 
-    def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, some: Sequence[LogState]) -> None:
-        """Draw the axes. line: colour of the mean density; some: states that determine the range of the density."""
+    def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, sample: Sequence[LogState]) -> None:
+        """Draw the axes. line: colour of the mean density; sample: states that determine the range of the density."""
         falls = np.array(scene.properties.strongest_pull) != 0
         self._axis = int(falls[1] if falls.any() else gas.box[1] > gas.box[0])
         length = gas.box[self._axis]
         self._edges = np.linspace(0, length, BINS + 1)
         self._area = gas.area / BINS
         mean = len(gas) / gas.area
-        positions = [gas.position, *(state.position[state.inside] for state in some)]
+        positions = [gas.position, *(state.position[state.inside] for state in sample)]
         highest = max(float(self._density(position).max()) for position in positions)
         axes.set(xlim=(0, length), ylim=(0, 1.1 * max(highest, 2 * mean)), ylabel="density (discs/length²)")
         axes.set_xlabel(f"{'xy'[self._axis]} (length)")

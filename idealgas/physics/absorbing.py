@@ -35,9 +35,9 @@ def mass_in_gas(disc, absorbing):
 
 
 @inline
-def leave_gas(disc, own, rotation):
+def leave_gas(disc, disc_id, rotation):
     """Mark a disc as having left the gas, in its record."""
     disc.x = disc.y = math.nan
     disc.vx = disc.vy = 0.0
     if rotation is not None:
-        rotation.omega[U(own)] = 0.0
+        rotation.omega[U(disc_id)] = 0.0

@@ -98,10 +98,10 @@ def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
 
 
 @inline
-def changes_nothing(x, y, disc, own, restitution):
+def changes_nothing(x, y, disc, disc_id, restitution):
     """Whether a reflection along (x, y) would leave every digit of a disc's velocity unchanged."""
     distance = math.sqrt(x * x + y * y)
-    return not reflection_changes(disc, own, x / distance, y / distance, restitution)
+    return not reflection_changes(disc, disc_id, x / distance, y / distance, restitution)
 
 
 @inline
@@ -177,18 +177,18 @@ def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity,
 
 
 @noinline
-def arc_contact(disc, own, segment, arc, gravity, restitution, periodic, images):
+def arc_contact(disc, disc_id, segment, arc, gravity, restitution, periodic, images):
     """Local time at which a disc touches a face or an end of an arc; NEVER if it does not."""
     start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     x, y = start_x - arc.x, start_y - arc.y
-    delay = face_delay(x, y, disc, own, arc, True, gravity, restitution)
-    delay = min(delay, face_delay(x, y, disc, own, arc, False, gravity, restitution))
+    delay = face_delay(x, y, disc, disc_id, arc, True, gravity, restitution)
+    delay = min(delay, face_delay(x, y, disc, disc_id, arc, False, gravity, restitution))
     if arc.cosine != CIRCLE:
         end_x, end_y = start_x - segment.length * segment.tx, start_y - segment.length * segment.ty
         for far in range(2):
             here_x, here_y = (end_x, end_y) if far else (start_x, start_y)
             there_x, there_y = (start_x, start_y) if far else (end_x, end_y)
-            end = arc_end_delay(x, y, here_x, here_y, there_x, there_y, disc, own, arc, gravity, restitution)
+            end = arc_end_delay(x, y, here_x, here_y, there_x, there_y, disc, disc_id, arc, gravity, restitution)
             delay = min(delay, end)
     return disc.t + delay if delay < NEVER else NEVER
 
@@ -230,7 +230,7 @@ def wall_frame(disc, k, segments, arcs, passage, periodic, images):
 
 
 @inline
-def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, periodic, images):
+def wall_contact(disc, disc_id, k, segments, arcs, passage, gravity, restitution, periodic, images):
     """Local time at which a disc touches wall k, a segment or an arc; NEVER if it does not.
 
     passage: from which side the wall lets the disc pass, see `permeable`; an arc lets it pass from both or from none.
@@ -238,8 +238,8 @@ def wall_contact(disc, own, k, segments, arcs, passage, gravity, restitution, pe
     if passage is not None and passage == OPEN:
         return NEVER
     if arcs is not None and arcs[U(k)].radius > 0.0:
-        return arc_contact(disc, own, segments[U(k)], arcs[U(k)], gravity, restitution, periodic, images)
-    return segment_contact(disc, own, segments[U(k)], passage, gravity, restitution, periodic, images)
+        return arc_contact(disc, disc_id, segments[U(k)], arcs[U(k)], gravity, restitution, periodic, images)
+    return segment_contact(disc, disc_id, segments[U(k)], passage, gravity, restitution, periodic, images)
 
 
 @inline

@@ -56,12 +56,12 @@ def side_contact(disc, side, length, gravity):
 
 
 @inline
-def reflected_velocity(disc, own, nx, ny, restitution):
+def reflected_velocity(disc, disc_id, nx, ny, restitution):
     """Velocity (vx, vy) of a disc after the normal impulse of a wall at rest, length/time.
 
     The result is correct although (nx, ny) has unit length only up to rounding.
     """
-    factor = wall_restitution_factor(restitution, own, disc.t)
+    factor = wall_restitution_factor(restitution, disc_id, disc.t)
     k = factor * (disc.vx * nx + disc.vy * ny) / (nx * nx + ny * ny)
     dx, dy = -k * nx, -k * ny
     c = correction((factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy, dx * dx + dy * dy)
@@ -69,11 +69,11 @@ def reflected_velocity(disc, own, nx, ny, restitution):
 
 
 @inline
-def collide_with_wall(disc, own, nx, ny, wall, restitution, rotation, thermal):
+def collide_with_wall(disc, disc_id, nx, ny, wall, restitution, rotation, thermal):
     """Change the velocity and spin of a disc that touches a wall at rest; wall: number of the wall."""
     if thermal is not None and is_thermal(thermal, wall):
-        emit(disc, own, nx, ny, wall, thermal, rotation)
+        emit(disc, disc_id, nx, ny, wall, thermal, rotation)
         return
     if rotation is not None:
-        tangential_impulse_at_wall(disc, own, nx, ny, rotation)
-    disc.vx, disc.vy = reflected_velocity(disc, own, nx, ny, restitution)
+        tangential_impulse_at_wall(disc, disc_id, nx, ny, rotation)
+    disc.vx, disc.vy = reflected_velocity(disc, disc_id, nx, ny, restitution)

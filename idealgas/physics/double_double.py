@@ -48,9 +48,9 @@ def two_product(a, b):
 def add(a, b):
     """Sum a + b of two pairs."""
     high, low = two_sum(a[0], b[0])
-    more, rest = two_sum(a[1], b[1])
+    more, remainder = two_sum(a[1], b[1])
     high, low = quick_two_sum(high, low + more)
-    return quick_two_sum(high, low + rest)
+    return quick_two_sum(high, low + remainder)
 
 
 @inline
@@ -70,10 +70,10 @@ def multiply(a, b):
 def divide(a, b):
     """Quotient a / b of two pairs, by long division; b must not be 0."""
     first = a[0] / b[0]
-    rest = subtract(a, multiply(b, (first, 0.0)))
-    second = rest[0] / b[0]
-    rest = subtract(rest, multiply(b, (second, 0.0)))
-    third = rest[0] / b[0]
+    remainder = subtract(a, multiply(b, (first, 0.0)))
+    second = remainder[0] / b[0]
+    remainder = subtract(remainder, multiply(b, (second, 0.0)))
+    third = remainder[0] / b[0]
     high, low = quick_two_sum(first, second)
     return add((high, low), (third, 0.0))
 
@@ -87,8 +87,8 @@ def root(a):
     if a[0] <= 0.0:
         return 0.0, 0.0
     guess = math.sqrt(a[0])
-    rest = subtract(a, two_product(guess, guess))
-    return quick_two_sum(guess, rest[0] / (2.0 * guess))
+    remainder = subtract(a, two_product(guess, guess))
+    return quick_two_sum(guess, remainder[0] / (2.0 * guess))
 
 
 @inline

@@ -42,9 +42,10 @@ def log(x):
 def cos_sin_turns(turns):
     """Cosine and sine of 2π turns, for turns in [0, 1] that are a multiple of 2^-53, like all random numbers."""
     quarters = np.int64(4.0 * turns + 0.5)
-    rest = turns - 0.25 * np.float64(quarters)  # exact, at most ⅛
-    high, low = split(rest)
-    x, y = quick_two_sum(high * _TWO_PI_HIGH, low * _TWO_PI_HIGH + rest * _TWO_PI_LOW)  # angle and its rounding error
+    remainder = turns - 0.25 * np.float64(quarters)  # exact, at most ⅛
+    high, low = split(remainder)
+    low = low * _TWO_PI_HIGH + remainder * _TWO_PI_LOW
+    x, y = quick_two_sum(high * _TWO_PI_HIGH, low)  # angle and its rounding error
     z = x * x
     w = z * z
     cos, sin = _cos(x, y, z, w), _sin(x, y, z, w)

@@ -132,34 +132,34 @@ def wrapped(position, length):
 
 
 @inline
-def wrap(disc, own, periodic):
+def wrap(disc, disc_id, periodic):
     """Wrap a record's position into the box, and update its image and boundary crossings."""
     if periodic is not None:
         if periodic.x and not 0.0 < disc.x < periodic.Lx:  # this is rare, and wrapping takes a division
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
-            periodic.image[U(own), 0] += np.int32(boxes)
+            periodic.image[U(disc_id), 0] += np.int32(boxes)
             disc.crossed_x -= np.int16(boxes)
         if periodic.y and not 0.0 < disc.y < periodic.Ly:
             disc.y, boxes = wrapped(disc.y, periodic.Ly)
-            periodic.image[U(own), 1] += np.int32(boxes)
+            periodic.image[U(disc_id), 1] += np.int32(boxes)
             disc.crossed_y -= np.int16(boxes)
 
 
 @inline
-def enter_opposite_side(disc, own, rows, periodic):
+def enter_opposite_side(disc, disc_id, rows, periodic):
     """Wrap the record of a disc that has crossed a sheared side; rows: box lengths upwards, 1 or -1."""
     if periodic is not None:
-        wrap(disc, own, periodic)
+        wrap(disc, disc_id, periodic)
         disc.crossed_x = 0
-        periodic.image[U(own), 1] += np.int32(rows)
+        periodic.image[U(disc_id), 1] += np.int32(rows)
 
 
 @inline
-def place_in_space(disc, own, periodic):
+def place_in_space(disc, disc_id, periodic):
     """Unwrapped position (x, y), length, of a wrapped record."""
     if periodic is not None:
         return (
-            disc.x + periodic.image[U(own), 0] * periodic.Lx,
-            disc.y + periodic.image[U(own), 1] * periodic.Ly,
+            disc.x + periodic.image[U(disc_id), 0] * periodic.Lx,
+            disc.y + periodic.image[U(disc_id), 1] * periodic.Ly,
         )
     return disc.x, disc.y

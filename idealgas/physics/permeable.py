@@ -40,10 +40,10 @@ class Permeable(NamedTuple):
 
 
 @inline
-def passage_of(permeable, own, segment):
+def passage_of(permeable, disc_id, segment):
     """Sides from which a segment lets a disc pass; None if no wall is permeable. segment: number of the segment."""
     if permeable is not None:
-        return permeable.passage[np.uintp(segment), np.uintp(permeable.species[np.uintp(own)])]
+        return permeable.passage[np.uintp(segment), np.uintp(permeable.species[np.uintp(disc_id)])]
     return None
 
 

@@ -122,11 +122,11 @@ def piston_energy(mass, position, velocity, acceleration):
 
 
 @inline
-def collide_with_piston(disc, own, piston, restitution):
+def collide_with_piston(disc, disc_id, piston, restitution):
     """Exchange momentum along the axis between a disc and the piston, whose records are at the time of contact."""
     along_y = piston.axis == 1
     velocity = disc.vy if along_y else disc.vx
-    factor = wall_restitution_factor(restitution, own, disc.t)
+    factor = wall_restitution_factor(restitution, disc_id, disc.t)
     approach = velocity - piston.v
     if piston.m > 0.0:
         velocity -= factor * piston.m / (disc.m + piston.m) * approach

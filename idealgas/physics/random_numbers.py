@@ -30,12 +30,12 @@ def unit_interval(bits):
 
 
 @inline
-def disc_uniform(seed, own, number, draw):
+def disc_uniform(seed, disc_id, number, draw):
     """Random number in (0, 1], a pure function of the four arguments.
 
-    seed: u8. own: id of a disc. number: u8, number of the random event of this disc, from 0. draw: number of the random
-    number among the eight of the event; walls that emit discs use 0 to 2, and a heat bath uses 3 to 7.
+    seed: u8. disc_id: id of a disc. number: u8, number of the random event of this disc, from 0. draw: number of the
+    random number among the eight of the event; walls that emit discs use 0 to 2, and a heat bath uses 3 to 7.
     """
-    key = mix(seed + GOLDEN * (np.uint64(own) + np.uint64(1)))
+    key = mix(seed + GOLDEN * (np.uint64(disc_id) + np.uint64(1)))
     count = number * np.uint64(8) + np.uint64(draw)
     return unit_interval(mix(mix(key + GOLDEN * (count + np.uint64(1))) + key))

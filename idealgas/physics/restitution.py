@@ -42,16 +42,16 @@ def restitution_factor(restitution, a_id, b_id, time):
 
 
 @inline
-def wall_restitution_factor(restitution, own, time):
+def wall_restitution_factor(restitution, disc_id, time):
     """Return 1 + the coefficient of restitution, or 2 if elastic, for a disc that hits a wall at a local time."""
     if restitution is not None:
-        recent = time - restitution.last[np.uintp(own)] < restitution.contact_duration
+        recent = time - restitution.last[np.uintp(disc_id)] < restitution.contact_duration
         return 2.0 if recent else 1.0 + restitution.wall
     return 2.0
 
 
 @inline
-def record_collision(restitution, own, time):
+def record_collision(restitution, disc_id, time):
     """Store the local time of a disc's last collision, if collisions are inelastic."""
     if restitution is not None:
-        restitution.last[np.uintp(own)] = time
+        restitution.last[np.uintp(disc_id)] = time

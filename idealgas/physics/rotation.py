@@ -79,9 +79,9 @@ def _apply(disc, u, tx, ty, impulse, correction, rotation):
 
 
 @inline
-def tangential_impulse_at_wall(disc, own, nx, ny, rotation):
+def tangential_impulse_at_wall(disc, disc_id, nx, ny, rotation):
     """Apply the tangential impulse of a wall at rest to the velocity and spin of a disc that touches it."""
-    u = np.uintp(own)
+    u = np.uintp(disc_id)
     tx = ny  # the wall takes the place of the second disc, so n from the disc to the wall is -(nx, ny)
     ty = -nx
     slip = disc.vx * tx + disc.vy * ty + disc.r * rotation.omega[u]

@@ -38,26 +38,26 @@ def is_thermal(thermal, wall):
 
 
 @inline
-def uniform(thermal, own, draw):
+def uniform(thermal, disc_id, draw):
     """Random number in (0, 1] for a disc's current emission; draw: index of the number within the emission."""
-    return disc_uniform(thermal.seed, own, thermal.emissions[np.uintp(own)], draw)
+    return disc_uniform(thermal.seed, disc_id, thermal.emissions[np.uintp(disc_id)], draw)
 
 
 @inline
-def emit(disc, own, nx, ny, wall, thermal, rotation):
+def emit(disc, disc_id, nx, ny, wall, thermal, rotation):
     """Give a disc a random velocity away from a wall, and a random spin, at the wall's temperature.
 
     wall: number of the wall.
     """
     if thermal is not None:
         temperature = thermal.temperature[np.uintp(wall)]
-        normal = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermal, own, 0)))
-        radius = math.sqrt(-2.0 * log(uniform(thermal, own, 1)))
-        cos, sin = cos_sin_turns(uniform(thermal, own, 2))
+        normal = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermal, disc_id, 0)))
+        radius = math.sqrt(-2.0 * log(uniform(thermal, disc_id, 1)))
+        cos, sin = cos_sin_turns(uniform(thermal, disc_id, 2))
         tangent = math.sqrt(temperature / disc.m) * radius * cos
         disc.vx = normal * nx - tangent * ny
         disc.vy = normal * ny + tangent * nx
         if rotation is not None:
-            u = np.uintp(own)
+            u = np.uintp(disc_id)
             rotation.omega[u] = math.sqrt(temperature / rotation.inertia[u]) * radius * sin
-        thermal.emissions[np.uintp(own)] += np.uint64(1)
+        thermal.emissions[np.uintp(disc_id)] += np.uint64(1)

@@ -35,18 +35,18 @@ class Thermostat(NamedTuple):
 
 
 @inline
-def uniform(thermostat, own, draw):
+def uniform(thermostat, disc_id, draw):
     """Random number in (0, 1] for a disc's next collision with the bath.
 
     draw: 3 for its time, 4 and 5 for the velocity, 6 and 7 for the spin.
     """
-    return disc_uniform(thermostat.seed, own, thermostat.number[np.uintp(own)], draw)
+    return disc_uniform(thermostat.seed, disc_id, thermostat.number[np.uintp(disc_id)], draw)
 
 
 @inline
-def interval(thermostat, own):
+def interval(thermostat, disc_id):
     """Time between two collisions of a disc with the bath, exponentially distributed with the mean 1/rate."""
-    return -log(uniform(thermostat, own, 3)) / thermostat.rate
+    return -log(uniform(thermostat, disc_id, 3)) / thermostat.rate
 
 
 @njit
@@ -57,23 +57,23 @@ def draw_first_collisions(thermostat):
 
 
 @inline
-def andersen_collision(disc, own, thermostat, rotation):
+def andersen_collision(disc, disc_id, thermostat, rotation):
     """Give a disc a random velocity and spin, and draw its next collision; its record must be at the time of collision.
 
     Each component of the velocity is Gaussian with the variance T/m, and the spin with T/I.
     """
     if thermostat is not None:
-        u = np.uintp(own)
+        u = np.uintp(disc_id)
         temperature = thermostat.temperature
-        speed = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermostat, own, 4)))
-        cos, sin = cos_sin_turns(uniform(thermostat, own, 5))
+        speed = math.sqrt(-2.0 * temperature / disc.m * log(uniform(thermostat, disc_id, 4)))
+        cos, sin = cos_sin_turns(uniform(thermostat, disc_id, 5))
         disc.vx = speed * cos
         disc.vy = speed * sin
         if rotation is not None:
-            spin = math.sqrt(-2.0 * temperature / rotation.inertia[u] * log(uniform(thermostat, own, 6)))
-            rotation.omega[u] = spin * cos_sin_turns(uniform(thermostat, own, 7))[0]
+            spin = math.sqrt(-2.0 * temperature / rotation.inertia[u] * log(uniform(thermostat, disc_id, 6)))
+            rotation.omega[u] = spin * cos_sin_turns(uniform(thermostat, disc_id, 7))[0]
         thermostat.number[u] += np.uint64(1)
-        thermostat.time[u] += interval(thermostat, own)
+        thermostat.time[u] += interval(thermostat, disc_id)
 
 
 def end_epoch(thermostat: Thermostat, length: float) -> None:

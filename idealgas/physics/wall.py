@@ -164,9 +164,9 @@ def segment_normal(disc, segment, passage, periodic, images):
 
 
 @inline
-def reflection_changes(disc, own, nx, ny, restitution):
+def reflection_changes(disc, disc_id, nx, ny, restitution):
     """Whether a reflection would change a digit of a disc's velocity; if not, the disc counts as reflected."""
-    vx, vy = reflected_velocity(disc, own, nx, ny, restitution)
+    vx, vy = reflected_velocity(disc, disc_id, nx, ny, restitution)
     return (vx != disc.vx) | (vy != disc.vy)
 
 
@@ -225,7 +225,7 @@ def segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
 
 
 @inline
-def segment_contact(disc, own, segment, passage, gravity, restitution, periodic, images):
+def segment_contact(disc, disc_id, segment, passage, gravity, restitution, periodic, images):
     """Local time at which a disc touches the body or an end of a segment; NEVER if it does not.
 
     passage: from which side the segment lets the disc pass, see `permeable`; None if no wall is permeable.
@@ -247,6 +247,6 @@ def segment_contact(disc, own, segment, passage, gravity, restitution, periodic,
     delay = segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
     if gravity is None and delay == 0.0:
         nx, ny, _ = segment_normal(disc, segment, passage, periodic, images)
-        if not reflection_changes(disc, own, nx, ny, restitution):
+        if not reflection_changes(disc, disc_id, nx, ny, restitution):
             return NEVER
     return disc.t + delay if delay < NEVER else NEVER

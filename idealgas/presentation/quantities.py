@@ -65,7 +65,7 @@ def identifier(text: str) -> str:
     return re.sub(r"\W+", "_", text).strip("_")
 
 
-def as_csv(found: Any, name: str) -> str:
+def as_csv(values: Any, name: str) -> str:
     """Return the numbers in the plain values of a result as CSV text, a row for each, with all digits.
 
     name: name of the analysis.
@@ -73,7 +73,7 @@ def as_csv(found: Any, name: str) -> str:
     file = io.StringIO()
     writer = csv.DictWriter(file, ("quantity", "group", "index", *ESTIMATE), restval="", lineterminator="\n")
     writer.writeheader()
-    for row in rows(found, name):
+    for row in rows(values, name):
         writer.writerow({"quantity": row.quantity, "group": row.group, "index": row.entry, **row.values})
     return file.getvalue()
 

@@ -142,13 +142,15 @@ class Panel(Axes):
         if np.any(np.asarray(error) > 0):
             self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
 
-    def theory_of_row(self, row: int, found: "Estimate", label: str | None = "theory") -> None:
+    def theory_of_row(self, row: int, estimate: "Estimate", label: str | None = "theory") -> None:
         """Draw the theory of an estimate, if it has one, in its row of a list, in a band of its error."""
-        if found.theory is None:
+        if estimate.theory is None:
             return
-        ends, error = [row - 0.35, row + 0.35], found.theory_error
-        self.plot([found.theory] * 2, ends, color=COLOURS[1], linewidth=2, label=label)
-        self.fill_betweenx(ends, found.theory - error, found.theory + error, color=COLOURS[1], alpha=BAND, linewidth=0)
+        ends, error = [row - 0.35, row + 0.35], estimate.theory_error
+        self.plot([estimate.theory] * 2, ends, color=COLOURS[1], linewidth=2, label=label)
+        self.fill_betweenx(
+            ends, estimate.theory - error, estimate.theory + error, color=COLOURS[1], alpha=BAND, linewidth=0
+        )
 
     def time_axis(self) -> None:
         """Declare that the horizontal axis is the time of a run."""
@@ -216,19 +218,19 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
     return figure, axes
 
 
-def block_figure(found: Mapping[tuple[tuple[float, float], ...], str], length: float, unit: str) -> Figure:
+def block_figure(names: Mapping[tuple[tuple[float, float], ...], str], length: float, unit: str) -> Figure:
     """Draw errors by blocks over the stated error; where they still rise, slower fluctuations are not resolved.
 
-    found: names of estimates by their `Estimate.blocks`. length: length of the series that the blocks are fractions of.
+    names: names of estimates by their `Estimate.blocks`. length: length of the series that the blocks are fractions of.
     unit: unit of this length.
     """
-    figure, axes = panels(-(-len(found) // 2), min(len(found), 2))
-    for ax, (blocks, name) in zip(axes, found.items(), strict=False):
+    figure, axes = panels(-(-len(names) // 2), min(len(names), 2))
+    for ax, (blocks, name) in zip(axes, names.items(), strict=False):
         share, error = np.array(blocks).T
         ax.axhline(1, color=COLOURS[1])
         ax.errorbar(share * length, error, error * np.sqrt(share / 2), color=COLOURS[0], fmt="o-", capsize=3)
         ax.set(xscale="log", xlabel=f"length of blocks ({unit})", ylabel=f"{name}: error / stated error")
         ax.set_ylim(bottom=0)
-    for ax in axes[len(found) :]:
+    for ax in axes[len(names) :]:
         ax.set_axis_off()
     return figure

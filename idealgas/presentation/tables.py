@@ -49,7 +49,7 @@ class Table:
         rows: cells, row by row.
         notes: lines that are printed before the rows.
         most: largest number of rows that are shown, evenly chosen from all rows; None for all rows.
-        found: estimates of the rows, if the rows are estimates.
+        estimates: estimates of the rows, if the rows are estimates.
     """
 
     title: str
@@ -57,7 +57,7 @@ class Table:
     rows: Sequence[Sequence[Cell]]
     notes: Sequence[str] = ()
     most: int | None = None
-    found: Sequence["Estimate"] = ()
+    estimates: Sequence["Estimate"] = ()
 
     @property
     def shown(self) -> list[list[str]]:
@@ -121,7 +121,7 @@ def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequenc
         return name, value, spread._replace(instead=instead), samples, *theory, Number(estimate.deviation, "+.2f")
 
     heads = (*ESTIMATE_HEADS[:-1], *[THEORY_ERROR] * rough, ESTIMATE_HEADS[-1])
-    return Table(title, heads, [cells(*row) for row in rows], notes, found=[estimate for _, estimate in rows])
+    return Table(title, heads, [cells(*row) for row in rows], notes, estimates=[estimate for _, estimate in rows])
 
 
 def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
@@ -162,9 +162,9 @@ def as_text(tables: Iterable[Table]) -> str:
     return "\n".join(lines).rstrip("\n")
 
 
-def format_estimate(found: "Estimate") -> str:
+def format_estimate(estimate: "Estimate") -> str:
     """Return an estimate with its standard error in units of its last digit, see `with_last_digits`."""
-    return with_last_digits(found.value, found.standard_error)
+    return with_last_digits(estimate.value, estimate.standard_error)
 
 
 def escape(text: str) -> str:

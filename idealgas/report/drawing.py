@@ -235,13 +235,13 @@ def _fill(part: Any) -> str:
     return style
 
 
-def _paint(what: str, colour: Any, alpha: float | None = None) -> str:
+def _paint(kind: str, colour: Any, alpha: float | None = None) -> str:
     """Return a style that sets a colour, by its variable if it has one, and its opacity."""
     opacity, colour = to_rgba(colour, alpha)[3], to_hex(colour)
     if not opacity:
-        return f"{what}:none"
+        return f"{kind}:none"
     name = f"var({NAMES[colour]})" if colour in NAMES else colour
-    return f"{what}:{name}" if opacity == 1 else f"{what}:{name};{what}-opacity:{opacity:g}"
+    return f"{kind}:{name}" if opacity == 1 else f"{kind}:{name};{kind}-opacity:{opacity:g}"
 
 
 def _markers(line: Line2D, places: np.ndarray) -> str:

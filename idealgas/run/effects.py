@@ -56,9 +56,9 @@ def _schedule(scene: Scene, start: GasAtStart) -> Schedule | None:
 
 def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
     """Angular velocity (N,), 1/time, and temperature of the spin (N,), energy, of each disc; 0 if not given."""
-    given = 0 if scene.draws_velocities else len(scene.given)
+    given = 0 if scene.draws_velocities else len(scene.explicit_discs)
     velocity, temperature = np.zeros(len(gas)), np.zeros(len(gas))
-    velocity[:given] = scene.given.angular_velocity[:given]
+    velocity[:given] = scene.explicit_discs.angular_velocity[:given]
     for s in scene.species:
         members = given + np.flatnonzero(gas.species[given:] == gas.species_names.index(s.name))
         velocity[members], temperature[members] = s.angular_velocity or 0.0, s.spin_temperature or 0.0

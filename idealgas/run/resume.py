@@ -88,7 +88,7 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
         versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
-    before, given, name = log.scene, log.given, f"{log.path}: scene"
+    before, given, name = log.scene, log.initial_discs, f"{log.path}: scene"
     requested = scene = parse_scene(log.scene_text, name, overrides, discs=given)
     if log.changes:
         scene = parse_scene(log.scene_text, name, overrides, discs=given, changes=log.changes)

@@ -33,7 +33,7 @@ def changed_scene(scene: Scene, change: SceneChange) -> Scene:
         apply_change(document, change)
     except OverrideError as error:
         raise SceneError([f"{change.setting}: {error}"]) from None
-    return make_scene(document, TextOrigin(name=change.setting), discs=scene.given)
+    return make_scene(document, TextOrigin(name=change.setting), discs=scene.explicit_discs)
 
 
 def apply_change(document: dict[str, Any], change: SceneChange) -> None:

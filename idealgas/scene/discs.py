@@ -145,7 +145,7 @@ class ExplicitDiscs:
     effects: tuple[ActiveEffect, ...] = ()
     effects_of: Sequence[Any] = ()
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ExplicitDiscs)
+    def __eq__(self, discs: object) -> bool:
+        return isinstance(discs, ExplicitDiscs)
 
     __hash__ = None  # type: ignore[assignment]

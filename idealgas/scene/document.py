@@ -73,21 +73,21 @@ class Document(_DiscsAndEffects):
 
     run: Run = Field(description="[run]: until, events or collisions_per_disc")
     log: LogTable = Field(default_factory=LogTable, description="[log]: events, compression, checkpoint_every, ...")
-    _given: ExplicitDiscs = PrivateAttr(default_factory=ExplicitDiscs)
+    _explicit: ExplicitDiscs = PrivateAttr(default_factory=ExplicitDiscs)
 
     @property
-    def given(self) -> InitialDiscs:
+    def explicit_discs(self) -> InitialDiscs:
         """Discs from the table [start] or the tables [[disc]]."""
-        if self.start is None and self._given.tables is not self.disc:
-            self._given = ExplicitDiscs(discs_of_tables(self.disc), tables=self.disc)
-        return self._given.discs
+        if self.start is None and self._explicit.tables is not self.disc:
+            self._explicit = ExplicitDiscs(discs_of_tables(self.disc), tables=self.disc)
+        return self._explicit.discs
 
     @property
     def segments(self) -> tuple[Any, ...]:
         """Tables [[wall]], with None for invalid tables, followed by the fixed discs."""
-        if self._given.walls_of is not self.disc:
-            self._given.walls, self._given.walls_of = fixed_discs(self.disc), self.disc
-        return (*self.wall, *self._given.walls)
+        if self._explicit.walls_of is not self.disc:
+            self._explicit.walls, self._explicit.walls_of = fixed_discs(self.disc), self.disc
+        return (*self.wall, *self._explicit.walls)
 
     @property
     def walls(self) -> tuple[Any, ...]:
@@ -119,7 +119,7 @@ class Document(_DiscsAndEffects):
     @property
     def placed(self) -> list[tuple[int, Species]]:
         """Valid tables [[species]] with their indices; their counts do not include given discs."""
-        given = self.given
+        given = self.explicit_discs
         tables = [(i, s) for i, s in enumerate(self.species) if s is not None]
         if not given.names:
             return tables
@@ -133,7 +133,7 @@ class Document(_DiscsAndEffects):
     @property
     def has_discs(self) -> bool:
         """Whether the scene has any disc."""
-        return bool(self.species or len(self.given))
+        return bool(self.species or len(self.explicit_discs))
 
     @property
     def draws_velocities(self) -> bool:
@@ -143,7 +143,7 @@ class Document(_DiscsAndEffects):
     @property
     def accepted_overlap(self) -> float:
         """Accepted overlap of given discs in addition to rounding, length."""
-        return self._given.update.get("overlap", self.start and self.start.overlap) or 0.0
+        return self._explicit.update.get("overlap", self.start and self.start.overlap) or 0.0
 
     def tables_of(self, effect: Effect[Any]) -> Tables:
         """Return the part of the scene for an effect; while a scene is being checked, its box may be missing."""
@@ -156,7 +156,7 @@ class Document(_DiscsAndEffects):
     def active_effects(self) -> tuple[ActiveEffect, ...]:
         """Effects that the scene has, in the order of EFFECTS."""
         tables = [getattr(self, name) for name in _TABLES]
-        known = self._given
+        known = self._explicit
         if len(known.effects_of) != len(tables) or any(map(is_not, known.effects_of, tables)):
             effects = (effect.find(self.tables_of(effect)) for effect in EFFECTS)
             known.effects, known.effects_of = tuple(effect for effect in effects if effect is not None), tables
@@ -201,32 +201,32 @@ class Document(_DiscsAndEffects):
     @property
     def number_of_discs(self) -> int:
         """Number N of discs."""
-        return sum(s.count for _, s in self.placed) + len(self.given)
+        return sum(s.count for _, s in self.placed) + len(self.explicit_discs)
 
     @property
     def mean_speed(self) -> float:
         """Expected mean speed of the discs at the start, length/time."""
         if self.draws_velocities:
             return mean_speed(self.species, np.empty((0, 2)))
-        return mean_speed([s for _, s in self.placed], self.given.velocity)
+        return mean_speed([s for _, s in self.placed], self.explicit_discs.velocity)
 
     @property
     def mean_kinetic_energy(self) -> float:
         """Expected mean kinetic energy of the discs at the start, energy."""
         if self.draws_velocities:
             return mean_kinetic_energy(self.species, np.empty(0), np.empty((0, 2)))
-        return mean_kinetic_energy([s for _, s in self.placed], self.given.mass, self.given.velocity)
+        return mean_kinetic_energy([s for _, s in self.placed], self.explicit_discs.mass, self.explicit_discs.velocity)
 
     @property
     def largest_radius(self) -> float:
         """Largest radius of the discs, length; 0 without discs."""
-        return max([float(self.given.radius.max(initial=0.0)), *(s.largest_radius for _, s in self.placed)])
+        return max([float(self.explicit_discs.radius.max(initial=0.0)), *(s.largest_radius for _, s in self.placed)])
 
     @property
     def covered_area(self) -> float:
         """Area of all discs, length²."""
         placed = [size.radius * size.radius * size.number for size in self.sizes]
-        return math.pi * math.fsum([*placed, *(self.given.radius**2).tolist()])
+        return math.pi * math.fsum([*placed, *(self.explicit_discs.radius**2).tolist()])
 
     @property
     def mean_free_time(self) -> float:
@@ -291,10 +291,12 @@ class Document(_DiscsAndEffects):
 
     @property
     def _sum_of_diameters(self) -> float:
-        return sum(2 * s.radius * s.number for s in self.sizes) + sum(2 * r for r in self.given.radius.tolist())
+        return sum(2 * s.radius * s.number for s in self.sizes) + sum(
+            2 * r for r in self.explicit_discs.radius.tolist()
+        )
 
     @property
-    def rest(self) -> RestingDisc | None:
+    def resting_disc(self) -> RestingDisc | None:
         """Motion of discs that have come to rest; None without a constant force or if collisions lose no energy."""
         force = math.hypot(*self.pressing_acceleration)
         if self.restitution is None or self.restitution.elastic or force == 0:

@@ -42,7 +42,7 @@ class Scene(Document, metaclass=_SceneType):
     def _check(self, info: ValidationInfo) -> Self:
         if self.start is not None:
             try:
-                self._given = ExplicitDiscs(*read_start(self, **info.context or {}))
+                self._explicit = ExplicitDiscs(*read_start(self, **info.context or {}))
             except StartError as error:
                 errors = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
                 raise PydanticCustomError(
@@ -63,8 +63,8 @@ class Scene(Document, metaclass=_SceneType):
         if self.restitution and not self.restitution.elastic:
             update["restitution"] = self.restitution.model_copy(update={"contact_duration": self.contact_duration})
         if self.start and self.start.digest is None:
-            known = {"number": len(self.given), "digest": self.given.digest}
-            update["start"] = self.start.model_copy(update=known | dict(self._given.update))
+            known = {"number": len(self.explicit_discs), "digest": self.explicit_discs.digest}
+            update["start"] = self.start.model_copy(update=known | dict(self._explicit.update))
         return self.model_copy(update=update)
 
     def with_origin(self, origin: TextOrigin) -> Self:
@@ -105,10 +105,10 @@ def run_digest(scene: Scene) -> str:
 def gas_digest(scene: Scene) -> str:
     """Digest of the discs, the box and the effects of a scene, without the initial state and temperature."""
     left_out = ("scene", "run", "log", "species", "disc", "start")
-    rest = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
-    box = {side: "thermal" if "thermal" in value else value for side, value in rest["box"].items()}
+    tables = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
+    box = {side: "thermal" if "thermal" in value else value for side, value in tables["box"].items()}
     fixed = [[*wall.start, wall.radius] for wall in scene.walls if wall.radius]
-    return _digest([sorted(_discs(scene).items()), rest | {"box": box}, *fixed])
+    return _digest([sorted(_discs(scene).items()), tables | {"box": box}, *fixed])
 
 
 def gas_kind(scene: Scene) -> str:
@@ -142,7 +142,7 @@ def _discs(scene: Scene) -> Counter[tuple[float, float]]:
     discs: Counter[tuple[float, float]] = Counter()
     for size in scene.sizes:
         discs[size.radius, size.mass] += size.number
-    discs.update(zip(scene.given.radius.tolist(), scene.given.mass.tolist(), strict=True))
+    discs.update(zip(scene.explicit_discs.radius.tolist(), scene.explicit_discs.mass.tolist(), strict=True))
     return +discs
 
 

@@ -90,15 +90,15 @@ class Estimate:
         return self.value - half, self.value + half
 
     @classmethod
-    def from_dict(cls, found: Mapping[str, float | None]) -> "Estimate":
+    def from_dict(cls, values: Mapping[str, float | None]) -> "Estimate":
         """Restore an estimate from the values of `as_dict`."""
-        value, error, samples = (found[name] for name in ("value", "standard_error", "independent_samples"))
+        value, error, samples = (values[name] for name in ("value", "standard_error", "independent_samples"))
         return cls(
             math.nan if value is None else value,
             math.nan if error is None else error,
             math.inf if samples is None else samples,
-            found["theory"],
-            found["theory_error"] or 0.0,
+            values["theory"],
+            values["theory_error"] or 0.0,
         )
 
     def __str__(self) -> str:

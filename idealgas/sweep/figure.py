@@ -156,9 +156,9 @@ def _all_numbers(values: Iterable[Any]) -> bool:
     return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
 
 
-def _choice(what: str, requested: str | None, allowed: list[str]) -> str:
+def _choice(kind: str, requested: str | None, allowed: list[str]) -> str:
     if not allowed:
-        raise UserError(f"no {what} with numbers to draw")
+        raise UserError(f"no {kind} with numbers to draw")
     if requested is not None and requested not in allowed:
-        raise unknown(what, requested, allowed)
+        raise unknown(kind, requested, allowed)
     return requested or allowed[0]

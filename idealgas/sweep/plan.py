@@ -238,7 +238,7 @@ def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) ->
     Raises:
         SceneError: if phi is not a packing fraction, or if parts of the scene have positions in the box.
     """
-    fixed = ["start" if scene.start else "disc"] if len(scene.given) else []
+    fixed = ["start" if scene.start else "disc"] if len(scene.explicit_discs) else []
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]
     fixed += ["species.region"] if any(s.region for s in scene.species) else []
     if fixed:

@@ -117,10 +117,10 @@ def _refuse_constant(name: str) -> None:
     raise ValueError(f"{name} is not a number of JSON")
 
 
-def stored_scene(folder: str | os.PathLike[str], found: dict[str, Any]) -> Scene:
+def stored_scene(folder: str | os.PathLike[str], result: dict[str, Any]) -> Scene:
     """Return the scene of a stored point. Raises UserError if it is invalid."""
     try:
-        return parse_scene(found["scene"], f"{result_path(folder, found['point'])}: scene")
+        return parse_scene(result["scene"], f"{result_path(folder, result['point'])}: scene")
     except SceneError as error:
         raise UserError(error.errors[0]) from None
 

@@ -179,8 +179,8 @@ class _Series(NamedTuple):
         n, known = len(self.sums) - 1, len(self.variance)
         middle = (start + n) // 2
         lengths = 2 ** np.arange((middle - start).bit_length())
-        rest = (self.sums[n] - self.sums[middle]) / (n - middle)
-        difference = (self.sums[start + lengths] - self.sums[start]) / lengths - rest
+        mean = (self.sums[n] - self.sums[middle]) / (n - middle)
+        difference = (self.sums[start + lengths] - self.sums[start]) / lengths - mean
         single, later = self.variance[np.minimum(lengths, known) - 1], self.variance[min(n - middle, known) - 1]
         dof = np.maximum(self.dof, known / np.maximum(lengths, self.memory) - 1)
         chance = level / lengths / 4  # half of the level, and a half of that on either side
@@ -261,13 +261,13 @@ def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable])
         NotApplicableError: if the series do not become steady.
     """
     begin = after_changes(log, edges)
-    rest = [item._replace(values=item.values[begin:]) for item in series]
-    first = detect_equilibration(rest)
+    steady = [item._replace(values=item.values[begin:]) for item in series]
+    first = detect_equilibration(steady)
     if first is None:
         raise not_steady(log, "the gas still changes in the second half of the log")
     if known_ensemble(log) is None:
-        memory = math.ceil(MEMORIES * memory_time(item.values[first:] for item in rest if not item.least))
-        first = max(first, min(memory, len(rest[0].values) // 2))
+        memory = math.ceil(MEMORIES * memory_time(item.values[first:] for item in steady if not item.least))
+        first = max(first, min(memory, len(steady[0].values) // 2))
     return begin + first
 
 

@@ -77,25 +77,23 @@ def fixed_energy_column(
 
     The arguments are those of `barometric_temperature`; dof is its freedom D.
     """
-    width, reach = (
-        math.sqrt(2 / dof),
-        min(math.sqrt(10 ** (68 / dof) - 1), 1e3),
-    )  # the integrand is below 1e-17, or 1e-6, beyond
+    # the integrand beyond the reach is below 1e-17, or 1e-6 if the reach is 1e3
+    width, reach = math.sqrt(2 / dof), min(math.sqrt(10 ** (68 / dof) - 1), 1e3)
     u = np.linspace(0.0, math.asinh(reach / width), POINTS)
     step = width * np.cosh(u)
     step[0] /= 2
     profiles = []
     for s, (m, top) in enumerate(zip(mass.tolist(), height.tolist(), strict=True)):
-        rest = number - (np.arange(len(number)) == s)
+        partners = number - (np.arange(len(number)) == s)
         above = np.linspace(0.0, min(top, energy / (m * pull)), HEIGHTS)
         weight, temperature = np.full(HEIGHTS, -math.inf), np.zeros(HEIGHTS)
         for k, left in enumerate(energy - m * pull * above):
             if left <= 1e-9 * energy:
                 break
-            saddle = 1 / barometric_temperature(left, dof, mass, rest, pull, height)
+            saddle = 1 / barometric_temperature(left, dof, mass, partners, pull, height)
             beta = saddle * (1 + 1j * width * np.sinh(u))
             x = np.multiply.outer(beta, mass * pull * height)
-            exponent = beta * left - dof / 2 * np.log(beta) + np.log(-np.expm1(-x) / x) @ rest
+            exponent = beta * left - dof / 2 * np.log(beta) + np.log(-np.expm1(-x) / x) @ partners
             states = np.exp(exponent - exponent[0].real) * step
             weight[k] = exponent[0].real + math.log(states.real.sum() * saddle)
             temperature[k] = (states / beta).real.sum() / states.real.sum()

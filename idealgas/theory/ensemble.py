@@ -77,8 +77,8 @@ class Composition(NamedTuple):
         all_of = self.number * self.mass
         lower = np.append(0.0, np.cumsum(all_of[:-1]))
         higher = np.append(0.0, np.cumsum(all_of[:0:-1]))[::-1]
-        rest = lower + higher + (self.number - 1) * self.mass
-        return rest / (rest + self.mass)
+        other_masses = lower + higher + (self.number - 1) * self.mass
+        return other_masses / (other_masses + self.mass)
 
 
 def composition(gas: Gas) -> Composition:
@@ -225,9 +225,11 @@ def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensem
     """Return the ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
     discs, kept = composition(gas), conserved.conserved_momentum(scene)
     fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath heats them
-    rest = discs.mass_share_of_others[:, None]
-    share = np.where(kept, rest, 1.0)
-    share[fixed] = np.where(kept & (discs.number[fixed].sum() == 1), rest[fixed], 0.0)  # a single fixed disc recoils
+    share_of_others = discs.mass_share_of_others[:, None]
+    share = np.where(kept, share_of_others, 1.0)
+    share[fixed] = np.where(
+        kept & (discs.number[fixed].sum() == 1), share_of_others[fixed], 0.0
+    )  # a single fixed disc recoils
     return Ensemble(conserved.centre_of_mass_velocity(scene, gas), dof, temperature, classes(gas), temperature * share)
 
 

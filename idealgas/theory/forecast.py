@@ -160,7 +160,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
             *time_steps.caveats(scene, gas),
             *_slow_bath(scene, gas, duration),
         ),
-        rest=scene.rest,
+        rest=scene.resting_disc,
     )
 
 
@@ -208,7 +208,7 @@ def _spin_energy(scene: Scene) -> float:
         for size in s.sizes:
             inertia = moment_of_inertia(factor, size.mass, size.radius)
             energy += size.number * (s.spin_temperature or inertia * (s.angular_velocity or 0.0) ** 2) / 2
-    given = scene.given
+    given = scene.explicit_discs
     if len(given) and not scene.draws_velocities:
         inertia = moment_of_inertia(factor, given.mass, given.radius)
         energy += float((inertia * given.angular_velocity**2).sum()) / 2
@@ -266,8 +266,8 @@ def _why_rough(
 ) -> str:
     """Return why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
     theory = box_theory(discs.radius, discs.number, gas.box, periodic)
-    if theory.why_not:
-        return theory.why_not
+    if theory.reason:
+        return theory.reason
     expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)
     known = expected.sum(axis=1)
     off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # terms of 1/N too

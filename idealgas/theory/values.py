@@ -137,7 +137,7 @@ class BoxTheory(NamedTuple):
     pairs, walls: Z by the virial of the pairs and of the walls. sides: Z by the force on the walls across x and across
     y, divided by the whole length of the side; None without theory or such walls. contacts: (S, S), 2 σ_ij n_j χ_ij as
     from `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts; both are nan without theory.
-    why_not: why theory has no value; empty if it has one.
+    reason: why theory has no value; empty if it has one.
     """
 
     pairs: Theory | None
@@ -145,7 +145,7 @@ class BoxTheory(NamedTuple):
     sides: tuple[Theory | None, Theory | None]
     contacts: np.ndarray
     rate_error: np.ndarray
-    why_not: str = ""
+    reason: str = ""
 
     def along_axes(
         self, radius: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]

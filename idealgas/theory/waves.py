@@ -65,7 +65,7 @@ def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
     return ((above / below) @ np.exp(np.outer(poles, time))).real
 
 
-def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> Decay | None:
+def fit(time: np.ndarray, measured: np.ndarray, guess: Decay, thermal: float) -> Decay | None:
     """Return the law that fits a correlation (L,) at times (L,) best, by least squares; None if the fit fails.
 
     The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ is not a free parameter.
@@ -76,13 +76,13 @@ def fit(time: np.ndarray, found: np.ndarray, guess: Decay, thermal: float) -> De
     def fluid(size: float, speed: float, damping: float, spreading: float) -> Fluid:
         return Fluid(speed, damping, spreading, max(size * speed**2 / thermal, 1 + 1e-9))
 
-    def law(time: np.ndarray, size: float, *rest: float) -> np.ndarray:
-        return size * correlation(time, guess.k, fluid(size, *rest))
+    def law(time: np.ndarray, size: float, *parameters: float) -> np.ndarray:
+        return size * correlation(time, guess.k, fluid(size, *parameters))
 
     start = (guess.size, *guess.fluid[:3])
     bounds = [1e-3 * abs(value) for value in start], np.inf
     try:
-        best, _ = curve_fit(law, time, found, start, bounds=bounds, max_nfev=MOST_CALLS, x_scale=start)
+        best, _ = curve_fit(law, time, measured, start, bounds=bounds, max_nfev=MOST_CALLS, x_scale=start)
     except RuntimeError:
         return None
     return Decay(float(best[0]), guess.k, fluid(*map(float, best)))

@@ -34,7 +34,7 @@ def test_a_reflection_at_45_degrees():
 def test_fixed_discs_are_none_of_the_gas():
     """They count neither in N nor in T, and discs at random keep clear of them, also across periodic sides."""
     log = log_of(GOLDEN, "gravity=", "restitution=")
-    assert (log.scene.number_of_discs, len(log.scene.given)) == (31, 1)
+    assert (log.scene.number_of_discs, len(log.scene.explicit_discs)) == (31, 1)
     assert len(log.discs) == 31
     for x, y, radius in ((0, 4, 1.5), (10, 4, 1.5), (5, 5, 0.75)):
         assert (np.hypot(*(log.discs.position - (x, y)).T) >= radius + log.discs.radius).all()

@@ -29,8 +29,10 @@ def test_five_discs_at_rest_make_few_events(overrides, tmp_path):
     """With the contact duration of before, a millionth of the time for a diameter, it was a million for every one."""
     scene, summary = run(tmp_path / "run.h5", *overrides)
     assert summary.completed
-    assert scene.rest.per_free_time == pytest.approx(20 / scene.restitution.wall)
-    assert summary.events < 4 * 5 * 120 * scene.rest.hits[1]  # on a slope they lean on each other, and hit more often
+    assert scene.resting_disc.per_free_time == pytest.approx(20 / scene.restitution.wall)
+    assert (
+        summary.events < 4 * 5 * 120 * scene.resting_disc.hits[1]
+    )  # on a slope they lean on each other, and hit more often
 
 
 @pytest.mark.parametrize("wall", [0.9, 0.5, 0.1])
@@ -39,7 +41,7 @@ def test_a_disc_at_rest_bounces_as_the_theory_says(wall, tmp_path):
     """In flights of e t to t, t the contact duration, to a height of g t²/8 at most; the energy is then constant."""
     one = ["species.gas.count=1", f"restitution.wall={wall}", "run.until=200"]
     scene, summary = run(tmp_path / "run.h5", *one, "box.left=periodic", "box.right=periodic")
-    t, rest = scene.restitution.contact_duration, scene.rest
+    t, rest = scene.restitution.contact_duration, scene.resting_disc
     with open_log(tmp_path / "run.h5") as log:
         (rows,) = log.chunks()
         hits = rows.time[rows.partner == FLOOR]
@@ -70,7 +72,7 @@ def test_a_pressed_piston_comes_to_rest_on_discs(tmp_path):
     scene = parse_scene(text)
     summary = simulate(scene, tmp_path / "run.h5")
     assert summary.completed
-    assert summary.events < 10 * 3 * 100 * scene.rest.hits[1]
+    assert summary.events < 10 * 3 * 100 * scene.resting_disc.hits[1]
 
 
 @pytest.mark.parametrize("wall", ["restitution.wall=0", "restitution={ normal = 0, wall = 0 }"])

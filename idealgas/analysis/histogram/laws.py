@@ -160,7 +160,7 @@ def free_flight_rates(
         rates, errors = expected_rates(log.box, gas, theory).of_kinds
         if (rates.sum(axis=1) > 0).all():
             return gas.temperature, rates, errors, gas.mean_speed, ""
-        why_not = theory.why_not if theory and theory.why_not else "discs do not collide"
+        why_not = theory.reason if theory and theory.reason else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")

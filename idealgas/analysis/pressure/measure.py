@@ -167,7 +167,7 @@ def pressure(
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
         tensor=tensor,
-        no_theory=theory.why_not or None,
+        no_theory=theory.reason or None,
         caveats=_slow(gas, window, impacts),
     )
 

@@ -137,7 +137,13 @@ def _start_acceptance(log: Log, v_ref: float) -> float:
 def _is_published(scene: Scene) -> bool:
     """Return whether a scene is that of the published run of Novak & Bortz (1970)."""
     run = scene.run
-    if len(scene.species) != 1 or len(scene.given) or run.trials != 28_000 or run.events or run.collisions_per_disc:
+    if (
+        len(scene.species) != 1
+        or len(scene.explicit_discs)
+        or run.trials != 28_000
+        or run.events
+        or run.collisions_per_disc
+    ):
         return False
     (gas,) = scene.species
     return gas.count == 200 and gas.speed is not None and (run.v_ref or 5 * gas.speed) == 5 * gas.speed

@@ -71,16 +71,16 @@ def filter_colliding(record, state, count, has_images, i, gravity, periodic):
 
 
 @inline
-def comes_earlier(prediction, ids, own, rank, partner, time, images):
-    """Whether a contact of disc `own` (id) precedes its predicted contact; `precedes` orders simultaneous contacts.
+def comes_earlier(prediction, ids, disc_id, rank, partner, time, images):
+    """Whether a contact of disc `disc_id` precedes its predicted contact; `precedes` orders simultaneous contacts.
 
     rank: id or wall rank of the partner. partner: the partner as it is stored in a prediction.
     """
     if time != prediction.contact:
         return time < prediction.contact
     if prediction.partner == partner:
-        return image_precedes(own, rank, images, images_of(prediction))
-    return precedes(own, rank, own, partner_rank(ids, prediction.partner))
+        return image_precedes(disc_id, rank, images, images_of(prediction))
+    return precedes(disc_id, rank, disc_id, partner_rank(ids, prediction.partner))
 
 
 @noinline
@@ -125,20 +125,20 @@ def predict_segment_contact(record, ids, state, i, effects):
 
 
 @noinline
-def predict_entry_contacts(disc, ids, prediction, own, walls, first, last, periodic, effects):
+def predict_entry_contacts(disc, ids, prediction, disc_id, walls, first, last, periodic, effects):
     """Store a disc's earliest contact with the segments of a range of entries if it precedes the predicted contact."""
     for entry in range(first, last):
         k = walls.item[U(entry)]
         images = images_to_item(walls, U(entry), disc, periodic)
         if misses_wall(disc, k, effects.segments, effects.arcs, effects.gravity, periodic, images):
             continue
-        passage = passage_of(effects.permeable, own, k)
+        passage = passage_of(effects.permeable, disc_id, k)
         segments, arcs = effects.segments, effects.arcs
         time = wall_contact(
-            disc, own, k, segments, arcs, passage, effects.gravity, effects.restitution, periodic, images
+            disc, disc_id, k, segments, arcs, passage, effects.gravity, effects.restitution, periodic, images
         )
         partner = FIRST_WALL_SEGMENT - k
-        if comes_earlier(prediction, ids, own, partner_rank(ids, partner), partner, time, images):
+        if comes_earlier(prediction, ids, disc_id, partner_rank(ids, partner), partner, time, images):
             prediction.contact = time
             prediction.partner = partner
             if periodic is not None:

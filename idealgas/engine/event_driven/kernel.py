@@ -107,18 +107,18 @@ def take_out(record, ids, state, i, kind, absorbing, rotation):
 
 
 @inline
-def resolve_event(record, ids, state, i, other, at_contact, time, batch, rows, clock, effects):
+def resolve_event(record, ids, state, i, partner, at_contact, time, batch, rows, clock, effects):
     """Resolve the next event of disc i and write its rows.
 
-    other: index of the disc with which it collides, or -1. at_contact: whether the event is its predicted contact.
+    partner: index of the disc with which it collides, or -1. at_contact: whether the event is its predicted contact.
     time: local time of the event. clock: the same time since the start of the run. Returns the number of rows, and the
     kind of the event.
     """
     prediction, disc, disc_id = state.prediction[U(i)], record[U(i)], np.int64(ids[U(i)])
-    if other >= 0:
+    if partner >= 0:
         images = images_of(prediction)
-        resolve_pair(disc, record[U(other)], disc_id, np.int64(ids[U(other)]), time, images, effects)
-        return write_pair(batch, rows, clock, record, ids, i, other, effects), DISC
+        resolve_pair(disc, record[U(partner)], disc_id, np.int64(ids[U(partner)]), time, images, effects)
+        return write_pair(batch, rows, clock, record, ids, i, partner, effects), DISC
     if at_contact:
         segment = FIRST_WALL_SEGMENT - prediction.partner
         kind = resolve_segment(disc, disc_id, segment, time, images_of(prediction), effects.segments, effects)

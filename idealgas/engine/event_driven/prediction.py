@@ -48,13 +48,13 @@ def precedes(a, b, c, d):
 
 
 @inline
-def image_precedes(own, other, images, others):
-    """Whether a disc's contact with a partner in the image `images` precedes the simultaneous one in `others`.
+def image_precedes(disc_id, rank, images, other_images):
+    """Whether a disc's contact with an image of a partner precedes its simultaneous contact with another image of it.
 
-    images, others: numbers of box lengths (x, y). own: id of the disc. other: id or wall rank of the partner.
+    rank: id or wall rank of the partner. images, other_images: numbers of box lengths (x, y) to the two images.
     """
-    ahead = images[0] < others[0] or (images[0] == others[0] and images[1] < others[1])
-    return ahead if other < 0 or own < other else images != others and not ahead
+    ahead = images[0] < other_images[0] or (images[0] == other_images[0] and images[1] < other_images[1])
+    return ahead if rank < 0 or disc_id < rank else images != other_images and not ahead
 
 
 @inline

@@ -36,42 +36,43 @@ def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
 
 
 @njit
-def merge(time, filled, own, place, head, order):
+def merge(time, filled, sorted_rows, place, head, order):
     """Merge the rows of all slabs into `order`, see `time_order`; return False if their order is undefined.
 
-    filled: (slabs,) i8. own: i8 of the same length as `time`, overwritten with each slab's sorted rows. place: (slabs,)
-    i8 and head: (slabs,) f8, overwritten with the position in `own` of each slab's next row, and its time.
+    filled: (slabs,) i8. sorted_rows: i8 of the same length as `time`, overwritten with each slab's sorted rows. place:
+    (slabs,) i8 and head: (slabs,) f8, overwritten with the position in `sorted_rows` of each slab's next row, and its
+    time.
     """
     slabs = filled.shape[0]
     room = time.shape[0] // slabs
     for k in range(slabs):
         place[U(k)] = k * room
-        insertion_sort(time, k * room, k * room + filled[U(k)], own)
-        head[U(k)] = time[U(own[U(k * room)])] if filled[U(k)] > 0 else np.inf
+        insertion_sort(time, k * room, k * room + filled[U(k)], sorted_rows)
+        head[U(k)] = time[U(sorted_rows[U(k * room)])] if filled[U(k)] > 0 else np.inf
     before = -1
     for n in range(order.shape[0]):
         k = 0
         for slab in range(1, slabs):
             k = slab if head[U(slab)] < head[U(k)] else k
-        row = own[U(place[U(k)])]
+        row = sorted_rows[U(place[U(k)])]
         if before >= 0 and time[U(row)] == time[U(before)] and (row != before + 1 or row % room == 0):
             return False
         order[U(n)] = row
         before = row
         place[U(k)] += 1
-        head[U(k)] = time[U(own[U(place[U(k)])])] if place[U(k)] < k * room + filled[U(k)] else np.inf
+        head[U(k)] = time[U(sorted_rows[U(place[U(k)])])] if place[U(k)] < k * room + filled[U(k)] else np.inf
     return True
 
 
 @inline
-def insertion_sort(time, start, stop, own):
+def insertion_sort(time, start, stop, sorted_rows):
     """Sort the rows from `start` to before `stop` by time; insertion is fast, as nearly all rows are in order."""
     for row in range(start, stop):
         at = row
-        while at > start and time[U(own[U(at - 1)])] > time[U(row)]:
-            own[U(at)] = own[U(at - 1)]
+        while at > start and time[U(sorted_rows[U(at - 1)])] > time[U(row)]:
+            sorted_rows[U(at)] = sorted_rows[U(at - 1)]
             at -= 1
-        own[U(at)] = row
+        sorted_rows[U(at)] = row
 
 
 @inline

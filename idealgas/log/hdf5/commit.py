@@ -75,8 +75,8 @@ class Commit(NamedTuple):
                 slots.append(values[:-1].tolist())
         if not slots:
             raise ValueError("no complete commit record")
-        sequence, size, *rest = max(slots)
-        rows, tails = rest[: len(tables)], rest[len(tables) :]
+        sequence, size, *numbers = max(slots)
+        rows, tails = numbers[: len(tables)], numbers[len(tables) :]
         return cls(sequence, size, dict(zip(tables, rows, strict=True)), dict(zip(paths, tails, strict=True)))
 
 

@@ -93,7 +93,7 @@ def _radius_issues(scene: Document) -> Iterator[Issue]:
 
 def _size_issues(scene: Document) -> Iterator[Issue]:
     """Check the numbers of species, walls and discs, whose arrays must fit into memory."""
-    names = {s.name for s in scene.species if s is not None} | set(scene.given.names)
+    names = {s.name for s in scene.species if s is not None} | set(scene.explicit_discs.names)
     for key, what, number, most in (
         ("species", "species", len(names), MOST_SPECIES),
         ("wall", "walls", len(scene.walls), MOST_WALLS),
@@ -121,8 +121,8 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
                 )
             elif len(given) > 1:
                 yield Issue(keys, "two spins", " and ".join(given), "only one of them")
-    if scene.start is not None and rotation is None and scene.given.angular_velocity.any():
-        number = int(scene.given.angular_velocity.nonzero()[0][0])
+    if scene.start is not None and rotation is None and scene.explicit_discs.angular_velocity.any():
+        number = int(scene.explicit_discs.angular_velocity.nonzero()[0][0])
         keys = (("start",), ("rotation",))
         yield Issue(keys, "a spin without rotation", label(scene, number).strip(), "a table [rotation], or no spin")
     smooth = rotation is not None and rotation.roughness == -1 and rotation.wall_roughness == -1

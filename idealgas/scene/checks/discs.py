@@ -38,7 +38,7 @@ NARROWEST = 5.0
 def species_issues(scene: Document) -> Iterator[Issue]:
     """Check that the names of species are unique, and that each has enough discs and exactly one kind of motion."""
     first: dict[str, int] = {}
-    numbers = scene.given.numbers
+    numbers = scene.explicit_discs.numbers
     for i, s in scene.placed:
         if s.name == EXPLICIT and EXPLICIT not in numbers:
             yield Issue((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
@@ -64,7 +64,7 @@ def species_issues(scene: Document) -> Iterator[Issue]:
 
 def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[Issue]:
     """Check that given discs have the radius and mass of their species, and that new velocities have a species."""
-    discs = scene.given
+    discs = scene.explicit_discs
     for k, name in enumerate(discs.names):
         if name not in tables:
             if scene.draws_velocities:
@@ -87,7 +87,7 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
 
 def permeable_issues(scene: Document) -> Iterator[Issue]:
     """Check that there are discs of the species that pass a wall."""
-    known = dict.fromkeys((*(s.name for _, s in scene.placed), *scene.given.names))
+    known = dict.fromkeys((*(s.name for _, s in scene.placed), *scene.explicit_discs.names))
     for i, wall in enumerate(scene.wall):
         for name in (wall and wall.permeable_to) or ():
             if name not in known:
@@ -98,7 +98,7 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
 
 def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check that the discs lie in the space of the gas, are neither too large nor too small, and are not too many."""
-    box, space, discs = scene.box, scene.room, scene.given
+    box, space, discs = scene.box, scene.room, scene.explicit_discs
     kinds = [(i, s) for i, s in scene.placed if s.count]
     outside = [*_regions_outside(scene, space, kinds), *_discs_outside(scene)]
     yield from outside
@@ -135,7 +135,7 @@ def _regions_outside(scene: Document, space: Rectangle, kinds: list[tuple[int, S
 
 def _discs_outside(scene: Document) -> Iterator[Issue]:
     """Check that given discs are in the space of the gas; at most MOST_OVERLAPS are reported."""
-    box, space, discs = scene.box, scene.room, scene.given
+    box, space, discs = scene.box, scene.room, scene.explicit_discs
     limits = _limits(scene)
     place, widest = _name_of(box, space), min(space[2] - space[0], space[3] - space[1])
     slack = rounding(max(box.size), 2 * discs.radius) + scene.accepted_overlap
@@ -172,7 +172,7 @@ def _name_of(box: Box, space: Rectangle) -> str:
 
 def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
     """Check the packing fractions of the regions and of the whole space."""
-    whole, discs = scene.room, scene.given
+    whole, discs = scene.room, scene.explicit_discs
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
         covered = math.pi * sum(_area(s) for _, s in here)
@@ -229,7 +229,7 @@ def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> It
     """Check for compression in a box that is too narrow, or together with walls or discs that are not compressed."""
     key: Key = ("species", i, "placement")
     uncompressed = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
-    uncompressed += ["[start]" if scene.start else "[[disc]]"] if len(scene.given) else []
+    uncompressed += ["[start]" if scene.start else "[[disc]]"] if len(scene.explicit_discs) else []
     uncompressed += ["[[wall]]"] if scene.walls else []
     if uncompressed:
         allowed = "compressed for all species, and no [[disc]], [start] or [[wall]]"

@@ -54,7 +54,7 @@ def label(scene: Document, number: int) -> str:
 
 def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
     """Report given discs that overlap, including overlaps through periodic sides; at most MOST_OVERLAPS pairs."""
-    discs = scene.given
+    discs = scene.explicit_discs
     for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
         low, high = int(discs.index[a]), int(discs.index[b])
         got = f"a distance of {distance} between centres"
@@ -200,12 +200,12 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
     pairs: dict[tuple[int, int], float] = {}
     box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_present(0.0)}
     walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
-    for k, i, distance in wall_overlaps(scene.given, box, walls, scene.accepted_overlap):
+    for k, i, distance in wall_overlaps(scene.explicit_discs, box, walls, scene.accepted_overlap):
         pairs[k, i] = min(distance, pairs.get((k, i), math.inf))
         if len(pairs) == MOST_OVERLAPS:
             break
     for (k, i), distance in sorted(pairs.items()):
-        number, radius = int(scene.given.index[k]), scene.given.radius[k]
+        number, radius = int(scene.explicit_discs.index[k]), scene.explicit_discs.radius[k]
         place: Key = getattr(walls[i], "place", ("wall", i))
         keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
         wrong = (

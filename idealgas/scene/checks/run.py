@@ -44,10 +44,10 @@ LONGEST = 2.0**52
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
     """Check for keys of other methods, and the requirements and limitations of the method."""
     run = scene.run
-    for key, (owner, thing) in OWNERS.items():
+    for key, (owner, feature) in OWNERS.items():
         if run.method != owner and (value := getattr(run, key)) is not None:
             allowed = f'no {key}, or method = "{owner}"'
-            yield Issue((("run", key), ("run", "method")), f"no {thing} in {run.method}", str(value), allowed)
+            yield Issue((("run", key), ("run", "method")), f"no {feature} in {run.method}", str(value), allowed)
     if run.method == MONTE_CARLO:
         yield from _monte_carlo_issues(scene, invalid)
     elif run.method == TIME_DRIVEN:
@@ -137,13 +137,13 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
         yield Issue((("run", "until"), ("run",)), "too long for the resolution of the clock", got, allowed)
     yield from _heated_issues(scene)
     every = None if "log" in invalid else scene.log.snapshot_every
-    for key, period, what, most in (
+    for key, period, quantity, most in (
         (("log", "snapshot_every"), every, "snapshots", MOST_SNAPSHOTS),
         (("run", "dt"), run.dt, "steps", MOST_STEPS),
     ):
         if period is not None and most * period < end < math.inf:
             allowed = f"<= {most:g}, with a time >= {end / most:.3g}"
-            yield Issue((key, ("run",)), f"too many {what}", f"about {end / period:.3g}", allowed)
+            yield Issue((key, ("run",)), f"too many {quantity}", f"about {end / period:.3g}", allowed)
     if run.v_ref is None or run.trials is not None or math.isinf(scene.trial_time):
         return
     trials = end / scene.trial_time
@@ -167,7 +167,10 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
         got, allowed = f"{later:g} after {before:.3g}", f"at most {MOST_HEATING:.3g} times as hot"
         yield Issue((*keys, ("run",)), "a step too large for the resolution of the energy account", got, allowed)
         return
-    lightest, hottest = min([*(size.mass for size in scene.sizes), *scene.given.mass.tolist()]), max(*first, later, 0.0)
+    lightest, hottest = (
+        min([*(size.mass for size in scene.sizes), *scene.explicit_discs.mass.tolist()]),
+        max(*first, later, 0.0),
+    )
     speed = math.sqrt(math.pi * hottest / (2 * lightest))  # the discs may be cold at the start
     if run.until is None or speed <= scene.mean_speed:
         return

@@ -43,7 +43,7 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
         place: Key = ("wall", next(iter(made)), "solid") if made else fixed[0].place
         got = f"{'solids' if made else 'fixed discs'} everywhere"
         yield Issue((place,), "no area is left", got, "room for the gas")
-    discs = scene.given
+    discs = scene.explicit_discs
     for k in np.flatnonzero(solids.contain(discs.position))[:MOST_OVERLAPS].tolist():
         number = int(discs.index[k])
         keys = disc_keys(scene, (number,), "position")

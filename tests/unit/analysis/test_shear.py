@@ -132,8 +132,8 @@ def test_a_start_at_the_time_of_a_crossing():
     (rows,) = log.chunks()
     assert log.state_at(2.0).position[0, 1] == 8.0
     following = log_of(continued_scene(log, 2.0, str(log.path)))
-    assert following.scene.given.position[0].tolist() == [4, 0]
-    assert following.scene.given.velocity[0].tolist() == [1, -3]  # 5 at the top
+    assert following.scene.explicit_discs.position[0].tolist() == [4, 0]
+    assert following.scene.explicit_discs.velocity[0].tolist() == [1, -3]  # 5 at the top
     (later,) = following.chunks()
     rows = rows._make(column if column is None else column[rows.time >= 2] for column in rows)
     assert later.partner[:20].tolist() == rows.partner[:20].tolist()
@@ -148,7 +148,7 @@ def test_a_disc_that_is_given_beyond_sheared_sides_has_the_velocity_of_its_image
     side = {"shear": 0.5}
     box = {"size": (8.0, 8.0), "left": "periodic", "right": "periodic", "bottom": side, "top": side}
     scene = Scene(box=box, run={"until": 10.0}, discs=discs)
-    assert (scene.given.position.tolist(), scene.given.velocity.tolist()) == ([[2, 6]], [[1, -3]])
+    assert (scene.explicit_discs.position.tolist(), scene.explicit_discs.velocity.tolist()) == ([[2, 6]], [[1, -3]])
 
 
 def test_integrals_along_a_flight():

@@ -150,9 +150,9 @@ def test_no_value_beyond_the_range():
         (1, 0.1, (1.0, 1.0), "holds fewer than 3"),
         (40, 0.3, (40.0, 1.0), "holds fewer than 3"),
     ):
-        assert why in _periodic(number, phi, box).why_not
+        assert why in _periodic(number, phi, box).reason
     assert np.isnan(_periodic(400, 0.63).contacts).all()
-    assert _periodic(400, 0.61).why_not == ""
+    assert _periodic(400, 0.61).reason == ""
 
 
 @pytest.mark.parametrize(("phi", "pressure"), [(0.67, 7.98678), (0.68, 8.51325), (0.69, 8.9699), (0.7, 9.1297)])

@@ -45,7 +45,7 @@ FILE = "box.size = [8, 6]\nrun.until = 1\nstart.file = '{}'\n"
 
 def start_of(path, time="end"):
     """Discs of a scene that starts from a file."""
-    return parse_scene(FILE.format(path) + (f"start.time = {time}\n" if time != "end" else "")).given
+    return parse_scene(FILE.format(path) + (f"start.time = {time}\n" if time != "end" else "")).explicit_discs
 
 
 def test_frames_without_times_are_numbered_and_the_last_is_the_default(tmp_path):
@@ -111,7 +111,7 @@ def test_a_file_and_a_table_agree_about_radius_and_mass(tmp_path, radius):
     """The rule of the page: without a column that of the table, with one the same or a refusal."""
     table = "[[species]]\nname = 'a'\ncount = 2\nradius = 0.1\nmass = 2\ntemperature = 1\n"
     (tmp_path / "a.csv").write_text("x,y,radius\n1,1,0.1\n3,3,0.1\n")
-    given = parse_scene(FILE.format(tmp_path / "a.csv") + table).given
+    given = parse_scene(FILE.format(tmp_path / "a.csv") + table).explicit_discs
     assert (given.radius.tolist(), given.mass.tolist(), given.names) == ([0.1, 0.1], [2, 2], ("a",))
     (tmp_path / "a.csv").write_text(f"x,y,radius\n1,1,0.1\n3,3,{radius}\n")
     with pytest.raises(

@@ -203,7 +203,7 @@ def test_exported_frames_are_starts(tmp_path, old, kind):
         output_of("export", old, "--format", kind, "--frames", 5, "-o", path)
     (tmp_path / "next.toml").write_text(f'{GAS}[start]\nfile = "{path.name}"\n')
     scene = load_scene(tmp_path / "next.toml")
-    given = scene.given
+    given = scene.explicit_discs
     exact = 2e-6 if kind == "gsd" else 0  # single precision
     assert np.abs(given.position - state.position).max() <= exact
     assert np.abs(given.velocity - state.velocity).max() <= exact
@@ -215,14 +215,14 @@ def test_exported_frames_are_starts(tmp_path, old, kind):
 
 def test_a_species_without_a_table_has_its_radius_from_the_log_and_more_discs_are_placed(tmp_path, old):
     scene = parse_scene(f"box.size = [8.0, 6.0]\nrun.events = 100\n[start]\nlog = '{old}'\n")
-    assert scene.given.names == ("light", "heavy")
+    assert scene.explicit_discs.names == ("light", "heavy")
     with logged(scene, tmp_path / "new.h5") as log:
         assert log.discs.radius.tolist() == [0.2] * 30 + [0.4] * 10
     scene = parse_scene(f"{GAS}[start]\nlog = '{old}'\n", overrides=["species.light.count=35"])
     with logged(scene, tmp_path / "more.h5") as log:
         assert log.scene == scene
         assert np.bincount(log.discs.species).tolist() == [35, 10]
-        assert np.array_equal(log.discs.position[:40], scene.given.position)
+        assert np.array_equal(log.discs.position[:40], scene.explicit_discs.position)
     resume(tmp_path / "more.h5", ["run.events=4100"])
 
 
@@ -341,7 +341,7 @@ def test_a_scene_of_a_log_with_explicit_discs_names_their_species(tmp_path):
     simulate(parse_scene(text), tmp_path / "old.h5")
     output_of("scene", tmp_path / "old.h5", "-o", tmp_path / "next.toml")
     scene = load_scene(tmp_path / "next.toml")
-    assert scene.given.names == ("a", "b")
-    assert scene.given.radius.tolist() == [0.1, 0.2, 0.3, 0.4]
+    assert scene.explicit_discs.names == ("a", "b")
+    assert scene.explicit_discs.radius.tolist() == [0.1, 0.2, 0.3, 0.4]
     assert dump_document(scene).count("[[disc]]") == 0
     assert json.loads(called("check", tmp_path / "next.toml", "--json").stdout)["scene"]["start"]["number"] == 4

@@ -67,7 +67,7 @@ def test_many_given_discs_of_all_sizes_are_one_species():
     scene = Scene(
         box={"size": (n, n)}, run={"events": 1}, discs={"position": place, "radius": radius, "velocity": place}
     )
-    assert scene.given.names == ("disc",)
+    assert scene.explicit_discs.names == ("disc",)
 
 
 def test_a_large_file_is_one_line_and_dots_in_numbers_and_texts_are_no_keys(tmp_path):

@@ -25,7 +25,7 @@ def test_without_a_force_it_is_far_below_every_free_time():
     found = scene()
     assert found.pressing_acceleration == (0, 0)
     assert found.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
-    assert found.rest is None
+    assert found.resting_disc is None
     assert scene("piston=[{ position=9, velocity=-0.1 }]").restitution == found.restitution
 
 
@@ -50,15 +50,15 @@ def test_a_force_and_what_is_given():
 
 def test_rest():
     """Rebounds of speed v < g t/2 are over in less than the contact duration t: m v²/2 = m g h, h < g t²/8."""
-    rest = scene(FALL, "restitution.contact_duration=0.01").rest
+    rest = scene(FALL, "restitution.contact_duration=0.01").resting_disc
     assert rest.hits == pytest.approx((100, 125))
     assert rest.height == pytest.approx(3 * 0.01**2 / 8)
     assert rest.energy == pytest.approx(3 * rest.height)
     assert rest.per_free_time == pytest.approx(125 * scene(FALL).mean_free_time)
-    assert scene(FALL).rest.per_free_time == pytest.approx(20 / 0.8)
-    one_way = scene(FALL, "restitution={ normal=0.5, contact_duration=0.1 }").rest
+    assert scene(FALL).resting_disc.per_free_time == pytest.approx(20 / 0.8)
+    one_way = scene(FALL, "restitution={ normal=0.5, contact_duration=0.1 }").resting_disc
     assert (one_way.hits, one_way.energy) == (pytest.approx((10, 20)), pytest.approx(9 * 0.1**2 / 8))
-    stuck = scene(FALL, "restitution.wall=0").rest
+    stuck = scene(FALL, "restitution.wall=0").resting_disc
     assert (stuck.hits[1], stuck.per_free_time) == (None, None)
 
 
