@@ -84,8 +84,7 @@ def _parameters(analysis: "type[Analysis]") -> list[click.Parameter]:
 def _logs(analysis: "type[Analysis]") -> Callable:
     if analysis.combine is None:
         return click.argument("paths", type=FILE, metavar="RUN.h5", callback=lambda _, __, path: (path,))
-    metavar = "RUN.h5|DIR..." if analysis.restore else "RUN.h5..."
-    return click.argument("paths", type=FILE, metavar=metavar, nargs=-1, required=True)
+    return click.argument("paths", type=FILE, metavar="RUN.h5|DIR...", nargs=-1, required=True)
 
 
 def _option(option: "Option") -> Callable:
@@ -141,20 +140,19 @@ def _analyse(
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv and --json cannot be combined")
-    drawn = (plot, analysis.titled_figure), (plot_errors, analysis.error_figure)
-    figures = {path: draw for path, draw in drawn if path}
-    for path in figures:
+    drawn = [path for path in (plot, plot_errors) if path]
+    for path in drawn:
         check_output(path, Path(path).suffix.lower(), force, paths)
     try:
         with progress_bar(f"reading {analysis.reads}") as progress:
             results = [result for path in paths for result in _results(analysis, path, start, end, progress, options)]
         result = analysis.combined(results)
     except NotApplicableError as error:
-        if not check or figures or as_csv:
+        if not check or drawn or as_csv:
             raise
         from idealgas.analysis.check import CheckResult
 
-        inapplicable = CheckResult(why_not=str(error))
+        inapplicable = CheckResult(reason=str(error))
         if as_json:
             print_json(inapplicable.as_dict())
         else:
@@ -164,10 +162,10 @@ def _analyse(
     missing = {path: sentence for path in paths if (sentence := _missing(path))}
     for path, sentence in missing.items():
         echo(f"{path}: {sentence}", err=True)
-    for path, draw in figures.items():
+    for path in drawn:
         from idealgas.presentation.style import add_title, save
 
-        figure = draw(result)
+        figure = result.plot() if path == plot else result.plot_errors()
         if missing:
             add_title(figure, ". ".join([*missing.values(), figure.get_suptitle()]))
         save(figure, path, force)
@@ -181,15 +179,15 @@ def _analyse(
             echo(f"caveat: {sentence}", err=True)
         data(csv_of(result.as_dict(), analysis.name), nl=False)
     else:
-        if headline := analysis.summary(result):
+        if headline := result.summary():
             echo(headline)
-        print_tables(analysis.shown_tables(result))
-        if text := analysis.text(result):
+        print_tables(result.tables())
+        if text := result.text():
             echo(text)
         if checked:
             print_tables(checked.tables())
             echo(f"{checked}", err=not checked.compared)
-    for path in figures:
+    for path in drawn:
         written(path, err=as_json or as_csv)
     if checked and checked.compared and not checked.agrees:
         raise SystemExit(1 if checked.agrees is False else 2)
@@ -204,11 +202,11 @@ def _results(
     options: dict[str, Any],
 ) -> Iterator[Any]:
     """Yield the result of a log, or the results of all points of a sweep from its folder."""
-    if analysis.restore and os.path.isdir(path):
+    if analysis.combine and os.path.isdir(path):
         from idealgas.sweep.results import stored_results
 
-        for label, stored, origin in stored_results(path, analysis.key):
-            yield analysis.restored(stored, label, origin)
+        for values, origin in stored_results(path, analysis.key):
+            yield analysis.restored(values, origin)
         return
     with open_log(path) as log:
         yield analysis.analyse(log, start, end, progress, **options)

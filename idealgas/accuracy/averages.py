@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from idealgas.analysis.histogram import HistogramAnalysis
-from idealgas.analysis.pressure.measure import PAIRS, WALLS, Pressure, pressure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.result import Pressure
+from idealgas.analysis.pressure.routes import PAIRS, WALLS
 from idealgas.errors import UserError
 from idealgas.log import Log, open_log
 from idealgas.log.summary import Summary

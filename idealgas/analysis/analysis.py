@@ -1,16 +1,17 @@
-"""Base class of all analyses: a subclass declares its options, measures a log, and shows the result.
+"""Base class of all analyses: a subclass declares its options and measures a log.
 
 A module or package of `idealgas.analysis` contains one analysis, a subclass of `Analysis`. The first line of its
 docstring is the help of the command `idealgas NAME`. The command with `--json` and `--csv`, the sections of the report,
 the key of a sweep and the function `idealgas.NAME` are made from the class.
 
-Results are dataclasses that inherit from `Result`; their fields are the plain values for JSON (`fields.py`). Each
-condition of a number that is not met is a sentence in `caveats` of the result, which tables, reports and JSON contain.
+Results are dataclasses that inherit from `Result`, show themselves in tables and figures, and are restored from the
+results of a sweep; their fields are the plain values for JSON (`fields.py`). Each condition of a number that is not met
+is a sentence in `caveats` of the result, which tables, reports and JSON contain.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import wraps
 from inspect import getdoc, signature
 from numbers import Integral, Real
@@ -20,13 +21,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from idealgas.analysis import caveats
 from idealgas.analysis.result import Origin, Result
 from idealgas.errors import NotApplicableError, UserError, unknown
+from idealgas.fields import from_dict
 from idealgas.log import takes_path
-from idealgas.presentation.tables import Table
 from idealgas.tallies.stream import ReadProgress
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from idealgas.log import Log
 
 FOUND: dict[str, type["Analysis"]] = {}
@@ -132,14 +131,8 @@ class Analysis:
     measure: ClassVar[Callable[..., Any]]
     """Function measure(log, start, end, progress, **options) that returns the result of one log."""
 
-    tables: ClassVar[Callable[..., list[Table]]]
-    """Function tables(result) that returns the tables for the terminal, CSV and the report."""
-
-    figure: ClassVar[Callable[..., "Figure"]]
-    """Function figure(result) that draws the result."""
-
     combine: ClassVar[Callable[..., Any] | None] = None
-    """Function combine(results) that returns one result of several logs for tables and figure.
+    """Function combine(results) that returns one result of several logs or of the points of a sweep.
 
     None if the analysis takes a single log only.
     """
@@ -153,12 +146,6 @@ class Analysis:
     supports_escapes: ClassVar[bool] = False
     """Whether the analysis applies to a gas that discs leave."""
 
-    restore: ClassVar[Callable[..., Any] | None] = None
-    """Function restore(found, label) that returns a result from the plain values that a sweep has stored.
-
-    None if the analysis does not read sweeps.
-    """
-
     def __init_subclass__(cls) -> None:
         """Register the analysis under the name of its module."""
         cls.name = cls.__module__.rpartition(".")[2]
@@ -166,16 +153,6 @@ class Analysis:
         FOUND[cls.name] = cls
         for kind in cls.results:
             kind.analysis = cls
-
-    @staticmethod
-    def summary(result: Any) -> str:
-        """Return the headline of a combined result: one or two sentences on the result and the theory."""
-        return ""
-
-    @staticmethod
-    def text(result: Any) -> str:
-        """Return a figure in characters for the terminal; empty if there is none."""
-        return ""
 
     @classmethod
     def is_checked(cls) -> bool:
@@ -260,7 +237,7 @@ class Analysis:
 
     @classmethod
     def combined(cls, results: Sequence[Any]) -> Any:
-        """Combine the results of one or several logs into the result that tables and figure show.
+        """Combine the results of one or several runs.
 
         Raises:
             UserError: if the analysis averages and a run is given twice, or if the gases cannot be combined.
@@ -276,56 +253,16 @@ class Analysis:
         return replace(combined, caveats=sentences, title=caveats.combined_title(results))
 
     @classmethod
-    def restored(cls, found: dict[str, Any], label: str, origin: Origin | None = None) -> Any:
-        """Restore a result from the plain values that a sweep has stored.
-
-        Args:
-            found: plain values of the result.
-            label: name of the point.
-            origin: run of the point.
+    def restored(cls, values: dict[str, Any], origin: Origin) -> Any:
+        """Restore the result of a run from its plain values, which a sweep has stored.
 
         Raises:
             UserError: if the values are not those of a result.
         """
-        assert cls.restore is not None
-        title = origin.title if origin else label
         try:
-            result = replace(cls.restore(found, label), caveats=tuple(found["caveats"]), origin=origin, title=title)
-            if all(isinstance(getattr(result, f.name), Real) for f in fields(result) if f.type in (float, int)):
-                return result
-            raise TypeError
-        except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, StopIteration):
-            raise UserError(f"{label}: damaged results of the analysis {cls.key}") from None
-
-    @classmethod
-    def shown_tables(cls, combined: Any) -> list[Table]:
-        """Return the tables of a combined result; the first table has a note for each caveat."""
-        first, *remaining = cls.tables(combined)
-        notes = (*(f"caveat: {sentence}" for sentence in combined.caveats), *first.notes)
-        return [replace(first, notes=notes), *remaining]
-
-    @classmethod
-    def titled_figure(cls, combined: Any) -> "Figure":
-        """Return the figure of a combined result with the names of the run and the analysis above it."""
-        from idealgas.presentation.style import add_title
-
-        return add_title(cls.figure(combined), f"{combined.title}: {cls.key}")
-
-    @classmethod
-    def error_figure(cls, combined: Any) -> "Figure":
-        """Draw the error of each estimate of a combined result against the length of blocks (`block_figure`)."""
-        from idealgas.presentation.style import add_title, block_figure
-
-        names: dict[tuple[tuple[float, float], ...], str] = {}
-        for table in cls.shown_tables(combined):
-            for row, estimate in zip(table.rows, table.estimates, strict=False):
-                names.setdefault(estimate.blocks, str(row[0]))
-        names.pop((), None)
-        if not names:
-            raise UserError(f"{cls.key}: no error bar was estimated from blocks of time")
-        window = getattr(combined, "window", None)
-        figure = block_figure(names, *((window.duration, "time") if window else (1.0, "share of the window")))
-        return add_title(figure, f"{combined.title}: {cls.key}")
+            return replace(from_dict(cls.results[0], values), origin=origin, title=origin.title)
+        except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError):
+            raise UserError(f"{origin.path}: damaged results of the analysis {cls.key}") from None
 
 
 @contextmanager

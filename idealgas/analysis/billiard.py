@@ -64,6 +64,38 @@ class Billiard(Result):
         """Compare the mean path with theory."""
         return check_theory([("path", None, self.path)], self.reason)
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the mean path, and of the area and perimeter from which its theory follows."""
+        notes = [str(self.window), f"{self.hits:,} wall hits"]
+        if self.reason:
+            notes.append(f"Theory is not available: {self.reason}.")
+        tables = [estimates("Paths between walls", [(ROW, self.path)], notes)]
+        if self.reach:
+            rows = [
+                ("area (length²)", Number(self.reach.area)),
+                ("perimeter (length)", Number(self.reach.perimeter)),
+            ]
+            tables.append(Table("Reach of the centres of the discs", ("", "value"), rows))
+        return tables
+
+    def summary(self) -> str:
+        """Return the mean path between wall hits and whether it agrees with π A/P."""
+        verdict = agreement([("path", self.path)], "π A/P", self.reason)
+        return f"The mean path between two wall hits is {format_estimate(self.path)}; {verdict}."
+
+    def figure(self) -> "Figure":
+        """Draw the mean path up to each time, with theory."""
+        from idealgas.presentation.style import COLOURS, panels
+
+        figure, (ax,) = panels(1)
+        ax.plot(self.time, self.series, color=COLOURS[0], label="mean up to this time")
+        if self.path.theory is not None:
+            ax.theory(None, self.path.theory, self.path.theory_error, "π A/P")
+        ax.set_ylabel("path between wall hits (length)")
+        ax.time_axis()
+        ax.legend()
+        return figure
+
 
 class BilliardAnalysis(Analysis):
     """Mean path between wall hits."""
@@ -108,41 +140,6 @@ class BilliardAnalysis(Analysis):
             path.cumsum() / np.maximum(hits.cumsum(), 1),
             caveats=(UNMIXED,) if unmixed else (),
         )
-
-    @staticmethod
-    def tables(result: Billiard) -> list[Table]:
-        """Return the tables of the mean path, and of the area and perimeter from which its theory follows."""
-        notes = [str(result.window), f"{result.hits:,} wall hits"]
-        if result.reason:
-            notes.append(f"Theory is not available: {result.reason}.")
-        tables = [estimates("Paths between walls", [(ROW, result.path)], notes)]
-        if result.reach:
-            rows = [
-                ("area (length²)", Number(result.reach.area)),
-                ("perimeter (length)", Number(result.reach.perimeter)),
-            ]
-            tables.append(Table("Reach of the centres of the discs", ("", "value"), rows))
-        return tables
-
-    @staticmethod
-    def summary(result: Billiard) -> str:
-        """Return the mean path between wall hits and whether it agrees with π A/P."""
-        verdict = agreement([("path", result.path)], "π A/P", result.reason)
-        return f"The mean path between two wall hits is {format_estimate(result.path)}; {verdict}."
-
-    @staticmethod
-    def figure(result: Billiard) -> "Figure":
-        """Draw the mean path up to each time, with theory."""
-        from idealgas.presentation.style import COLOURS, panels
-
-        figure, (ax,) = panels(1)
-        ax.plot(result.time, result.series, color=COLOURS[0], label="mean up to this time")
-        if result.path.theory is not None:
-            ax.theory(None, result.path.theory, result.path.theory_error, "π A/P")
-        ax.set_ylabel("path between wall hits (length)")
-        ax.time_axis()
-        ax.legend()
-        return figure
 
 
 def _theory(log: Log) -> tuple[Theory, Reach]:

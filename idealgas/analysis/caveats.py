@@ -59,8 +59,14 @@ def window_caveats(window: Window) -> tuple[str, ...]:
     )
 
 
-def origin_of(scene: Scene, path: str) -> Origin:
-    """Return the origin of a run of a scene; path: path of its log, or another name for it."""
+def origin_of(scene: Scene, path: str, label: str = "") -> Origin:
+    """Return the origin of a run of a scene.
+
+    Args:
+        scene: the scene.
+        path: path of its log, or another name for it.
+        label: name of the run among several; empty for its path.
+    """
     seed = scene.scene.seed if draws_random_numbers(scene) else None
     return Origin(
         path,
@@ -71,6 +77,7 @@ def origin_of(scene: Scene, path: str) -> Origin:
         is_mixture(scene),
         seed,
         scene.scene.title or path,
+        label or path,
     )
 
 

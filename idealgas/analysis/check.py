@@ -135,11 +135,11 @@ class CheckResult:
 
     Attributes:
         compared: compared rows.
-        why_not: why theory has no value, as part of a sentence; None if it has one.
+        reason: why theory has no value, as part of a sentence; None if it has one.
     """
 
     compared: tuple[Comparison, ...] = ()
-    why_not: Annotated[str | None, Key("no_theory")] = None
+    reason: Annotated[str | None, Key("no_theory")] = None
 
     @property
     @reported
@@ -165,7 +165,7 @@ class CheckResult:
     def __str__(self) -> str:
         """Return the result in sentences."""
         if not self.compared:
-            return f"Theory is not available: {self.why_not}."
+            return f"Theory is not available: {self.reason}."
         failed = [row.name for row in self.compared if row.agrees is False]
         if self.agrees is None:
             verdict = "Too few samples to tell whether measurement and theory agree"
@@ -177,31 +177,31 @@ class CheckResult:
         )
 
 
-def check_theory(found: Iterable[tuple[str, str | None, Estimate]], why_not: str | None = None) -> CheckResult:
+def check_theory(rows: Iterable[tuple[str, str | None, Estimate]], reason: str | None = None) -> CheckResult:
     """Check that every estimate with a theory agrees with it.
 
     Args:
-        found: name, name of the theory, and value of each estimate.
-        why_not: why theory has no value, for the case that no estimate has a theory.
+        rows: name, name of the theory, and value of each estimate.
+        reason: why theory has no value, for the case that no estimate has a theory.
     """
-    known = [(name, source or "theory", value) for name, source, value in found if value.theory is not None]
+    known = [(name, source or "theory", value) for name, source, value in rows if value.theory is not None]
     compared = tuple(Comparison(name, source, value, len(known)) for name, source, value in known)
-    return CheckResult(compared, None if compared else why_not)
+    return CheckResult(compared, None if compared else reason)
 
 
 def agreement(
-    found: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", why_not: str | None = None
+    results: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", reason: str | None = None
 ) -> str:
     """Return whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
 
     Args:
-        found: estimates, or tests of laws, by name; if there are several, the one that deviates most is named.
+        results: estimates, or tests of laws, by name; if there are several, the one that deviates most is named.
         theory: name of the theory.
-        why_not: why theory has no value, as part of a sentence.
+        reason: why theory has no value, as part of a sentence.
     """
-    known = [(name, item) for name, item in found if isinstance(item, PValue) or item.theory is not None]
+    known = [(name, item) for name, item in results if isinstance(item, PValue) or item.theory is not None]
     if not known:
-        return f"theory is not available: {why_not}" if why_not else "theory is not available"
+        return f"theory is not available: {reason}" if reason else "theory is not available"
     rows = [_row(name, theory, item, len(known)) for name, item in known]
     rows = [row for row in rows if row.shown] or rows
     differing, agreeing, few = ([row for row in rows if row.agrees is verdict] for verdict in (False, True, None))

@@ -6,14 +6,14 @@ DIR is the folder of a sweep with the analysis "effusion". Runs that differ only
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
 from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.caveats import must_be_one_gas
 from idealgas.analysis.check import agreement
-from idealgas.analysis.result import Result
+from idealgas.analysis.result import Result, RunResult
 from idealgas.errors import UserError
 from idealgas.fields import INLINE, OMITTED
 from idealgas.log import Log
@@ -50,11 +50,10 @@ TINY = 1e-12
 
 
 @dataclass(frozen=True)
-class Effusion(Result):
+class Effusion(RunResult):
     """Flow of discs between two chambers through a gate after its opening.
 
     Attributes:
-        name: name of the run.
         density: number density if all discs were in the chamber that has more discs at first, 1/length².
         temperature: temperature, energy.
         time: (INSTANTS,), times.
@@ -66,7 +65,6 @@ class Effusion(Result):
             number of passages in both directions.
     """
 
-    name: Annotated[str, OMITTED]
     density: float
     temperature: float
     time: np.ndarray
@@ -84,6 +82,47 @@ class Effusions(Result):
 
     groups: Annotated[dict[str, tuple[Effusion, ...]], OMITTED]
     together: Annotated[dict[str, Estimate], INLINE]
+
+    def plain_tables(self) -> list[Table]:
+        """Return the table of the flux over density of each gas, length/time."""
+        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", self.together.items())]
+
+    def summary(self) -> str:
+        """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
+        first, *_ = self.together.values()
+        verdict = agreement(self.together.items(), "⟨v⟩/π of kinetic theory")
+        return f"The flux per density is {format_estimate(first)}; {verdict}."
+
+    def figure(self) -> "Figure":
+        """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
+        from idealgas.presentation.style import GREY, curve_style, panels
+
+        groups, together = self.groups, self.together
+        figure, (course, flux) = panels(2)
+        for k, (name, runs) in enumerate(groups.items()):
+            colour, line, marker = curve_style(k)
+            beyond, label = np.mean([run.beyond for run in runs], axis=0), name or "measured"
+            course.plot(runs[0].time, beyond, line, color=colour, label=label)
+            if laws := [run.expected for run in runs if run.expected is not None]:
+                law = np.mean(laws, axis=0)
+                course.plot(runs[0].time, law, "--", color=GREY, linewidth=0.8, label="kinetic theory")
+            n, speed = runs[0].density, together[name]
+            if speed.theory is None:
+                flux.axhline(n * speed.value, color=colour, linestyle=line, label=f"{name}: no theory")
+            else:
+                expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
+                flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3, label=label)
+        highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
+        ends = np.array([0.0, 1.1 * highest])
+        doubt = max(
+            (estimate.theory_error / estimate.theory for estimate in together.values() if estimate.theory), default=0.0
+        )
+        flux.theory(ends, ends, doubt * ends, "n⟨v⟩/π", GREY)
+        course.set(xlabel="t (time)", ylabel="discs beyond the slit (no unit)")
+        flux.set(xlabel="n⟨v⟩/π (1/(length time))", ylabel="flux (1/(length time))")
+        for ax in (course, flux):
+            ax.legend()
+        return figure
 
 
 class EffusionAnalysis(Analysis):
@@ -137,88 +176,35 @@ class EffusionAnalysis(Analysis):
         phi = density * math.pi * radius**2
         paths = slit / hard_discs.mean_free_path(2 * radius, density, phi)
         speed = float(beyond[-1] - beyond[0]) / (slit * drive)
-        why_not = _no_law(paths, phi)
-        error = math.sqrt((speed if why_not else expected) * slit * both) / (slit * drive)
+        no_law = _no_law(paths, phi)
+        error = math.sqrt((speed if no_law else expected) * slit * both) / (slit * drive)
         theory_error = expected * (LAW_OFF + LAW_OFF_PER_PATH * paths + CROWDING * phi)
         flux_over_density = Estimate(speed, error, math.inf, expected, theory_error)
         law = None
-        if why_not:
+        if no_law:
             flux_over_density = replace(flux_over_density, theory=None, theory_error=0.0)
         else:
             rate = expected * slit
             law = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
         if gate.others:
-            why_not += (f"The law assumes empty chambers; these contain {', '.join(gate.others)}.",)
+            no_law += (f"The law assumes empty chambers; these contain {', '.join(gate.others)}.",)
         density = number / inner
-        return Effusion(
-            str(log.path), density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=why_not
-        )
+        return Effusion(density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=no_law)
 
     @staticmethod
     def combine(results: Sequence[Effusion]) -> Effusions:
-        """Combine runs of the same name into groups and average their flux.
+        """Combine runs with the same label into groups and average their flux.
 
         Raises:
-            UserError: if runs of one name are of different gases.
+            UserError: if runs with one label are of different gases.
         """
-        groups = {
-            name: tuple(run for run in results if run.name == name) for name in dict.fromkeys(r.name for r in results)
-        }
+        groups: dict[str, tuple[Effusion, ...]] = {}
+        for run in results:
+            label = run.origin.label if run.origin else ""
+            groups[label] = (*groups.get(label, ()), run)
         for name, runs in groups.items():
             must_be_one_gas(runs, f"{name}: different gases under one name")
         return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
-
-    @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Effusion:
-        """Return the result of one point of a sweep, which is named by the values of its axes, `label`."""
-        time, beyond = np.array(found["time"]), np.array(found["beyond"])
-        law = None if found["expected"] is None else np.array(found["expected"])
-        speed = Estimate.from_dict(found["speed"])
-        return Effusion(label, found["density"], found["temperature"], time, beyond, law, speed)
-
-    @staticmethod
-    def tables(found: Effusions) -> list[Table]:
-        """Return the table of the flux over density of each gas, length/time."""
-        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", found.together.items())]
-
-    @staticmethod
-    def summary(found: Effusions) -> str:
-        """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
-        first, *_ = found.together.values()
-        verdict = agreement(found.together.items(), "⟨v⟩/π of kinetic theory")
-        return f"The flux per density is {format_estimate(first)}; {verdict}."
-
-    @staticmethod
-    def figure(found: Effusions) -> "Figure":
-        """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
-        from idealgas.presentation.style import GREY, curve_style, panels
-
-        groups, together = found.groups, found.together
-        figure, (course, flux) = panels(2)
-        for k, (name, runs) in enumerate(groups.items()):
-            colour, line, marker = curve_style(k)
-            beyond, label = np.mean([run.beyond for run in runs], axis=0), name or "measured"
-            course.plot(runs[0].time, beyond, line, color=colour, label=label)
-            if laws := [run.expected for run in runs if run.expected is not None]:
-                law = np.mean(laws, axis=0)
-                course.plot(runs[0].time, law, "--", color=GREY, linewidth=0.8, label="kinetic theory")
-            n, speed = runs[0].density, together[name]
-            if speed.theory is None:
-                flux.axhline(n * speed.value, color=colour, linestyle=line, label=f"{name}: no theory")
-            else:
-                expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
-                flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3, label=label)
-        highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
-        ends = np.array([0.0, 1.1 * highest])
-        doubt = max(
-            (estimate.theory_error / estimate.theory for estimate in together.values() if estimate.theory), default=0.0
-        )
-        flux.theory(ends, ends, doubt * ends, "n⟨v⟩/π", GREY)
-        course.set(xlabel="t (time)", ylabel="discs beyond the slit (no unit)")
-        flux.set(xlabel="n⟨v⟩/π (1/(length time))", ylabel="flux (1/(length time))")
-        for ax in (course, flux):
-            ax.legend()
-        return figure
 
 
 def _no_law(paths: float, phi: float) -> tuple[str, ...]:
@@ -280,7 +266,7 @@ def _slit(log: Log) -> Slit:
     (gate,) = gates
     across = int(gate.start[0] != gate.end[0])
     in_line = _in_line(log, gate, across)
-    if why := _why_not(log, gate, in_line, across):
+    if why := _obstacle(log, gate, in_line, across):
         raise UserError(f"{log.path}: effusion requires a slit in a wall, but {why}")
     low, high = _reach(gate, across)
     obstacles = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
@@ -288,7 +274,7 @@ def _slit(log: Log) -> Slit:
     return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, obstacles)
 
 
-def _why_not(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
+def _obstacle(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
     """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is one."""
     if gate.start[across] != gate.end[across] or not gate.is_straight:
         return "the gate is not along an axis"

@@ -80,6 +80,60 @@ class Entropy(Result):
     time: np.ndarray
     species: tuple[SpeciesEntropy, ...]
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the means in equilibrium and of the series."""
+        rows = [
+            (f"{entropy.species}: {name}", average)
+            for entropy in self.species
+            for name, average in (("H", entropy.mean_h), ("positions", entropy.mean_positions))
+            if average is not None
+        ]
+        notes = [
+            f"{entropy.species}: {entropy.cells[0]} × {entropy.cells[1]} cells"
+            for entropy in self.species
+            if entropy.positions is not None
+        ]
+        columns: dict[str, np.ndarray | None] = {"t": self.time}
+        for entropy in self.species:
+            columns |= {f"H of {entropy.species}": entropy.h, f"positions of {entropy.species}": entropy.positions}
+        return [
+            estimates("Per disc, once steady (no unit, k_B = 1)", rows, notes if rows else [*notes, "never steady"]),
+            time_series("Boltzmann's H and entropy of positions per disc", columns),
+        ]
+
+    def summary(self) -> str:
+        """Return H at the start and at the end, and whether it agrees with the Maxwell–Boltzmann distribution."""
+        first, rows = self.species[0], [(s.species, s.mean_h) for s in self.species if s.mean_h is not None]
+        change = f"H per disc of {first.species} goes from {first.h[0]:.4g} to {first.h[-1]:.4g}"
+        if not rows:
+            return f"{change} and is not steady."
+        verdict = agreement(rows, "the Maxwell–Boltzmann distribution")
+        return f"{change}; steady at {format_estimate(rows[0][1])}; {verdict}."
+
+    def figure(self) -> "Figure":
+        """Draw H and the entropy of the positions against time, with their equilibrium values dashed."""
+        from idealgas.presentation.style import curve_style, panels
+
+        has_positions = any(entropy.positions is not None for entropy in self.species)
+        figure, axes = panels(1 + has_positions)
+        for k, entropy in enumerate(self.species):
+            colour, line, _ = curve_style(k)
+            for ax, values, average in zip(
+                axes, (entropy.h, entropy.positions), (entropy.mean_h, entropy.mean_positions), strict=False
+            ):
+                if values is None:
+                    continue
+                ax.plot(self.time, values, line, color=colour, label=entropy.species)
+                if average is not None and average.theory is not None:
+                    ax.theory(None, average.theory, average.theory_error, "equilibrium, theory", colour)
+        axes[0].set_ylabel("Boltzmann's H per disc, ⟨ln f⟩ (no unit)")
+        if has_positions:
+            axes[1].set_ylabel("entropy of positions per disc (no unit)")
+        for ax in axes:
+            ax.time_axis()
+            ax.legend()
+        return figure
+
 
 class EntropyAnalysis(Analysis):
     """Entropy of velocities and positions."""
@@ -128,63 +182,6 @@ class EntropyAnalysis(Analysis):
             for s, kind in enumerate(species)
         )
         return Entropy(time, entropies)
-
-    @staticmethod
-    def tables(result: Entropy) -> list[Table]:
-        """Return the tables of the means in equilibrium and of the series."""
-        rows = [
-            (f"{entropy.species}: {name}", average)
-            for entropy in result.species
-            for name, average in (("H", entropy.mean_h), ("positions", entropy.mean_positions))
-            if average is not None
-        ]
-        notes = [
-            f"{entropy.species}: {entropy.cells[0]} × {entropy.cells[1]} cells"
-            for entropy in result.species
-            if entropy.positions is not None
-        ]
-        columns: dict[str, np.ndarray | None] = {"t": result.time}
-        for entropy in result.species:
-            columns |= {f"H of {entropy.species}": entropy.h, f"positions of {entropy.species}": entropy.positions}
-        return [
-            estimates("Per disc, once steady (no unit, k_B = 1)", rows, notes if rows else [*notes, "never steady"]),
-            time_series("Boltzmann's H and entropy of positions per disc", columns),
-        ]
-
-    @staticmethod
-    def summary(result: Entropy) -> str:
-        """Return H at the start and at the end, and whether it agrees with the Maxwell–Boltzmann distribution."""
-        first, rows = result.species[0], [(s.species, s.mean_h) for s in result.species if s.mean_h is not None]
-        change = f"H per disc of {first.species} goes from {first.h[0]:.4g} to {first.h[-1]:.4g}"
-        if not rows:
-            return f"{change} and is not steady."
-        verdict = agreement(rows, "the Maxwell–Boltzmann distribution")
-        return f"{change}; steady at {format_estimate(rows[0][1])}; {verdict}."
-
-    @staticmethod
-    def figure(result: Entropy) -> "Figure":
-        """Draw H and the entropy of the positions against time, with their equilibrium values dashed."""
-        from idealgas.presentation.style import curve_style, panels
-
-        has_positions = any(entropy.positions is not None for entropy in result.species)
-        figure, axes = panels(1 + has_positions)
-        for k, entropy in enumerate(result.species):
-            colour, line, _ = curve_style(k)
-            for ax, values, average in zip(
-                axes, (entropy.h, entropy.positions), (entropy.mean_h, entropy.mean_positions), strict=False
-            ):
-                if values is None:
-                    continue
-                ax.plot(result.time, values, line, color=colour, label=entropy.species)
-                if average is not None and average.theory is not None:
-                    ax.theory(None, average.theory, average.theory_error, "equilibrium, theory", colour)
-        axes[0].set_ylabel("Boltzmann's H per disc, ⟨ln f⟩ (no unit)")
-        if has_positions:
-            axes[1].set_ylabel("entropy of positions per disc (no unit)")
-        for ax in axes:
-            ax.time_axis()
-            ax.legend()
-        return figure
 
 
 def neighbour_entropy(points: np.ndarray) -> float:

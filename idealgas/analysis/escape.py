@@ -65,6 +65,41 @@ class Escape(Result):
     per_path: Estimate | None
     mean_time: Estimate
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the rates and of the number of discs left."""
+        rows = {"escapes per path (1/length)": self.per_path, "mean escape time (time)": self.mean_time}
+        rates = [(name, estimate) for name, estimate in rows.items() if estimate is not None]
+        notes = [f"{self.escaped} of {self.discs} discs escaped"]
+        series = {
+            "t": self.time,
+            "discs in the gas": self.left,
+            "theory": self.expected,
+            "± (s.d.)": self.spread,
+        }
+        return [estimates("Escape", rates, notes), time_series("Number of discs in the gas", series)]
+
+    def summary(self) -> str:
+        """Return the number of discs that escaped, and whether their rate agrees with theory."""
+        estimate = self.per_path or self.mean_time
+        quantity = "escapes per length of path" if self.per_path else "time per escape"
+        verdict = agreement([(quantity, estimate)])
+        return f"{self.escaped} of {self.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
+
+    def figure(self) -> "Figure":
+        """Draw the number of discs in the gas with its theory, on a logarithmic scale if less than a tenth is left."""
+        from idealgas.presentation.style import COLOURS, panels
+
+        figure, (ax,) = panels(1)
+        ax.step(self.time, self.left, where="post", color=COLOURS[0], label="discs in the gas")
+        if self.expected is not None:
+            ax.theory(self.time, self.expected, self.spread, "theory")
+        if 0 < self.left[-1] < self.discs / 10:
+            ax.set_yscale("log")
+        ax.set_ylabel("discs in the gas (no unit)")
+        ax.time_axis()
+        ax.legend()
+        return figure
+
 
 class EscapeAnalysis(Analysis):
     """Escape through holes."""
@@ -115,44 +150,6 @@ class EscapeAnalysis(Analysis):
         mean_time = Estimate(spent / escaped, spent / escaped**1.5, math.inf, *parts_of(expected_time))
         left = len(speed) - at.searchsorted(time, "right")
         return Escape(len(speed), escaped, time, left, expected, spread, per_path, mean_time, caveats=caveats)
-
-    @staticmethod
-    def tables(result: Escape) -> list[Table]:
-        """Return the tables of the rates and of the number of discs left."""
-        rows = {"escapes per path (1/length)": result.per_path, "mean escape time (time)": result.mean_time}
-        rates = [(name, estimate) for name, estimate in rows.items() if estimate is not None]
-        notes = [f"{result.escaped} of {result.discs} discs escaped"]
-        series = {
-            "t": result.time,
-            "discs in the gas": result.left,
-            "theory": result.expected,
-            "± (s.d.)": result.spread,
-        }
-        return [estimates("Escape", rates, notes), time_series("Number of discs in the gas", series)]
-
-    @staticmethod
-    def summary(result: Escape) -> str:
-        """Return the number of discs that escaped, and whether their rate agrees with theory."""
-        estimate = result.per_path or result.mean_time
-        quantity = "escapes per length of path" if result.per_path else "time per escape"
-        verdict = agreement([(quantity, estimate)])
-        return f"{result.escaped} of {result.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
-
-    @staticmethod
-    def figure(result: Escape) -> "Figure":
-        """Draw the number of discs in the gas with its theory, on a logarithmic scale if less than a tenth is left."""
-        from idealgas.presentation.style import COLOURS, panels
-
-        figure, (ax,) = panels(1)
-        ax.step(result.time, result.left, where="post", color=COLOURS[0], label="discs in the gas")
-        if result.expected is not None:
-            ax.theory(result.time, result.expected, result.spread, "theory")
-        if 0 < result.left[-1] < result.discs / 10:
-            ax.set_yscale("log")
-        ax.set_ylabel("discs in the gas (no unit)")
-        ax.time_axis()
-        ax.legend()
-        return figure
 
 
 def _flights(

@@ -72,6 +72,59 @@ class Lyapunov(Result):
         """Return the time in which a deviation in the last of `digits` digits grows to the size of the motion."""
         return digits * math.log(10) / self.exponents[0].value
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
+        exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(self.exponents, 1)]
+        notes = [str(self.window), "theory is not available at any density; the largest exponent grows with N"]
+        chaos = [
+            ("digits lost per collision of a disc (no unit)", self.digits),
+            ("fraction of the discs in the leading deviation (no unit)", self.localisation),
+        ]
+        if self.entropy is not None:
+            chaos.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", self.entropy))
+            notes.append(f"λ and -λ in pairs: within {self.pairing:.1g}")
+            notes.append(f"{self.zeros} exponents are 0 by conservation laws: within {self.largest_zero:.1g}")
+        rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g")) for digits in PRECISIONS]
+        return [
+            replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
+            estimates(f"Chaos; mean free time {self.mean_free_time:.4g}", chaos),
+            Table("Time after which all digits are lost", ("numbers of", "time"), rows),
+        ]
+
+    def summary(self) -> str:
+        """Return the growth rate of deviations and the loss of digits, for which theory is not available."""
+        return (
+            f"Small deviations grow at the rate λ = {format_estimate(self.exponents[0])}: a collision of a disc "
+            f"takes {format_estimate(self.digits)} digits, and float64 has lost its 16 digits after t = "
+            f"{self.lifetime(16):.3g}; theory is not available."
+        )
+
+    def figure(self) -> "Figure":
+        """Draw the growth of the leading deviation, and all exponents if there are several."""
+        from idealgas.presentation.style import BLACK, COLOURS, GREY, panels
+
+        figure, axes = panels(1 + (len(self.exponents) > 1))
+        largest = self.exponents[0].value
+        shown = self.time <= 2 * self.lifetime(32) if self.time[-1] > 2 * self.lifetime(32) else slice(None)
+        time, digits = self.time[shown], self.growth[shown] / math.log(10)
+        axes[0].plot(time, digits, color=COLOURS[0], label="leading deviation")
+        axes[0].plot(time, largest * time / math.log(10), "--", color=BLACK, label=f"λ = {largest:.4g}")
+        for lost in PRECISIONS:
+            if lost < digits[-1]:
+                axes[0].axhline(lost, color=GREY, linewidth=0.8)
+        axes[0].set(xlabel="time", ylabel="growth (decimal digits)")
+        axes[0].legend()
+        for ax in axes[1:]:
+            ax.plot(
+                range(1, len(self.exponents) + 1),
+                [estimate.value for estimate in self.exponents],
+                ".",
+                color=COLOURS[0],
+            )
+            ax.axhline(0, color=GREY, linewidth=0.8)
+            ax.set(xlabel="number of the exponent", ylabel="exponent (1/time)")
+        return figure
+
 
 class LyapunovAnalysis(Analysis):
     """Lyapunov exponents of smooth elastic discs in a box, by the tangent map of each flight and collision."""
@@ -142,62 +195,6 @@ class LyapunovAnalysis(Analysis):
             durations.cumsum(),
             logs[:, 0].cumsum(),
         )
-
-    @staticmethod
-    def tables(result: Lyapunov) -> list[Table]:
-        """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
-        exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(result.exponents, 1)]
-        notes = [str(result.window), "theory is not available at any density; the largest exponent grows with N"]
-        chaos = [
-            ("digits lost per collision of a disc (no unit)", result.digits),
-            ("fraction of the discs in the leading deviation (no unit)", result.localisation),
-        ]
-        if result.entropy is not None:
-            chaos.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", result.entropy))
-            notes.append(f"λ and -λ in pairs: within {result.pairing:.1g}")
-            notes.append(f"{result.zeros} exponents are 0 by conservation laws: within {result.largest_zero:.1g}")
-        rows = [(f"{digits} digits", Number(result.lifetime(digits), ".3g")) for digits in PRECISIONS]
-        return [
-            replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
-            estimates(f"Chaos; mean free time {result.mean_free_time:.4g}", chaos),
-            Table("Time after which all digits are lost", ("numbers of", "time"), rows),
-        ]
-
-    @staticmethod
-    def summary(result: Lyapunov) -> str:
-        """Return the growth rate of deviations and the loss of digits, for which theory is not available."""
-        return (
-            f"Small deviations grow at the rate λ = {format_estimate(result.exponents[0])}: a collision of a disc "
-            f"takes {format_estimate(result.digits)} digits, and float64 has lost its 16 digits after t = "
-            f"{result.lifetime(16):.3g}; theory is not available."
-        )
-
-    @staticmethod
-    def figure(result: Lyapunov) -> "Figure":
-        """Draw the growth of the leading deviation, and all exponents if there are several."""
-        from idealgas.presentation.style import BLACK, COLOURS, GREY, panels
-
-        figure, axes = panels(1 + (len(result.exponents) > 1))
-        largest = result.exponents[0].value
-        shown = result.time <= 2 * result.lifetime(32) if result.time[-1] > 2 * result.lifetime(32) else slice(None)
-        time, digits = result.time[shown], result.growth[shown] / math.log(10)
-        axes[0].plot(time, digits, color=COLOURS[0], label="leading deviation")
-        axes[0].plot(time, largest * time / math.log(10), "--", color=BLACK, label=f"λ = {largest:.4g}")
-        for lost in PRECISIONS:
-            if lost < digits[-1]:
-                axes[0].axhline(lost, color=GREY, linewidth=0.8)
-        axes[0].set(xlabel="time", ylabel="growth (decimal digits)")
-        axes[0].legend()
-        for ax in axes[1:]:
-            ax.plot(
-                range(1, len(result.exponents) + 1),
-                [estimate.value for estimate in result.exponents],
-                ".",
-                color=COLOURS[0],
-            )
-            ax.axhline(0, color=GREY, linewidth=0.8)
-            ax.set(xlabel="number of the exponent", ylabel="exponent (1/time)")
-        return figure
 
 
 def _scaled(estimate: Estimate, factor: float) -> Estimate:

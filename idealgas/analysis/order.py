@@ -97,6 +97,65 @@ class Order(Result):
     structure: Structure | None
     compressibility: float | None
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of hexagonal order, its correlation, and the structure factor of a periodic box."""
+        rows = [
+            ("|ψ₆| of a disc, mean", self.local),
+            ("|Ψ₆|, of all discs together", self.whole),
+            ("N |Ψ₆|²", self.square),
+            ("share of discs with six neighbours", self.hexagons),
+        ]
+        notes = [f"{self.window}, {self.frames} frames"]
+        correlation = self.distance, self.correlation, self.correlation_error
+        functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
+        if (structure := self.structure) is None:
+            notes.append("S(k) and positional order: in a periodic box only")
+        else:
+            rows.append(("S/N at the highest peak (positional order, squared)", structure.positional))
+            notes.append(f"highest peak of S at k = ({structure.peak[0]:.5g}, {structure.peak[1]:.5g})")
+            title = "Structure factor, all directions (no unit)"
+            functions.append(_function(title, "k (1/length)", structure.k, structure.value, structure.error))
+        if self.compressibility is not None:
+            notes.append(f"S(k) at small k by theory: {self.compressibility:.4g} (nT times the compressibility)")
+        return [estimates("Order (no unit)", rows, notes), *functions]
+
+    def summary(self) -> str:
+        """Return the hexagonal order of all discs, from 0 to 1, for which theory is not available."""
+        return (
+            f"|Ψ₆| of all discs is {format_estimate(self.whole)} (0 without order, 1 in a perfect crystal), and "
+            f"{100 * self.hexagons.value:.0f} % have six neighbours; theory is not available for either."
+        )
+
+    def figure(self) -> "Figure":
+        """Draw |Ψ₆| against time, g₆ against distance and, in a periodic box, S against wave number and wave vector."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        figure, axes = panels(1 if self.structure is None else 2, 2)
+        series, correlation = axes[:2]
+        series.plot(self.time, self.series, color=COLOURS[0], label="measured")
+        series.axvspan(self.window.start, self.window.end, color=GREY, alpha=0.12, label="window of the averages")
+        series.time_axis()
+        series.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
+        x, y, error = self.distance, self.correlation, self.correlation_error
+        correlation.errorbar(x, y, error, fmt=".", ms=3, color=COLOURS[0], label="measured")
+        correlation.axhline(self.whole.value**2, color=GREY, linewidth=0.9, label="|Ψ₆|² (no correlation left)")
+        correlation.set(
+            xlabel="r (length)", ylabel="g₆(r) (no unit)", ylim=(None, None if self.whole.value < 0.5 else 1)
+        )
+        if self.structure is not None:
+            rings, vectors = axes[2:]
+            k, value, error = self.structure.k, self.structure.value, self.structure.error
+            rings.errorbar(k, value, error, fmt=".", ms=4, color=COLOURS[0], label="mean over directions")
+            if (limit := self.compressibility) is not None:
+                rings.axhline(
+                    limit, color=GREY, linestyle="--", linewidth=0.9, label="theory for small k: compressibility"
+                )
+            rings.set(yscale="log", xlabel="k (1/length)", ylabel="S(k) (no unit)", xlim=(0, None))
+            _draw_vectors(vectors, self.structure)
+        for ax in axes[:3]:
+            ax.legend()
+        return figure
+
 
 class OrderAnalysis(Analysis):
     """Order of the discs of one log."""
@@ -157,68 +216,6 @@ class OrderAnalysis(Analysis):
             compressibility=_compressibility(log),
             caveats=unsteady("|Ψ₆| of all discs", whole[first:], times[first:]),
         )
-
-    @staticmethod
-    def tables(result: Order) -> list[Table]:
-        """Return the tables of hexagonal order, its correlation, and the structure factor of a periodic box."""
-        rows = [
-            ("|ψ₆| of a disc, mean", result.local),
-            ("|Ψ₆|, of all discs together", result.whole),
-            ("N |Ψ₆|²", result.square),
-            ("share of discs with six neighbours", result.hexagons),
-        ]
-        notes = [f"{result.window}, {result.frames} frames"]
-        correlation = result.distance, result.correlation, result.correlation_error
-        functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
-        if (structure := result.structure) is None:
-            notes.append("S(k) and positional order: in a periodic box only")
-        else:
-            rows.append(("S/N at the highest peak (positional order, squared)", structure.positional))
-            notes.append(f"highest peak of S at k = ({structure.peak[0]:.5g}, {structure.peak[1]:.5g})")
-            title = "Structure factor, all directions (no unit)"
-            functions.append(_function(title, "k (1/length)", structure.k, structure.value, structure.error))
-        if result.compressibility is not None:
-            notes.append(f"S(k) at small k by theory: {result.compressibility:.4g} (nT times the compressibility)")
-        return [estimates("Order (no unit)", rows, notes), *functions]
-
-    @staticmethod
-    def summary(result: Order) -> str:
-        """Return the hexagonal order of all discs, from 0 to 1, for which theory is not available."""
-        return (
-            f"|Ψ₆| of all discs is {format_estimate(result.whole)} (0 without order, 1 in a perfect crystal), and "
-            f"{100 * result.hexagons.value:.0f} % have six neighbours; theory is not available for either."
-        )
-
-    @staticmethod
-    def figure(result: Order) -> "Figure":
-        """Draw |Ψ₆| against time, g₆ against distance and, in a periodic box, S against wave number and wave vector."""
-        from idealgas.presentation.style import COLOURS, GREY, panels
-
-        figure, axes = panels(1 if result.structure is None else 2, 2)
-        series, correlation = axes[:2]
-        series.plot(result.time, result.series, color=COLOURS[0], label="measured")
-        series.axvspan(result.window.start, result.window.end, color=GREY, alpha=0.12, label="window of the averages")
-        series.time_axis()
-        series.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
-        x, y, error = result.distance, result.correlation, result.correlation_error
-        correlation.errorbar(x, y, error, fmt=".", ms=3, color=COLOURS[0], label="measured")
-        correlation.axhline(result.whole.value**2, color=GREY, linewidth=0.9, label="|Ψ₆|² (no correlation left)")
-        correlation.set(
-            xlabel="r (length)", ylabel="g₆(r) (no unit)", ylim=(None, None if result.whole.value < 0.5 else 1)
-        )
-        if result.structure is not None:
-            rings, vectors = axes[2:]
-            k, value, error = result.structure.k, result.structure.value, result.structure.error
-            rings.errorbar(k, value, error, fmt=".", ms=4, color=COLOURS[0], label="mean over directions")
-            if (limit := result.compressibility) is not None:
-                rings.axhline(
-                    limit, color=GREY, linestyle="--", linewidth=0.9, label="theory for small k: compressibility"
-                )
-            rings.set(yscale="log", xlabel="k (1/length)", ylabel="S(k) (no unit)", xlim=(0, None))
-            _draw_vectors(vectors, result.structure)
-        for ax in axes[:3]:
-            ax.legend()
-        return figure
 
 
 def _function(title: str, of: str, *columns: np.ndarray) -> Table:

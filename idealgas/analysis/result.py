@@ -1,8 +1,9 @@
-"""What the results of all analyses have in common: caveats, the run, tables and a figure."""
+"""Base of the results of all analyses, which show themselves: caveats, the run, headline, tables and figures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from idealgas.errors import UserError
 from idealgas.fields import OMITTED, as_dict
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ class Origin:
         mixture: whether radii differ.
         seed: seed of the random numbers of the run; None if it draws none.
         title: title of its scene, or else its path.
+        label: its name among several runs: the path of its log, or the values of the axes of a sweep.
     """
 
     path: str
@@ -34,6 +36,7 @@ class Origin:
     mixture: bool
     seed: int | None
     title: str
+    label: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,21 +57,60 @@ class Result:
     origin: Annotated[Origin | None, OMITTED] = None
     title: Annotated[str, OMITTED] = ""
 
+    def plain_tables(self) -> "list[Table]":
+        """Return the tables of the result, without its caveats."""
+        raise NotImplementedError
+
+    def figure(self) -> "Figure":
+        """Draw the result, without a title."""
+        raise NotImplementedError
+
+    def summary(self) -> str:
+        """Return the headline: the result, and whether it agrees with theory."""
+        return ""
+
+    def text(self) -> str:
+        """Return a figure in characters for the terminal; empty if there is none."""
+        return ""
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain values by name, ready for JSON."""
         return as_dict(self)
 
     def tables(self) -> "list[Table]":
-        """Return the tables that the command of the analysis prints."""
-        return self.analysis.shown_tables(self._combined())
+        """Return the tables that the command of the analysis prints; the first table has a note for each caveat."""
+        first, *remaining = self.plain_tables()
+        notes = (*(f"caveat: {sentence}" for sentence in self.caveats), *first.notes)
+        return [replace(first, notes=notes), *remaining]
 
     def plot(self) -> "Figure":
         """Return the figure of `--plot`: a figure of matplotlib, which notebooks display and `savefig` writes."""
-        return self.analysis.titled_figure(self._combined())
+        return self._titled(self.figure())
 
-    def summary(self) -> str:
-        """Return the headline: the result, and whether it agrees with theory."""
-        return self.analysis.summary(self._combined())
+    def plot_errors(self) -> "Figure":
+        """Return the figure of `--plot-errors`: the error of each estimate against the length of blocks of time.
+
+        Raises:
+            UserError: if no error was estimated from blocks.
+        """
+        from idealgas.presentation.style import block_figure
+
+        names: dict[tuple[tuple[float, float], ...], str] = {}
+        for table in self.tables():
+            for row, estimate in zip(table.rows, table.estimates, strict=False):
+                names.setdefault(estimate.blocks, str(row[0]))
+        names.pop((), None)
+        if not names:
+            raise UserError(f"{self.analysis.key}: no error bar was estimated from blocks of time")
+        window = getattr(self, "window", None)
+        length = (window.duration, "time") if window else (1.0, "share of the window")
+        return self._titled(block_figure(names, *length))
+
+    def _titled(self, figure: "Figure") -> "Figure":
+        """Return a figure with the names of the run and the analysis above it."""
+        from idealgas.presentation.style import add_title
+
+        return add_title(figure, f"{self.title}: {self.analysis.key}")
 
     def __str__(self) -> str:
         """Return headline and tables as text."""
@@ -82,6 +124,21 @@ class Result:
 
         return f"<p><b>{escape(self.summary())}</b></p>{html_tables(self.tables())}"
 
-    def _combined(self) -> "Result":
-        """Return the result in the form for tables and figure; without a single origin it is combined already."""
-        return self if self.origin is None else self.analysis.combined([self])
+
+class RunResult(Result):
+    """Base of the results of one run that are shown as a combination of several runs is."""
+
+    def tables(self) -> "list[Table]":
+        """Return the tables of this run alone."""
+        return self._alone().tables()
+
+    def figure(self) -> "Figure":
+        """Draw this run alone."""
+        return self._alone().figure()
+
+    def summary(self) -> str:
+        """Return the headline of this run alone."""
+        return self._alone().summary()
+
+    def _alone(self) -> Result:
+        return self.analysis.combined([self])

@@ -76,6 +76,57 @@ class ShearFlow(Result):
     temperatures: Annotated[np.ndarray, OMITTED]
     viscosities: Annotated[np.ndarray, OMITTED]
 
+    def plain_tables(self) -> list[Table]:
+        """Return the table of viscosity, temperature, pressure, normal stress and flow."""
+        notes = (
+            f"{self.window}; shear rate {self.rate:.6g}, {self.reduced_rate:.3g} of the collision rate",
+            "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
+        )
+        return [estimates("Shear flow, velocities relative to the flow", self._rows(), notes)]
+
+    def summary(self) -> str:
+        """Return viscosity and temperature, and whether the viscosity agrees with theory."""
+        viscosity = f"η = {format_estimate(self.viscosity)} at T = {format_estimate(self.temperature)}"
+        why = "it is known only for equal smooth elastic discs, without a heat bath or with a weak one"
+        return f"{viscosity}; {agreement([('viscosity', self.viscosity)], 'Enskog', why)}."
+
+    def figure(self) -> "Figure":
+        """Draw viscosity and temperature against time, and the profile of the flow."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        figure, (above, middle, below) = panels(3)
+        viscosity, edges = self.viscosity, self.window.edges
+        for ax, values, average, name in (
+            (above, self.viscosities, viscosity, "viscosity η (mass/time)"),
+            (middle, self.temperatures, self.temperature, "temperature T (energy)"),
+        ):
+            ax.stairs(values, edges, baseline=None, color=COLOURS[0], linewidth=0.9, label="blocks of time")
+            ax.plot([self.window.start, self.window.end], [average.value] * 2, color=COLOURS[1], label="mean")
+            if average.theory is not None:
+                ax.theory(None, average.theory, average.theory_error, "Enskog")
+            if self.window.first:
+                ax.axvspan(edges[0], self.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
+            ax.time_axis()
+            ax.set_ylabel(name)
+            ax.legend()
+        below.plot(self.velocity, self.y, "o", ms=4, color=COLOURS[0], label="measured")
+        ends = np.array([0.0, 2 * self.y.mean()])
+        below.theory(flow_at(ends, self.rate, ends[1]), ends, 0.0, "rate · (y − height/2)")
+        below.set_xlabel("mean velocity along x (length/time)")
+        below.set_ylabel("y (length), against the flow")
+        below.legend()
+        return figure
+
+    def _rows(self) -> list[tuple[str, Estimate]]:
+        """Return the name and the estimate of each quantity."""
+        return [
+            ("temperature T (energy)", self.temperature),
+            ("viscosity η (mass/time)", self.viscosity),
+            ("pressure (energy/length²)", self.pressure),
+            ("(P_xx − P_yy)/P (no unit)", self.normal_stress),
+            ("slope of the flow over the rate (no unit)", self.slope),
+        ]
+
 
 class Carried:
     """Momentum that discs carry relative to the flow, and the correlation of their velocity with y.
@@ -253,17 +304,6 @@ def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: 
     return tuple(sentences)
 
 
-def _rows(result: ShearFlow) -> list[tuple[str, Estimate]]:
-    """Return the name and the estimate of each quantity."""
-    return [
-        ("temperature T (energy)", result.temperature),
-        ("viscosity η (mass/time)", result.viscosity),
-        ("pressure (energy/length²)", result.pressure),
-        ("(P_xx − P_yy)/P (no unit)", result.normal_stress),
-        ("slope of the flow over the rate (no unit)", result.slope),
-    ]
-
-
 class ShearAnalysis(Analysis):
     """Viscosity of a gas in shear flow."""
 
@@ -275,47 +315,3 @@ class ShearAnalysis(Analysis):
     sections = (Section("Shear flow", "Viscosity and temperature in time, and mean velocity against height"),)
 
     measure = staticmethod(shear)
-
-    @staticmethod
-    def tables(result: ShearFlow) -> list[Table]:
-        """Return the table of viscosity, temperature, pressure, normal stress and flow."""
-        notes = (
-            f"{result.window}; shear rate {result.rate:.6g}, {result.reduced_rate:.3g} of the collision rate",
-            "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
-        )
-        return [estimates("Shear flow, velocities relative to the flow", _rows(result), notes)]
-
-    @staticmethod
-    def summary(result: ShearFlow) -> str:
-        """Return viscosity and temperature, and whether the viscosity agrees with theory."""
-        viscosity = f"η = {format_estimate(result.viscosity)} at T = {format_estimate(result.temperature)}"
-        why = "it is known only for equal smooth elastic discs, without a heat bath or with a weak one"
-        return f"{viscosity}; {agreement([('viscosity', result.viscosity)], 'Enskog', why)}."
-
-    @staticmethod
-    def figure(result: ShearFlow) -> "Figure":
-        """Draw viscosity and temperature against time, and the profile of the flow."""
-        from idealgas.presentation.style import COLOURS, GREY, panels
-
-        figure, (above, middle, below) = panels(3)
-        viscosity, edges = result.viscosity, result.window.edges
-        for ax, values, average, name in (
-            (above, result.viscosities, viscosity, "viscosity η (mass/time)"),
-            (middle, result.temperatures, result.temperature, "temperature T (energy)"),
-        ):
-            ax.stairs(values, edges, baseline=None, color=COLOURS[0], linewidth=0.9, label="blocks of time")
-            ax.plot([result.window.start, result.window.end], [average.value] * 2, color=COLOURS[1], label="mean")
-            if average.theory is not None:
-                ax.theory(None, average.theory, average.theory_error, "Enskog")
-            if result.window.first:
-                ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
-            ax.time_axis()
-            ax.set_ylabel(name)
-            ax.legend()
-        below.plot(result.velocity, result.y, "o", ms=4, color=COLOURS[0], label="measured")
-        ends = np.array([0.0, 2 * result.y.mean()])
-        below.theory(flow_at(ends, result.rate, ends[1]), ends, 0.0, "rate · (y − height/2)")
-        below.set_xlabel("mean velocity along x (length/time)")
-        below.set_ylabel("y (length), against the flow")
-        below.legend()
-        return figure

@@ -108,6 +108,60 @@ class Sound(Result):
     frames: int
     waves: tuple[SoundWave, ...]
 
+    def plain_tables(self) -> list[Table]:
+        """Return the table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
+        tables = [
+            estimates(
+                f"Waves along {wave.axes}, {wave.wavelength:.4g} long",
+                [
+                    ("speed of sound (length/time)", wave.speed),
+                    ("damping of sound Γ (length²/time)", wave.damping),
+                    ("thermal diffusivity (length²/time)", wave.spreading),
+                    ("adiabatic exponent γ (no unit)", wave.exponent),
+                ],
+            )
+            for wave in self.waves
+        ]
+        notes = (
+            f"{self.window}, {self.frames} instants",
+            "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal "
+            "conductivity",
+        )
+        return [replace(tables[0], notes=notes), *tables[1:]]
+
+    def summary(self) -> str:
+        """Return speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
+        rows = [
+            (f"{name} along {wave.axes}", estimate)
+            for wave in self.waves
+            for name, estimate in (("speed", wave.speed), ("γ", wave.exponent))
+        ]
+        (_, speed), (_, exponent), *_ = rows
+        measured = (
+            f"The speed of sound is {format_estimate(speed)}, γ is {format_estimate(exponent)} (2 for an ideal gas)"
+        )
+        return f"{measured}; {agreement(rows, 'hydrodynamics')}."
+
+    def figure(self) -> "Figure":
+        """Draw the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        figure, axes = panels(len(self.waves))
+        for ax, wave in zip(axes, self.waves, strict=True):
+            every = max(len(wave.lag) // 60, 1)
+            lag, values_at_lags, error = (values[::every] for values in (wave.lag, wave.correlation, wave.error))
+            ax.errorbar(lag, values_at_lags, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="measured")
+            fine = np.linspace(0, wave.lag[-1], 500)
+            ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
+            if wave.theory is not None:
+                ax.theory(fine, wave.theory.at(fine), _doubt(fine, wave), "hydrodynamics by theory", GREY)
+            ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
+            ax.set_xlabel("t (time)")
+            wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
+            ax.set_ylabel(f"⟨ρ(t) ρ*(0)⟩/N (no unit), {wave_in_words}")
+            ax.legend()
+        return figure
+
 
 class SoundAnalysis(Analysis):
     """Sound in a gas of one species."""
@@ -151,63 +205,6 @@ class SoundAnalysis(Analysis):
             frames += len(times)
         caveats = [sentence for wave in waves for sentence in _caveats(log, window, wave)]
         return Sound(window, frames, tuple(waves), caveats=(*narrow(log), *caveats))
-
-    @staticmethod
-    def tables(result: Sound) -> list[Table]:
-        """Return the table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
-        tables = [
-            estimates(
-                f"Waves along {wave.axes}, {wave.wavelength:.4g} long",
-                [
-                    ("speed of sound (length/time)", wave.speed),
-                    ("damping of sound Γ (length²/time)", wave.damping),
-                    ("thermal diffusivity (length²/time)", wave.spreading),
-                    ("adiabatic exponent γ (no unit)", wave.exponent),
-                ],
-            )
-            for wave in result.waves
-        ]
-        notes = (
-            f"{result.window}, {result.frames} instants",
-            "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal "
-            "conductivity",
-        )
-        return [replace(tables[0], notes=notes), *tables[1:]]
-
-    @staticmethod
-    def summary(result: Sound) -> str:
-        """Return speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
-        rows = [
-            (f"{name} along {wave.axes}", estimate)
-            for wave in result.waves
-            for name, estimate in (("speed", wave.speed), ("γ", wave.exponent))
-        ]
-        (_, speed), (_, exponent), *_ = rows
-        measured = (
-            f"The speed of sound is {format_estimate(speed)}, γ is {format_estimate(exponent)} (2 for an ideal gas)"
-        )
-        return f"{measured}; {agreement(rows, 'hydrodynamics')}."
-
-    @staticmethod
-    def figure(result: Sound) -> "Figure":
-        """Draw the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
-        from idealgas.presentation.style import COLOURS, GREY, panels
-
-        figure, axes = panels(len(result.waves))
-        for ax, wave in zip(axes, result.waves, strict=True):
-            every = max(len(wave.lag) // 60, 1)
-            lag, values_at_lags, error = (values[::every] for values in (wave.lag, wave.correlation, wave.error))
-            ax.errorbar(lag, values_at_lags, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="measured")
-            fine = np.linspace(0, wave.lag[-1], 500)
-            ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
-            if wave.theory is not None:
-                ax.theory(fine, wave.theory.at(fine), _doubt(fine, wave), "hydrodynamics by theory", GREY)
-            ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
-            ax.set_xlabel("t (time)")
-            wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
-            ax.set_ylabel(f"⟨ρ(t) ρ*(0)⟩/N (no unit), {wave_in_words}")
-            ax.legend()
-        return figure
 
 
 def _doubt(time: np.ndarray, wave: SoundWave) -> np.ndarray:

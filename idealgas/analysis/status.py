@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from idealgas.analysis.caveats import log_caveats
-from idealgas.analysis.pressure.measure import PAIRS, pressure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.errors import UserError
 from idealgas.log import DamageError, Log
 from idealgas.statistics.estimates import Estimate, ks_distance

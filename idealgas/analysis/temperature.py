@@ -83,6 +83,53 @@ class Temperature(Result):
         """Times between the blocks that were read, (B + 1,)."""
         return self.window.edges
 
+    def plain_tables(self) -> list[Table]:
+        """Return the table with the temperature of each direction of motion of each species."""
+        notes = (str(self.window), f"theory: {self.law or 'none for this scene'}")
+        return [estimates("Temperatures (energy, k_B = 1)", self._rows(), notes)]
+
+    def summary(self) -> str:
+        """Return the kinetic energy per disc and whether all temperatures agree with equipartition."""
+        energy = f"The kinetic energy per disc is {format_estimate(self.species[-1].both)} (k_B = 1)"
+        return f"{energy}; {agreement(self._rows(), 'equipartition')}."
+
+    def figure(self) -> "Figure":
+        """Draw the temperature of each species, or along x and y, against time; times before the window are shaded."""
+        from idealgas.presentation.style import GREY, curve_style, panels
+
+        figure, (ax,) = panels(1)
+        edges = self.window.edges
+        if len(self.species) == 1:
+            x, y = self.species[0].directions.T
+            curves = {"m vx²": (x, self.species[0].x), "m vy²": (y, self.species[0].y)}
+        else:
+            curves = {f"{entry.species} (N = {entry.number})": (entry.history, entry.both) for entry in self.species}
+        for k, (name, (values, _)) in enumerate(curves.items()):
+            colour, line, _ = curve_style(k)
+            ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
+        theories = sorted(
+            {(estimate.theory, estimate.theory_error) for _, estimate in curves.values() if estimate.theory is not None}
+        )
+        for k, (theory, error) in enumerate(theories):
+            ax.theory(None, theory, error, "theory" if k == 0 else None)
+        if self.window.first:
+            ax.axvspan(edges[0], self.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
+        ax.time_axis()
+        ax.set_ylabel("temperature (energy, k_B = 1)")
+        low, high = ax.get_ylim()
+        middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
+        ax.set_ylim(middle - reach, middle + reach)
+        ax.legend()
+        return figure
+
+    def _rows(self) -> list[tuple[str, Estimate]]:
+        """Return the name and the temperature of each direction of motion of each species."""
+        return [
+            (f"{entry.species}: {direction}", estimate)
+            for entry in self.species
+            for direction, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
+        ]
+
 
 def temperature(
     log: Log, start: float | None = None, end: float | None = None, progress: Callable[[int, int], None] | None = None
@@ -167,57 +214,6 @@ def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
     return f"T = {equilibrium.temperature:.6g} ({source}){along}"
 
 
-def _rows(result: Temperature) -> list[tuple[str, Estimate]]:
-    """Return the name and the temperature of each direction of motion of each species."""
-    return [
-        (f"{entry.species}: {direction}", estimate)
-        for entry in result.species
-        for direction, estimate in (("m vx²", entry.x), ("m vy²", entry.y), ("m v²/2", entry.both))
-    ]
-
-
-def temperature_tables(result: Temperature) -> list[Table]:
-    """Return the table with the temperature of each direction of motion of each species."""
-    notes = (str(result.window), f"theory: {result.law or 'none for this scene'}")
-    return [estimates("Temperatures (energy, k_B = 1)", _rows(result), notes)]
-
-
-def temperature_summary(result: Temperature) -> str:
-    """Return the kinetic energy per disc and whether all temperatures agree with equipartition."""
-    energy = f"The kinetic energy per disc is {format_estimate(result.species[-1].both)} (k_B = 1)"
-    return f"{energy}; {agreement(_rows(result), 'equipartition')}."
-
-
-def temperature_figure(result: Temperature) -> "Figure":
-    """Draw the temperature of each species, or along x and y, against time; the time before the window is shaded."""
-    from idealgas.presentation.style import GREY, curve_style, panels
-
-    figure, (ax,) = panels(1)
-    edges = result.window.edges
-    if len(result.species) == 1:
-        x, y = result.species[0].directions.T
-        curves = {"m vx²": (x, result.species[0].x), "m vy²": (y, result.species[0].y)}
-    else:
-        curves = {f"{entry.species} (N = {entry.number})": (entry.history, entry.both) for entry in result.species}
-    for k, (name, (values, _)) in enumerate(curves.items()):
-        colour, line, _ = curve_style(k)
-        ax.stairs(values, edges, baseline=None, color=colour, linestyle=line, linewidth=0.9, label=name)
-    theories = sorted(
-        {(estimate.theory, estimate.theory_error) for _, estimate in curves.values() if estimate.theory is not None}
-    )
-    for k, (theory, error) in enumerate(theories):
-        ax.theory(None, theory, error, "theory" if k == 0 else None)
-    if result.window.first:
-        ax.axvspan(edges[0], result.window.start, color=GREY, alpha=0.2, linewidth=0, label="left out")
-    ax.time_axis()
-    ax.set_ylabel("temperature (energy, k_B = 1)")
-    low, high = ax.get_ylim()
-    middle, reach = (low + high) / 2, max(high - low, LEAST_RANGE * (low + high)) / 2
-    ax.set_ylim(middle - reach, middle + reach)
-    ax.legend()
-    return figure
-
-
 class TemperatureAnalysis(Analysis):
     """Declaration of the analysis `temperature`; users see the docstring of that function."""
 
@@ -227,6 +223,3 @@ class TemperatureAnalysis(Analysis):
     sections = (Section("Temperature", "Kinetic temperature of each species against time"),)
 
     measure = staticmethod(temperature)
-    tables = staticmethod(temperature_tables)
-    summary = staticmethod(temperature_summary)
-    figure = staticmethod(temperature_figure)

@@ -19,7 +19,8 @@ from urllib.parse import parse_qsl, urlsplit
 import numpy as np
 
 from idealgas.analysis.evolution.theory import expected_law
-from idealgas.analysis.pressure.measure import PAIRS, pressure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.errors import UserError
 from idealgas.examples import first_sentence
 from idealgas.log import DamageError, Log

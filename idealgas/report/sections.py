@@ -42,9 +42,8 @@ def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, t
         try:
             if log.discs.packing_fraction < analysis.reported_from:
                 raise NotApplicableError(f"the packing fraction is below {analysis.reported_from:g}")
-            result = analysis.combined([analysis.analyse(log, **section.options)])
-            tables = tuple(analysis.shown_tables(result))
-            figure, words = analysis.figure(result), analysis.summary(result)
+            result = analysis.analyse(log, **section.options)
+            figure, tables, words = result.figure(), tuple(result.tables()), result.summary()
             made.append(ReportSection(analysis.key, section.title, figure, section.caption, tables, words))
         except DamageError:
             raise

@@ -125,10 +125,10 @@ def stored_scene(folder: str | os.PathLike[str], result: dict[str, Any]) -> Scen
         raise UserError(error.errors[0]) from None
 
 
-def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[str, dict[str, Any], Origin]]:
-    """Yield the label, the stored result of an analysis and the origin of each point of a sweep.
+def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[dict[str, Any], Origin]]:
+    """Yield the stored result of an analysis and the origin of each point of a sweep.
 
-    The label consists of the values of the axes.
+    The label of the origin consists of the values of the axes.
 
     Raises:
         UserError: if the sweep does not include this analysis.
@@ -137,8 +137,8 @@ def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tu
         if analysis not in point["analyses"]:
             raise UserError(f'{folder}: the sweep does not include the analysis "{analysis}"')
         label = ", ".join(f"{key} = {value}" for key, value in point["values"].items()) or "base scene"
-        run = origin_of(stored_scene(folder, point), f"{folder}, point {point['point']}")
-        yield label, point["analyses"][analysis], run
+        run = origin_of(stored_scene(folder, point), f"{folder}, point {point['point']}", label)
+        yield point["analyses"][analysis], run
 
 
 def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:

@@ -9,7 +9,7 @@ these transients, but discards more than a tenth of every fourth short run of a 
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -104,6 +104,12 @@ class Window:
     def as_dict(self) -> dict[str, Any]:
         """Return plain values by name, ready for JSON."""
         return as_dict(self)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "Window":
+        """Restore a window from its plain values, as a single block of time."""
+        edges = np.array([values["start"], values["end"]], float)
+        return cls(edges, first=0, detected=bool(values["equilibration_detected"]))
 
 
 def measure(

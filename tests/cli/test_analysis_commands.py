@@ -44,7 +44,7 @@ def test_a_file_that_is_not_a_log_is_the_same_line_for_all_commands(name, path, 
     before = listing(tmp_path)
     lines = {command: error_of(command, file.name, folder=tmp_path) for command in ("info", *PLOTTED)}
     if name == "folder":
-        sweeps = {lines.pop(command) for command in ("pressure", "heat-capacity")}
+        sweeps = {lines.pop(command) for command in ("pressure", "heat-capacity", "relaxation")}
         assert sweeps == {"folder.h5: contains no results of a sweep\n"}
     (line,) = set(lines.values())
     assert line.startswith(f"{name}.h5: ")

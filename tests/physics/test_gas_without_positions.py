@@ -114,8 +114,7 @@ def test_the_classic_run():
     assert tried.at_start == pytest.approx(4 / math.pi / 5, rel=0.02)
     assert tried.expected["Maxwell-Boltzmann"] == pytest.approx(math.sqrt(math.pi / 2) / 5, rel=1e-12)
     assert abs(tried.collisions - 7_020) < STANDARD_ERRORS * math.sqrt(7_020 * 0.75)
-    assert found.first_indistinguishable is not None
-    assert found.collisions[found.first_indistinguishable] < 12
+    assert found.indistinguishable_after["collisions_per_disc"] < 12
 
 
 def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
@@ -134,12 +133,12 @@ def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
         found = acceptance(log)
         values = log.observables["v_ref"][1]
         told = info(log)["run"]["v_ref"]
-        assert told == {"start": values[0], "end": values[-1], "raises": len(found.raises) - 1}
+        assert told == {"start": values[0], "end": values[-1], "raises": len(found.reference_speeds) - 1}
         deviations.append(found.acceptance.deviation)
         assert values[0] == pytest.approx(5)
         assert (np.diff(values) >= 0).all()
-        assert [v_ref for _, v_ref in found.raises] == sorted(set(values.tolist()))
-        assert len(found.raises) > 1
+        assert [speed.v_ref for speed in found.reference_speeds] == sorted(set(values.tolist()))
+        assert len(found.reference_speeds) > 1
         if seed < 4:
             simulate(parse_scene(equal_speeds("monte_carlo", 300, seed, 20)), part, force=True)
             resume(part, ["run.collisions_per_disc=60"])

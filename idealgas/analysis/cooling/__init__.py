@@ -109,6 +109,79 @@ class Cooling(Result):
     last_scatter: Estimate
     last_flow: Estimate
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the averages and of the time series."""
+        rows = [
+            ("T at the end (energy)", self.last_temperature),
+            ("T lost per collision of a disc (share)", self.loss),
+            ("Haff's time τ, T = T₀/(1 + t/τ)² (time)", self.haff),
+            ("a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1", self.fourth),
+        ]
+        if self.temperature_ratio is not None:
+            rows.append(("temperature of spin over that of motion", self.temperature_ratio))
+        rows += [
+            ("scatter of numbers in cells, first tenth", self.first_scatter),
+            ("scatter of numbers in cells, last tenth", self.last_scatter),
+            ("mean square momentum of cells, relative to independent discs, last tenth", self.last_flow),
+        ]
+        notes = (
+            f"window: t = {self.start:.6g} to {self.end:.6g}",
+            f"{self.cells} cells; scatter of numbers: variance over mean; 1 for independent discs, as for momenta",
+        )
+        columns = {
+            "t": self.time,
+            "collisions": self.collisions,
+            "temperature": self.temperature,
+            "law": self.law,
+            "I ω² per disc": self.spin,
+            "a₂": self.cumulant,
+            "scatter": self.scatter,
+            "flow": self.flow,
+        }
+        return [estimates("Cooling", rows, notes), time_series("Time series", columns)]
+
+    def summary(self) -> str:
+        """Return how far and how fast the gas cools, and whether this agrees with the theory of a uniform gas."""
+        last = self.last_temperature
+        rows = [("T at the end", last), ("loss per collision", self.loss), ("Haff's time", self.haff)]
+        law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
+        return (
+            f"The temperature falls from {self.temperature[0]:.4g} to {last.value:.4g}{law} in "
+            f"{self.collisions[-1]:.4g} collisions per disc, by {format_estimate(self.loss)} of it per collision. "
+            f"T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
+        )
+
+    def figure(self) -> "Figure":
+        """Draw the temperature against time, and the other series against collisions per disc."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        means = [("a₂ (no unit)", self.cumulant, self.fourth)]
+        if self.spin is not None and self.temperature_ratio is not None:
+            means.append(("spin over motion (no unit)", self.spin / self.temperature, self.temperature_ratio))
+        figure, (ax, *middle, last) = panels(2 + len(means))
+        shown = self.time > 0
+        ax.plot(self.time[shown], self.temperature[shown], color=COLOURS[0], label="temperature")
+        if self.spin is not None:
+            ax.plot(self.time[shown], self.spin[shown], color=COLOURS[1], label="I ω² per disc")
+        doubt = self.haff.theory_error / self.haff.theory if self.haff.theory else 0.0
+        for law, label in ((self.law, "law of a uniform gas"), (self.spin_law, None)):
+            if law is not None:
+                ax.theory(self.time[shown], law[shown], _law_error(law, doubt)[shown], label, GREY)
+        ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
+        window = self.collisions[self.time.searchsorted([self.start, self.end])]
+        for panel, (label, series, average) in zip(middle, means, strict=True):
+            panel.plot(self.collisions, series, color=COLOURS[5], linewidth=0.9, label="measured")
+            panel.plot(window, [average.value] * 2, color=COLOURS[0], label="mean")
+            if average.theory is not None:
+                panel.theory(None, average.theory, average.theory_error, color=GREY)
+            panel.set(xlabel="collisions per disc", ylabel=label)
+        last.plot(self.collisions, self.scatter, color=COLOURS[0], label="numbers: variance over mean")
+        last.plot(self.collisions, self.flow, color=COLOURS[1], label="momenta: square over that by chance")
+        last.set(ylabel=f"in {self.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
+        for panel in (ax, *middle, last):
+            panel.legend()
+        return figure
+
 
 class CoolingAnalysis(Analysis):
     """Cooling of a granular gas."""
@@ -220,82 +293,6 @@ class CoolingAnalysis(Analysis):
                 *nonuniform(early.value, late.value, together.value, int(shape.prod())),
             ),
         )
-
-    @staticmethod
-    def tables(result: Cooling) -> list[Table]:
-        """Return the tables of the averages and of the time series."""
-        rows = [
-            ("T at the end (energy)", result.last_temperature),
-            ("T lost per collision of a disc (share)", result.loss),
-            ("Haff's time τ, T = T₀/(1 + t/τ)² (time)", result.haff),
-            ("a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1", result.fourth),
-        ]
-        if result.temperature_ratio is not None:
-            rows.append(("temperature of spin over that of motion", result.temperature_ratio))
-        rows += [
-            ("scatter of numbers in cells, first tenth", result.first_scatter),
-            ("scatter of numbers in cells, last tenth", result.last_scatter),
-            ("mean square momentum of cells, relative to independent discs, last tenth", result.last_flow),
-        ]
-        notes = (
-            f"window: t = {result.start:.6g} to {result.end:.6g}",
-            f"{result.cells} cells; scatter of numbers: variance over mean; 1 for independent discs, as for momenta",
-        )
-        columns = {
-            "t": result.time,
-            "collisions": result.collisions,
-            "temperature": result.temperature,
-            "law": result.law,
-            "I ω² per disc": result.spin,
-            "a₂": result.cumulant,
-            "scatter": result.scatter,
-            "flow": result.flow,
-        }
-        return [estimates("Cooling", rows, notes), time_series("Time series", columns)]
-
-    @staticmethod
-    def summary(result: Cooling) -> str:
-        """Return how far and how fast the gas cools, and whether this agrees with the theory of a uniform gas."""
-        last = result.last_temperature
-        rows = [("T at the end", last), ("loss per collision", result.loss), ("Haff's time", result.haff)]
-        law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
-        return (
-            f"The temperature falls from {result.temperature[0]:.4g} to {last.value:.4g}{law} in "
-            f"{result.collisions[-1]:.4g} collisions per disc, by {format_estimate(result.loss)} of it per collision. "
-            f"T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
-        )
-
-    @staticmethod
-    def figure(result: Cooling) -> "Figure":
-        """Draw the temperature against time, and the other series against collisions per disc."""
-        from idealgas.presentation.style import COLOURS, GREY, panels
-
-        means = [("a₂ (no unit)", result.cumulant, result.fourth)]
-        if result.spin is not None and result.temperature_ratio is not None:
-            means.append(("spin over motion (no unit)", result.spin / result.temperature, result.temperature_ratio))
-        figure, (ax, *middle, last) = panels(2 + len(means))
-        shown = result.time > 0
-        ax.plot(result.time[shown], result.temperature[shown], color=COLOURS[0], label="temperature")
-        if result.spin is not None:
-            ax.plot(result.time[shown], result.spin[shown], color=COLOURS[1], label="I ω² per disc")
-        doubt = result.haff.theory_error / result.haff.theory if result.haff.theory else 0.0
-        for law, label in ((result.law, "law of a uniform gas"), (result.spin_law, None)):
-            if law is not None:
-                ax.theory(result.time[shown], law[shown], _law_error(law, doubt)[shown], label, GREY)
-        ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
-        window = result.collisions[result.time.searchsorted([result.start, result.end])]
-        for panel, (label, series, average) in zip(middle, means, strict=True):
-            panel.plot(result.collisions, series, color=COLOURS[5], linewidth=0.9, label="measured")
-            panel.plot(window, [average.value] * 2, color=COLOURS[0], label="mean")
-            if average.theory is not None:
-                panel.theory(None, average.theory, average.theory_error, color=GREY)
-            panel.set(xlabel="collisions per disc", ylabel=label)
-        last.plot(result.collisions, result.scatter, color=COLOURS[0], label="numbers: variance over mean")
-        last.plot(result.collisions, result.flow, color=COLOURS[1], label="momenta: square over that by chance")
-        last.set(ylabel=f"in {result.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
-        for panel in (ax, *middle, last):
-            panel.legend()
-        return figure
 
 
 def _parameters(log: Log) -> GranularParameters:

@@ -113,6 +113,115 @@ class Evolution(Result):
         series = {"temperature": self.temperature, "spin": self.spin, **self.pistons, "balance": self.balance}
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of temperature and of discs beyond a wall, of the pressure, and of the energies."""
+        law = self.law
+        series = {
+            "t": self.time,
+            "kinetic energy per disc": self.temperature,
+            "law": law.temperature if law else None,
+            "I ω² per disc": self.spin,
+            **{f"kinetic energy per disc, {name}": values for name, values in self.chambers.items()},
+            **{f"law, {name}": values for name, values in (law.chambers if law else {}).items()},
+            **{f"fraction of {name} beyond the wall": share for name, share in self.beyond.items()},
+        }
+        notes = [f"law: {law.text if law else 'none for this scene'}"]
+        notes += [
+            f"beyond the wall in equilibrium: {share.value:.1%} ± {share.standard_error:.1%} of {name} (binomial)"
+            for name, share in self.spread.items()
+        ]
+        means = {
+            "mean temperature once steady (energy)": self.mean_temperature,
+            "mean position of the piston once steady (length)": self.rest,
+            "γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) (no unit; 2 for an ideal gas)": self.adiabatic_exponent,
+            "work of the piston at constant T (energy)": self.isothermal_work,
+        }
+        rows = [(name, estimate) for name, estimate in means.items() if estimate is not None]
+        tables = [time_series("Time series", series, notes)]
+        if bins := self.pressure:
+            columns = {"t": bins.middles, "area": bins.area}
+            for name in bins.shown:
+                columns |= {f"P on {name}": bins.pressure[name], f"± s.e. ({name})": bins.error[name]}
+            tables.append(time_series("Pressure on walls, means over bins of time", columns))
+        energy = {
+            "t": self.samples,
+            **{f"energy of {name}": values for name, values in self.parts.items()},
+            **{_source_label(name, self): values for name, values in self.given.items()},
+            **{f"lost by {name}": values for name, values in self.dissipated.items()},
+            **{f"{name} position": place for name, place in self.pistons.items()},
+            "balance, relative": self.balance,
+        }
+        totals = [estimates("Means and totals", rows)] if rows else []
+        return [*tables, time_series("Energy", energy), *totals]
+
+    def summary(self) -> str:
+        """Return sentences on the temperature and its theory, the pistons, and the discs beyond a wall."""
+        return evolution_summary(self)
+
+    def figure(self) -> "Figure":
+        """Draw temperature with its law dashed, discs beyond a wall, pressure, pistons and energy from walls.
+
+        With a piston the last panel shows pressure against area, with the isotherm and the adiabat through the start.
+        """
+        from idealgas.presentation.style import BLACK, COLOURS, curve_style, panels
+
+        series, law, has_piston = self.pressure, self.law, self.track is not None
+        states = series is not None and has_piston and np.ptp(series.area) > 0
+        shown = [self.beyond, series, has_piston, self.given, states]
+        number = 1 + sum(map(bool, shown))
+        figure, axes = panels(-(-number // 2), 2) if number > MOST_IN_COLUMN else panels(number)
+        for ax in axes[number:]:
+            ax.remove()
+        ax, *remaining = axes = axes[:number]
+        rest = iter(remaining)
+        ax.plot(self.time, self.temperature, color=COLOURS[0], label="kinetic energy per disc")
+        if self.spin is not None:
+            ax.plot(self.time, self.spin, color=COLOURS[1], label="I ω² per disc")
+        several = any(name.startswith("between") for name in self.chambers)
+        for k, (name, values) in enumerate(self.chambers.items(), 1 if self.spin is None else 2):
+            colour, line, _ = curve_style(k)
+            ax.plot(self.time, values, line, color=colour, label=_chamber_label(name, several))
+            if law and law.chambers:
+                ax.plot(self.time, law.chambers[name], "--", color=colour)
+        if law is not None:
+            ax.plot(self.time, law.temperature, "--", color=BLACK, label=law.text)
+        low, high = self.temperature.min(), self.temperature.max()
+        if high > 10 * low > 0:
+            ax.set_yscale("log")
+        elif high - low < 1e-6 * high:  # constant, except for rounding
+            ax.set_ylim(0.9 * low, 1.1 * high)
+        ax.set_ylabel("temperature (energy, k_B = 1)")
+        if self.beyond:
+            ax = next(rest)
+            for k, (name, share) in enumerate(self.beyond.items()):
+                colour, line, _ = curve_style(k)
+                ax.plot(self.time, share, line, color=colour, label=name)
+            ax.set(ylim=(-0.05, 1.05), ylabel="fraction beyond the wall (no unit)")
+        if series:
+            draw_pressure(next(rest), series, law)
+        if self.track:
+            ax = next(rest)
+            for k, (name, places) in enumerate(self.track[1].items()):
+                colour, line, _ = curve_style(k)
+                ax.plot(self.track[0], places, line, color=colour, label=name)
+            if law is not None and law.piston is not None:
+                ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
+            ax.set_ylabel("piston position (length)")
+        if self.given:
+            ax = next(rest)
+            for k, (name, energy) in enumerate(self.given.items()):
+                colour, line, marker = curve_style(k)
+                label = _source_label(name, self)
+                ax.plot(self.samples, energy, line, marker=marker, ms=3, color=colour, label=label)
+            ax.set_ylabel("energy (k_B = 1)")
+        for ax in axes:
+            ax.time_axis()
+        if series and states:
+            draw_state(next(rest), series, self.rest_start)
+        for ax in axes:
+            ax.legend()
+        return figure
+
 
 class EvolutionAnalysis(Analysis):
     """Evolution in time."""
@@ -177,115 +286,6 @@ class EvolutionAnalysis(Analysis):
             isothermal_work(log, pistons, given),
             caveats=(*(law.caveats if law else ()), *short_stroke(log, exponent, *frames[:2])),
         )
-
-    @staticmethod
-    def tables(result: Evolution) -> list[Table]:
-        """Return the tables of temperature and of discs beyond a wall, of the pressure, and of the energies."""
-        law = result.law
-        series = {
-            "t": result.time,
-            "kinetic energy per disc": result.temperature,
-            "law": law.temperature if law else None,
-            "I ω² per disc": result.spin,
-            **{f"kinetic energy per disc, {name}": values for name, values in result.chambers.items()},
-            **{f"law, {name}": values for name, values in (law.chambers if law else {}).items()},
-            **{f"fraction of {name} beyond the wall": share for name, share in result.beyond.items()},
-        }
-        notes = [f"law: {law.text if law else 'none for this scene'}"]
-        notes += [
-            f"beyond the wall in equilibrium: {share.value:.1%} ± {share.standard_error:.1%} of {name} (binomial)"
-            for name, share in result.spread.items()
-        ]
-        means = {
-            "mean temperature once steady (energy)": result.mean_temperature,
-            "mean position of the piston once steady (length)": result.rest,
-            "γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) (no unit; 2 for an ideal gas)": result.adiabatic_exponent,
-            "work of the piston at constant T (energy)": result.isothermal_work,
-        }
-        rows = [(name, estimate) for name, estimate in means.items() if estimate is not None]
-        tables = [time_series("Time series", series, notes)]
-        if bins := result.pressure:
-            columns = {"t": bins.middles, "area": bins.area}
-            for name in bins.shown:
-                columns |= {f"P on {name}": bins.pressure[name], f"± s.e. ({name})": bins.error[name]}
-            tables.append(time_series("Pressure on walls, means over bins of time", columns))
-        energy = {
-            "t": result.samples,
-            **{f"energy of {name}": values for name, values in result.parts.items()},
-            **{_source_label(name, result): values for name, values in result.given.items()},
-            **{f"lost by {name}": values for name, values in result.dissipated.items()},
-            **{f"{name} position": place for name, place in result.pistons.items()},
-            "balance, relative": result.balance,
-        }
-        totals = [estimates("Means and totals", rows)] if rows else []
-        return [*tables, time_series("Energy", energy), *totals]
-
-    summary = staticmethod(evolution_summary)
-
-    @staticmethod
-    def figure(result: Evolution) -> "Figure":
-        """Draw temperature with its law dashed, discs beyond a wall, pressure, pistons and energy from walls.
-
-        With a piston the last panel shows pressure against area, with the isotherm and the adiabat through the start.
-        """
-        from idealgas.presentation.style import BLACK, COLOURS, curve_style, panels
-
-        series, law, has_piston = result.pressure, result.law, result.track is not None
-        states = series is not None and has_piston and np.ptp(series.area) > 0
-        shown = [result.beyond, series, has_piston, result.given, states]
-        number = 1 + sum(map(bool, shown))
-        figure, axes = panels(-(-number // 2), 2) if number > MOST_IN_COLUMN else panels(number)
-        for ax in axes[number:]:
-            ax.remove()
-        ax, *remaining = axes = axes[:number]
-        rest = iter(remaining)
-        ax.plot(result.time, result.temperature, color=COLOURS[0], label="kinetic energy per disc")
-        if result.spin is not None:
-            ax.plot(result.time, result.spin, color=COLOURS[1], label="I ω² per disc")
-        several = any(name.startswith("between") for name in result.chambers)
-        for k, (name, values) in enumerate(result.chambers.items(), 1 if result.spin is None else 2):
-            colour, line, _ = curve_style(k)
-            ax.plot(result.time, values, line, color=colour, label=_chamber_label(name, several))
-            if law and law.chambers:
-                ax.plot(result.time, law.chambers[name], "--", color=colour)
-        if law is not None:
-            ax.plot(result.time, law.temperature, "--", color=BLACK, label=law.text)
-        low, high = result.temperature.min(), result.temperature.max()
-        if high > 10 * low > 0:
-            ax.set_yscale("log")
-        elif high - low < 1e-6 * high:  # constant, except for rounding
-            ax.set_ylim(0.9 * low, 1.1 * high)
-        ax.set_ylabel("temperature (energy, k_B = 1)")
-        if result.beyond:
-            ax = next(rest)
-            for k, (name, share) in enumerate(result.beyond.items()):
-                colour, line, _ = curve_style(k)
-                ax.plot(result.time, share, line, color=colour, label=name)
-            ax.set(ylim=(-0.05, 1.05), ylabel="fraction beyond the wall (no unit)")
-        if series:
-            draw_pressure(next(rest), series, law)
-        if result.track:
-            ax = next(rest)
-            for k, (name, places) in enumerate(result.track[1].items()):
-                colour, line, _ = curve_style(k)
-                ax.plot(result.track[0], places, line, color=colour, label=name)
-            if law is not None and law.piston is not None:
-                ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
-            ax.set_ylabel("piston position (length)")
-        if result.given:
-            ax = next(rest)
-            for k, (name, energy) in enumerate(result.given.items()):
-                colour, line, marker = curve_style(k)
-                label = _source_label(name, result)
-                ax.plot(result.samples, energy, line, marker=marker, ms=3, color=colour, label=label)
-            ax.set_ylabel("energy (k_B = 1)")
-        for ax in axes:
-            ax.time_axis()
-        if series and states:
-            draw_state(next(rest), series, result.rest_start)
-        for ax in axes:
-            ax.legend()
-        return figure
 
 
 def _source_label(name: str, result: Evolution) -> str:

@@ -7,12 +7,10 @@ folder of a sweep with the analysis "heat-capacity".
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from idealgas.analysis.analysis import Analysis, Section
-from idealgas.analysis.check import agreement
 from idealgas.analysis.heat_capacity.combine import (
     BATH,
     CLOSED,
@@ -34,17 +32,10 @@ from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.routes import WALLS
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
-from idealgas.presentation.tables import Table, estimates, format_estimate
 from idealgas.statistics.estimates import Estimate, mean
 from idealgas.tallies.equilibrium import nonequilibrium_reason
 from idealgas.tallies.stream import ReadProgress
 from idealgas.theory.conserved import centre_of_mass_energy, degrees_of_freedom
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-MANY = 12
-"""Largest number of logs that the table lists individually."""
 
 
 class HeatCapacityAnalysis(Analysis):
@@ -121,64 +112,6 @@ class HeatCapacityAnalysis(Analysis):
             refused={route: why} if why else {},
             caveats=(f"No heat capacity from {route}: {why}.",) if why else (),
         )
-
-    @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Measured:
-        """Return the result of one point of a sweep, which is named by the path of its log."""
-        energy, temperature = (Estimate.from_dict(found[key]) for key in ("energy_per_disc", "temperature"))
-        routes = {name: Estimate.from_dict(route) for name, route in found["routes"].items()}
-        plain = {
-            key: found[key] for key in ("path", "kind", "number", "thermometer", "theory", "excess", "theory_error")
-        }
-        return Measured(energy=energy, temperature=temperature, routes=routes, **plain)
-
-    @staticmethod
-    def tables(result: HeatCapacity) -> list[Table]:
-        """Return the tables of energy and temperature of each log, and of the heat capacity by every route."""
-        tables = []
-        if len(result.logs) <= MANY:
-            rows = [(f"{log.path}: E/N", log.energy) for log in result.logs]
-            rows += [(f"{log.path}: T from {log.thermometer}", log.temperature) for log in result.logs]
-            tables.append(estimates("Logs (energy)", rows))
-        routes = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
-        refused = [f"no {name}: {why}" for name, why in result.refused.items()]
-        return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]
-
-    @staticmethod
-    def summary(result: HeatCapacity) -> str:
-        """Return the heat capacity per disc by the first route, and whether all routes agree with theory."""
-        rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in result.routes]
-        if not rows:
-            return "No route gives a heat capacity for these logs."
-        name, estimate = rows[0]
-        return (
-            f"C = {format_estimate(estimate)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
-        )
-
-    @staticmethod
-    def figure(result: HeatCapacity) -> "Figure":
-        """Draw C per disc (and γ) by every route with its error bar and its theory."""
-        from idealgas.presentation.style import COLOURS, name_rows, panels
-
-        figure, (ax,) = panels(1)
-        names = [] if result.routes else [f"no {name}" for name in result.refused]
-        for k, route in enumerate(result.routes[::-1], len(names)):
-            ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
-            ax.theory_of_row(k, route.value, None)
-            gas = _listed(route.kind, route.gas)
-            names.append(f"{gas}: {route.name}" if gas else route.name)
-        name_rows(ax, [name.replace(" of the kinetic energy", "") for name in names], fontsize="small")
-        ax.locator_params(axis="x", nbins=6)
-        ax.plot([], [], "o", color=COLOURS[0], label="measured")
-        ax.plot([], [], color=COLOURS[1], label="theory")
-        ax.set(xlabel="C/N, and γ (no unit, k_B = 1)", ylabel="by every route")
-        ax.legend()
-        figure.set_figheight(1.5 + 0.3 * len(names))
-        return figure
-
-
-def _listed(*parts: str | None) -> str:
-    return ", ".join(filter(None, parts))
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:

@@ -4,15 +4,23 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from idealgas.analysis.result import Result
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result, RunResult
 from idealgas.fields import OPTIONAL, Key
+from idealgas.presentation.tables import Table, estimates, format_estimate
 from idealgas.statistics.estimates import Estimate, mean_of_replicates, mean_theory
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
+
+MANY = 12
+"""Largest number of logs that the table lists individually."""
 
 ROUTES = {
     "dE/dT": "it requires logs of one gas at several energies",
@@ -25,7 +33,7 @@ ROUTES = {
 
 
 @dataclass(frozen=True)
-class Measured(Result):
+class Measured(RunResult):
     """Energy, temperature and heat capacities of one log.
 
     The temperature must be measured independently of the energy. It follows from the pressure on the walls if all
@@ -90,9 +98,54 @@ class HeatCapacity(Result):
     refused: dict[str, str]
     logs: tuple[Measured, ...]
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of energy and temperature of each log, and of the heat capacity by every route."""
+        tables = []
+        if len(self.logs) <= MANY:
+            rows = [(f"{log.path}: E/N", log.energy) for log in self.logs]
+            rows += [(f"{log.path}: T from {log.thermometer}", log.temperature) for log in self.logs]
+            tables.append(estimates("Logs (energy)", rows))
+        routes = [(_listed(route.name, route.kind, route.gas), route.value) for route in self.routes]
+        refused = [f"no {name}: {why}" for name, why in self.refused.items()]
+        return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]
+
+    def summary(self) -> str:
+        """Return the heat capacity per disc by the first route, and whether all routes agree with theory."""
+        rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in self.routes]
+        if not rows:
+            return "No route gives a heat capacity for these logs."
+        name, estimate = rows[0]
+        return (
+            f"C = {format_estimate(estimate)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
+        )
+
+    def figure(self) -> "Figure":
+        """Draw C per disc (and γ) by every route with its error bar and its theory."""
+        from idealgas.presentation.style import COLOURS, name_rows, panels
+
+        figure, (ax,) = panels(1)
+        names = [] if self.routes else [f"no {name}" for name in self.refused]
+        for k, route in enumerate(self.routes[::-1], len(names)):
+            ax.errorbar(route.value.value, k, xerr=route.value.standard_error, fmt="o", color=COLOURS[0], capsize=3)
+            ax.theory_of_row(k, route.value, None)
+            gas = _listed(route.kind, route.gas)
+            names.append(f"{gas}: {route.name}" if gas else route.name)
+        name_rows(ax, [name.replace(" of the kinetic energy", "") for name in names], fontsize="small")
+        ax.locator_params(axis="x", nbins=6)
+        ax.plot([], [], "o", color=COLOURS[0], label="measured")
+        ax.plot([], [], color=COLOURS[1], label="theory")
+        ax.set(xlabel="C/N, and γ (no unit, k_B = 1)", ylabel="by every route")
+        ax.legend()
+        figure.set_figheight(1.5 + 0.3 * len(names))
+        return figure
+
 
 Groups = dict[tuple[str, str], list[Measured]]
 """Logs by kind of gas and gas in words; the words are empty if all logs of the kind contain the same gas."""
+
+
+def _listed(*parts: str | None) -> str:
+    return ", ".join(filter(None, parts))
 
 
 def combine_logs(logs: Sequence[Measured]) -> HeatCapacity:

@@ -166,15 +166,15 @@ def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, ca
     return estimate(per_disc, kinetic, kinetic**2, theory=capacity)
 
 
-def too_few(found: Estimate, series: np.ndarray) -> str:
+def too_few(capacity: Estimate, series: np.ndarray) -> str:
     """Return why the fluctuations of a series give no heat capacity, as part of a sentence; empty if they do."""
-    samples, error = len(series) / inefficiency(series), found.standard_error
+    samples, error = len(series) / inefficiency(series), capacity.standard_error
     if samples < LEAST_SAMPLES:
         why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
-    elif 0 < error <= LARGEST_ERROR * found.value:
+    elif 0 < error <= LARGEST_ERROR * capacity.value:
         return ""
     else:
-        why = f"its error is too large ({found.value:.2g} ± {error:.2g})"
+        why = f"its error is too large ({capacity.value:.2g} ± {error:.2g})"
     return f"{why}; use a longer run or, without events, more frequent samples"
 
 

@@ -80,6 +80,81 @@ class Histogram(Result):
     distributions: tuple[Distribution, ...]
     no_law: str | None = None
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
+        tests: list[tuple[Cell, ...]] = []
+        for distribution in self.distributions:
+            spacing = Number(distribution.correlation_time, ".4g")
+            for test in distribution.tests:
+                distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
+                p, samples = Number(test.p_value, ".3g"), Number(distribution.samples, "d")
+                tests.append(
+                    (distribution.name, test.law_name, distance, error, p, samples, spacing, VERDICTS[test.agrees])
+                )
+        means = [(distribution.name, distribution.mean) for distribution in self.distributions]
+        notes = (
+            str(self.window),
+            *(f"{each.name}: in t = {each.counted_in:.4g}" for each in self.distributions if each.counted_in),
+            *([f"Theory gives no distribution: {self.no_law}."] if self.no_law else []),
+        )
+        tables = [estimates(f"Mean {_in_words(self.quantity)} ({self.unit})", means, notes)]
+        cumulants = [
+            (f"{distribution.name}: {name.replace('_', ' ')}", estimate)
+            for distribution in self.distributions
+            for name, estimate in distribution.cumulants.items()
+        ]
+        tables += [estimates("Cumulants (no unit)", cumulants)] if cumulants else []
+        if tests:
+            columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)", "verdict")
+            tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
+        return tables
+
+    def summary(self) -> str:
+        """Return the mean of each species and the laws that its values follow."""
+        sentences = [_follows(self, distribution) for distribution in self.distributions]
+        return " ".join([*sentences, *([f"Theory gives no distribution: {self.no_law}."] if self.no_law else [])])
+
+    def text(self) -> str:
+        """Return a histogram of each species in characters, with the first of its laws."""
+        lines = []
+        for distribution in self.distributions:
+            groups, widths = np.array_split(np.arange(len(distribution.density)), LINES), np.diff(distribution.edges)
+            curves = [distribution.density, *(test.law.pdf(distribution.middles) for test in distribution.tests[:1])]
+            measured, *law = [
+                [float(np.average(curve[group], weights=widths[group])) for group in groups] for curve in curves
+            ]
+            mark = f"; │ {distribution.tests[0].law_name}" if distribution.tests else ""
+            lows = [float(distribution.edges[group[0]]) for group in groups]
+            lines += [
+                f"{distribution.name}: {self.quantity} ({self.unit}){mark}",
+                bars(lows, measured, law[0] if law else None),
+            ]
+        return "\n".join(lines)
+
+    def figure(self) -> "Figure":
+        """Draw the measured density with its error bars and the laws, in one panel for each species."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        figure, axes = panels(len(self.distributions))
+        for ax, distribution in zip(axes, self.distributions, strict=True):
+            name = f"{distribution.name} (no law)" if self.no_law else distribution.name
+            ax.stairs(distribution.density, distribution.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
+            ax.errorbar(
+                distribution.middles, distribution.density, distribution.error, fmt="none", ecolor=GREY, elinewidth=0.8
+            )
+            x = np.linspace(distribution.edges[0], distribution.edges[-1], 600)
+            for test, colour, style in zip(distribution.tests, COLOURS, ("-", "--"), strict=False):
+                ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
+            last = np.flatnonzero(distribution.density >= 1e-3 * distribution.density.max())[-1]
+            ax.set_xlim(distribution.edges[0], distribution.edges[last + 1])
+            ax.set_xlabel(f"{self.quantity} ({self.unit})")
+            ax.set_ylabel(f"density ({INVERSE.get(self.unit, f'1/{self.unit}')})")
+            ax.legend()
+        ends, heights = (np.array([getattr(ax, of)() for ax in axes]) for of in ("get_xlim", "get_ylim"))
+        for ax in axes:  # common axes, so that species can be compared by eye
+            ax.set(xlim=(ends[:, 0].min(), ends[:, 1].max()), ylim=(0, heights[:, 1].max()))
+        return figure
+
 
 class HistogramAnalysis(Analysis):
     """Distributions of speeds, energies, free flights, waiting times, impact parameters and numbers of collisions."""
@@ -147,85 +222,6 @@ class HistogramAnalysis(Analysis):
         judged = tuple(each.judged(rows) for each in distributions)
         return Histogram(quantity, QUANTITIES[quantity], window, judged, no_law or None)
 
-    @staticmethod
-    def tables(result: Histogram) -> list[Table]:
-        """Return the tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
-        tests: list[tuple[Cell, ...]] = []
-        for distribution in result.distributions:
-            spacing = Number(distribution.correlation_time, ".4g")
-            for test in distribution.tests:
-                distance, error = Number(test.distance, ".4f"), Number(test.law_error, ".2g")
-                p, samples = Number(test.p_value, ".3g"), Number(distribution.samples, "d")
-                tests.append(
-                    (distribution.name, test.law_name, distance, error, p, samples, spacing, VERDICTS[test.agrees])
-                )
-        means = [(distribution.name, distribution.mean) for distribution in result.distributions]
-        notes = (
-            str(result.window),
-            *(f"{each.name}: in t = {each.counted_in:.4g}" for each in result.distributions if each.counted_in),
-            *([f"Theory gives no distribution: {result.no_law}."] if result.no_law else []),
-        )
-        tables = [estimates(f"Mean {_in_words(result.quantity)} ({result.unit})", means, notes)]
-        cumulants = [
-            (f"{distribution.name}: {name.replace('_', ' ')}", estimate)
-            for distribution in result.distributions
-            for name, estimate in distribution.cumulants.items()
-        ]
-        tables += [estimates("Cumulants (no unit)", cumulants)] if cumulants else []
-        if tests:
-            columns_of_tests = ("", "law", "distance", "law's error", "p", "samples", "spacing (time)", "verdict")
-            tables.append(Table("Kolmogorov-Smirnov tests (no unit)", columns_of_tests, tests))
-        return tables
-
-    @staticmethod
-    def summary(result: Histogram) -> str:
-        """Return the mean of each species and the laws that its values follow."""
-        sentences = [_follows(result, distribution) for distribution in result.distributions]
-        return " ".join([*sentences, *([f"Theory gives no distribution: {result.no_law}."] if result.no_law else [])])
-
-    @staticmethod
-    def text(result: Histogram) -> str:
-        """Return a histogram of each species in characters, with the first of its laws."""
-        lines = []
-        for distribution in result.distributions:
-            groups, widths = np.array_split(np.arange(len(distribution.density)), LINES), np.diff(distribution.edges)
-            curves = [distribution.density, *(test.law.pdf(distribution.middles) for test in distribution.tests[:1])]
-            measured, *law = [
-                [float(np.average(curve[group], weights=widths[group])) for group in groups] for curve in curves
-            ]
-            mark = f"; │ {distribution.tests[0].law_name}" if distribution.tests else ""
-            lows = [float(distribution.edges[group[0]]) for group in groups]
-            lines += [
-                f"{distribution.name}: {result.quantity} ({result.unit}){mark}",
-                bars(lows, measured, law[0] if law else None),
-            ]
-        return "\n".join(lines)
-
-    @staticmethod
-    def figure(result: Histogram) -> "Figure":
-        """Draw the measured density with its error bars and the laws, in one panel for each species."""
-        from idealgas.presentation.style import COLOURS, GREY, panels
-
-        figure, axes = panels(len(result.distributions))
-        for ax, distribution in zip(axes, result.distributions, strict=True):
-            name = f"{distribution.name} (no law)" if result.no_law else distribution.name
-            ax.stairs(distribution.density, distribution.edges, fill=True, color=COLOURS[5], alpha=0.6, label=name)
-            ax.errorbar(
-                distribution.middles, distribution.density, distribution.error, fmt="none", ecolor=GREY, elinewidth=0.8
-            )
-            x = np.linspace(distribution.edges[0], distribution.edges[-1], 600)
-            for test, colour, style in zip(distribution.tests, COLOURS, ("-", "--"), strict=False):
-                ax.plot(x, test.law.pdf(x), style, color=colour, label=f"{test.law_name}: KS p = {test.p_value:.2g}")
-            last = np.flatnonzero(distribution.density >= 1e-3 * distribution.density.max())[-1]
-            ax.set_xlim(distribution.edges[0], distribution.edges[last + 1])
-            ax.set_xlabel(f"{result.quantity} ({result.unit})")
-            ax.set_ylabel(f"density ({INVERSE.get(result.unit, f'1/{result.unit}')})")
-            ax.legend()
-        ends, heights = (np.array([getattr(ax, of)() for ax in axes]) for of in ("get_xlim", "get_ylim"))
-        for ax in axes:  # common axes, so that species can be compared by eye
-            ax.set(xlim=(ends[:, 0].min(), ends[:, 1].max()), ylim=(0, heights[:, 1].max()))
-        return figure
-
 
 def _in_words(quantity: str) -> str:
     """Return the name of a quantity in the singular."""
@@ -283,7 +279,7 @@ def _velocities(
         histograms.append(
             distribution_of(name, edges, densities[:, s], average, samples, spacing * window.width, possible)
         )
-    return window, histograms, known.why_not
+    return window, histograms, known.reason
 
 
 def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:

@@ -47,7 +47,7 @@ def free_flights(
 ) -> Found:
     """Measure the distribution of the free paths or free times of each species."""
     discs, path = classes(log.discs), quantity == "free-path"
-    temperature, rates, errors, speed, why_not = free_flight_rates(log, discs, start, end)
+    temperature, rates, errors, speed, reason = free_flight_rates(log, discs, start, end)
     per_disc = rates.sum(axis=1)
     rate = discs.shares @ per_disc
     average = speed / rate if path else 1 / rate
@@ -65,10 +65,10 @@ def free_flights(
         laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
         flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more flights
         dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
-        possible = {} if why_not else {"dilute gas": dilute}
-        expected = None if why_not else Theory(float(average[s]), float(average[s] * relative[s]), "kinetic theory")
+        possible = {} if reason else {"dilute gas": dilute}
+        expected = None if reason else Theory(float(average[s]), float(average[s] * relative[s]), "kinetic theory")
         by_species.append(_intervals(name, tally, s, blocks, high[s], possible, expected, RECOLLISIONS + finite))
-    return window, by_species, why_not
+    return window, by_species, reason
 
 
 def waiting_times(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
@@ -77,13 +77,13 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Re
     tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
-    why_not = nonstationary_reason(log)
+    reason = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
-        why_not = why_not or f"the law is for many discs, and this gas has {len(log.discs)}"
+        reason = reason or f"the law is for many discs, and this gas has {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
-    possible, error = {} if why_not else {"exponential": law}, FINITE_NUMBER / len(log.discs)
-    return window, [_intervals(ALL_DISCS, tally, 0, blocks, longest, possible, None, error)], why_not
+    possible, error = {} if reason else {"exponential": law}, FINITE_NUMBER / len(log.discs)
+    return window, [_intervals(ALL_DISCS, tally, 0, blocks, longest, possible, None, error)], reason
 
 
 def impact_parameters(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
@@ -95,24 +95,24 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
         raise NotApplicableError(f"{log.path}: impact parameters require discs with positions")
     tally = ImpactParameters(log.periodic, BINS, max(STRIDE, len(log) // 2 // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
-    why_not = expectation(log, start, end).why_not
-    possible = {} if why_not else {"uniform": distributions.UniformLaw()}
-    mean = None if why_not else 0.5
+    reason = expectation(log, start, end).reason
+    possible = {} if reason else {"uniform": distributions.UniformLaw()}
+    mean = None if reason else 0.5
     return (
         window,
         [_intervals(ALL_DISCS, tally, 0, slice(window.first, len(tally.counts)), 1.0, possible, mean, 0.0)],
-        why_not,
+        reason,
     )
 
 
 def collision_counts(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
     """Measure the distribution of the number of collisions of a disc in a given time, and its cumulants."""
     discs = classes(log.discs)
-    _, rates, errors, _, why_not = free_flight_rates(log, discs, start, end)
+    _, rates, errors, _, reason = free_flight_rates(log, discs, start, end)
     if len(discs.mass) > 1:
-        why_not = why_not or "it is known only for equal discs"
+        reason = reason or "it is known only for equal discs"
     if log.has_positions and log.discs.packing_fraction > DENSEST_COUNTS:
-        why_not = why_not or f"above φ = {DENSEST_COUNTS:g} it is not known for numbers of collisions"
+        reason = reason or f"above φ = {DENSEST_COUNTS:g} it is not known for numbers of collisions"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
     rate = discs.shares @ per_disc
     fewest, most = 64, max(len(log), 64)  # at most one interval per row of the log, even if most are empty
@@ -124,7 +124,7 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
     edges, by_species = np.arange(MOST_COUNTED + 1) - 0.5, []
     mean = law = None
     cumulants: list[Theory | None] = [None, None]
-    if not why_not:
+    if not reason:
         mean = Theory(float(rate[0]) * time, float(rate[0] * errors[0, 0]) * time, "kinetic theory")
         law = CollisionCountLaw(float(rate[0]) * time)
         cumulants = [Theory(*value, "dilute gas") for value in zip(law.cumulants, of_cumulants, strict=True)]
@@ -149,7 +149,7 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
             "third_cumulant_over_mean": of_events(estimate(_third, *sums, theory=cumulants[1]), collided),
         }
         by_species.append(replace(distribution, counted_in=time, cumulants=measured))
-    return window, by_species, why_not
+    return window, by_species, reason
 
 
 def _variance(number: float, first: float, second: float) -> float:

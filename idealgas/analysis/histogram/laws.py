@@ -57,17 +57,17 @@ class Expectation:
     Attributes:
         ensemble: ensemble of a gas of known temperature; None if the temperature must be measured, or if no law holds.
         scale: temperature that sets the range of histograms, energy.
-        why_not: why no law holds, as part of a sentence; empty if one does.
+        reason: why no law holds, as part of a sentence; empty if one does.
     """
 
     ensemble: Ensemble | None
     scale: float
-    why_not: str
+    reason: str
 
     @property
     def needs_temperature(self) -> bool:
         """Whether a law holds at a temperature that must be measured."""
-        return not self.why_not and self.ensemble is None
+        return not self.reason and self.ensemble is None
 
 
 def expectation(log: Log, start: float | None, end: float | None) -> Expectation:
@@ -84,12 +84,12 @@ def expectation(log: Log, start: float | None, end: float | None) -> Expectation
             few = f"{ensemble.dof} degrees of freedom are too few for a law"
             return Expectation(None, ensemble.temperature, few)
         return Expectation(ensemble, ensemble.temperature, "")
-    why_not = nonequilibrium_reason(log)
-    if len(log.discs) == 1 and not why_not:
-        why_not = "a single disc cannot share its energy"
+    reason = nonequilibrium_reason(log)
+    if len(log.discs) == 1 and not reason:
+        reason = "a single disc cannot share its energy"
     scale, baths = _highest(log, start, end), log.scene.properties.temperatures
-    if why_not or not baths:
-        return Expectation(None, scale, why_not)
+    if reason or not baths:
+        return Expectation(None, scale, reason)
     return Expectation(ensemble_at(log.scene, log.discs, min(baths), np.inf), scale, "")
 
 
@@ -119,7 +119,7 @@ def velocity_laws(
         measured: ensemble at the measured temperature; None if it was not measured.
     """
     ensemble = known.ensemble or measured
-    if known.why_not or ensemble is None or not ensemble.of_axes[species].any():  # fixed discs have no law
+    if known.reason or ensemble is None or not ensemble.of_axes[species].any():  # fixed discs have no law
         return {}
     if known.ensemble is None:
         return {f"{MAXWELL}, measured T": ensemble.velocity_law(quantity, species)}
@@ -141,30 +141,30 @@ def free_flight_rates(
         rates: (K, K), collision rates, 1/time.
         errors: (K, K), their relative errors.
         speeds: (S,), mean speeds, length/time.
-        why_not: why no law holds; empty if one does.
+        reason: why no law holds; empty if one does.
 
     Raises:
         UserError: if no disc moves, or if there are too few collisions.
     """
     known = expectation(log, start, end)
-    why_not = known.why_not
+    reason = known.reason
     if uneven := log.scene.lacking("uniform"):
-        why_not = why_not or f"the gas is not uniform ({', '.join(uneven)})"
+        reason = reason or f"the gas is not uniform ({', '.join(uneven)})"
     if log.scene.properties.thermostat_rate:
-        why_not = why_not or "a heat bath changes velocities in flight"
+        reason = reason or "a heat bath changes velocities in flight"
     if known.ensemble and known.ensemble.dof < 2 * FEW:
-        why_not = why_not or f"the law is for many discs, and this gas has {len(log.discs)}"
-    if known.ensemble and not why_not:
+        reason = reason or f"the law is for many discs, and this gas has {len(log.discs)}"
+    if known.ensemble and not reason:
         gas = known.ensemble
         theory = theory_of(log) if log.has_positions else None
         rates, errors = expected_rates(log.box, gas, theory).of_kinds
         if (rates.sum(axis=1) > 0).all():
             return gas.temperature, rates, errors, gas.mean_speed, ""
-        why_not = theory.reason if theory and theory.reason else "discs do not collide"
+        reason = theory.reason if theory and theory.reason else "discs do not collide"
     time, collisions = log.observables["disc_collisions"]
     if not len(time) or not (collisions[-1] > collisions[0] and time[-1] > time[0]):
         raise UserError(f"{log.path}: too few collisions of discs for a distribution")
     rate = float(collisions[-1] - collisions[0]) / float(time[-1] - time[0]) / len(log.discs)
     speed = discs.shares @ mean_speed(known.scale, discs.mass)
     rates = np.diag(np.full(len(discs.name), rate))
-    return known.scale, rates, 0 * rates, speed, why_not
+    return known.scale, rates, 0 * rates, speed, reason

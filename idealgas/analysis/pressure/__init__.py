@@ -7,16 +7,12 @@ temperatures. The result is then the mechanical pressure on every wall, that is,
 per time and length.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
 
 from idealgas.analysis.analysis import Analysis, Section
-from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
-from idealgas.analysis.pressure.equation_of_state import EquationOfState, PressureSample
-from idealgas.analysis.pressure.measure import Pressure, pressure
-from idealgas.analysis.pressure.tables import pressure_summary, pressure_tables
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from idealgas.analysis.pressure.equation_of_state import EquationOfState, equation_of_state
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.result import Pressure
 
 
 class PressureAnalysis(Analysis):
@@ -24,7 +20,7 @@ class PressureAnalysis(Analysis):
 
     position = 0
     headline = "routes.pairs_virial*.compressibility_factor"
-    results = (Pressure, EquationOfState, PressureSample)
+    results = (Pressure, EquationOfState)
     sections = (
         Section(
             "Pressure", "Z by every route with standard errors, theory as lines; without one the pressure of walls"
@@ -33,14 +29,8 @@ class PressureAnalysis(Analysis):
     averages = True
 
     measure = staticmethod(pressure)
-    tables = staticmethod(pressure_tables)
-    combine = staticmethod(combine_pressure)
-    restore = staticmethod(restore_pressure)
-    summary = staticmethod(pressure_summary)
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Draw the result; matplotlib is imported only here."""
-        from idealgas.analysis.pressure.figure import pressure_figure
-
-        return pressure_figure(result)
+    def combine(results: Sequence[Pressure]) -> Pressure | EquationOfState:
+        """Return the equation of state of several runs; one run remains as it is."""
+        return results[0] if len(results) == 1 else equation_of_state(results)

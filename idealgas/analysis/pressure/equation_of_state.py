@@ -2,20 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from idealgas.analysis.caveats import by_state, name_of_state, seeds_of
-from idealgas.analysis.check import CheckResult, check_theory
-from idealgas.analysis.pressure.measure import Pressure
+from idealgas.analysis.check import CheckResult, agreement, check_theory
+from idealgas.analysis.pressure.result import Pressure
 from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.analysis.result import Result
 from idealgas.errors import UserError
 from idealgas.fields import Key
+from idealgas.presentation.tables import Cell, Number, Table, estimates, format_estimate, with_error
 from idealgas.statistics.estimates import Estimate, mean_of_replicates
 from idealgas.theory import hard_discs
 from idealgas.theory.values import SOLID, crystal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
@@ -28,15 +32,6 @@ FREE_TERMS = 3
 
 The fit requires one packing fraction more than that.
 """
-
-
-@dataclass(frozen=True)
-class PressureSample(Result):
-    """Compressibility factor of one run, with the theory for the same number of discs in the same box."""
-
-    packing_fraction: float
-    number: int
-    compressibility_factor: Estimate
 
 
 @dataclass(frozen=True)
@@ -90,37 +85,80 @@ class EquationOfState(Result):
         """Check that Z agrees with theory in every state that has a theory."""
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
-        why_not = f"no equation of state is known for a packing fraction of {self.states[0].packing_fraction:.5g}"
-        return check_theory(((n, s.source, s.infinite) for n, s in zip(names, self.states, strict=True)), why_not)
+        reason = f"no equation of state is known for a packing fraction of {self.states[0].packing_fraction:.5g}"
+        return check_theory(((n, s.source, s.infinite) for n, s in zip(names, self.states, strict=True)), reason)
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """Kinds of gas of the states, in words."""
         return tuple(dict.fromkeys(state.kind for state in self.states))
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of the states and of the virial coefficients."""
+        several = len(self.kinds) > 1
+        heads = (
+            *["gas"] * several,
+            "φ",
+            "N",
+            "runs",
+            "Z",
+            "± s.e.",
+            "deviation (σ)",
+            "theory",
+            "to B10",
+            "Henderson",
+            "which theory",
+        )
+        rows: list[tuple[Cell, ...]] = [
+            (
+                *((state.kind,) if several else ()),
+                Number(state.packing_fraction, ".5g"),
+                Number(state.number, "d"),
+                Number(state.runs, "d"),
+                *with_error(state.infinite.value, state.infinite.standard_error),
+                Number(state.infinite.deviation, "+.2f"),
+                *(Number(value, ".5f") for value in (state.infinite.theory, state.virial, state.henderson)),
+                state.source or "",
+            )
+            for state in self.states
+        ]
+        states = Table("Z = PA/NT: for N → ∞ up to φ = 0.62, of this N above; deviations are from theory", heads, rows)
+        if self.b2 is None or self.b3 is None:
+            notes = (
+                f"No virial coefficients: a fit takes {FREE_TERMS + 1} packing fractions or more, up to {FITTED:g}.",
+            )
+            return [states, estimates("Virial coefficients, fitted", [], notes)]
+        fitted = [("B2 in units of the disc's area", self.b2), ("B3/B2²", self.b3)]
+        return [states, estimates("Virial coefficients, fitted", fitted)]
 
-def sample_of(measured: Pressure) -> PressureSample:
-    """Return the compressibility factor of a run from the virial of its pair collisions.
+    def summary(self) -> str:
+        """Return Z of the densest state and B2, and whether they agree with theory."""
+        rows = [(f"φ = {state.packing_fraction:.5g}", state.infinite) for state in self.states]
+        name, z = rows[-1]
+        sentence = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
+        if self.b2 is not None:
+            sentence += f" B2 = {format_estimate(self.b2)} areas of a disc; {agreement([('B2', self.b2)])}."
+        return sentence
 
-    Raises:
-        UserError: if the gas has no equation of state.
-    """
-    pairs = measured.route(PAIRS).compressibility_factor
-    return PressureSample(measured.packing_fraction, measured.number, pairs, origin=measured.origin)
+    def figure(self) -> "Figure":
+        """Draw Z against φ with the theories, and the deviation of each state from its theory."""
+        from idealgas.analysis.pressure.figure import draw_states
+
+        return draw_states(self)
 
 
-def equation_of_state(samples: Sequence[PressureSample]) -> EquationOfState:
+def equation_of_state(results: Sequence[Pressure]) -> EquationOfState:
     """Return the equation of state of many runs, averaged over runs of the same kind of gas, number of discs and φ.
 
     Raises:
-        UserError: if one of the runs is of a mixture.
+        UserError: if one of the runs is of a mixture, or of a gas without an equation of state.
     """
-    if mixed := next((s.origin for s in samples if s.origin and s.origin.mixture), None):
+    if mixed := next((r.origin for r in results if r.origin and r.origin.mixture), None):
         raise UserError(
             f"{mixed.path}: an equation of state requires equal discs, as Z of a {mixed.kind} does not follow from φ "
             "alone; use `idealgas pressure` on the single log to compare it with theory"
         )
-    states = tuple(_state(kind, runs) for kind, runs in by_state(samples))
+    states = tuple(_state(kind, runs) for kind, runs in by_state(results))
     b2, b3 = _virial_coefficients(states)
     result = EquationOfState(states, b2, b3)
     if len(result.kinds) == 1:
@@ -129,9 +167,10 @@ def equation_of_state(samples: Sequence[PressureSample]) -> EquationOfState:
     return replace(result, caveats=(sentence,))
 
 
-def _state(kind: str, runs: Sequence[PressureSample]) -> PressureState:
-    phi, n = float(np.mean([run.packing_fraction for run in runs])), len(runs)
-    measured, fluid = mean_of_replicates([run.compressibility_factor for run in runs]), phi <= hard_discs.HIGHEST
+def _state(kind: str, runs: Sequence[Pressure]) -> PressureState:
+    phi = float(np.mean([run.packing_fraction for run in runs]))
+    measured = mean_of_replicates([run.route(PAIRS).compressibility_factor for run in runs])
+    fluid = phi <= hard_discs.HIGHEST
     infinite, source = measured, "published simulations" if measured.theory is not None else None
     if fluid and measured.theory is not None:
         infinite, source = measured.times(float(hard_discs.compressibility_factor(phi)) / measured.theory), RESUMMED
@@ -144,7 +183,7 @@ def _state(kind: str, runs: Sequence[PressureSample]) -> PressureState:
         phi,
         runs[0].number,
         kind,
-        n,
+        len(runs),
         seeds,
         measured,
         infinite,

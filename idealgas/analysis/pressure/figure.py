@@ -7,19 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from idealgas.analysis.pressure.equation_of_state import EquationOfState
-from idealgas.analysis.pressure.measure import IDEAL, Pressure
 from idealgas.analysis.pressure.mechanical import Mechanical
+from idealgas.analysis.pressure.result import IDEAL, Pressure
 from idealgas.presentation.style import BAND, BLACK, COLOURS, GREY, LINES, name_rows, panels
 from idealgas.theory import hard_discs
 from idealgas.theory.values import FREEZING, MELTING, PUBLISHED, SOLID
 
 
-def pressure_figure(result: Pressure | EquationOfState) -> Figure:
-    """Draw Z of one log by every route, or Z of several logs against the packing fraction."""
-    return _of_states(result) if isinstance(result, EquationOfState) else _of_log(result)
-
-
-def _of_walls(result: Pressure, pressures: Mechanical) -> Figure:
+def draw_walls(result: Pressure, pressures: Mechanical) -> Figure:
     """Draw the mechanical pressure on every wall, and the external pressure on a piston."""
     figure, (ax,) = panels(1)
     walls = pressures.walls[::-1]
@@ -35,10 +30,8 @@ def _of_walls(result: Pressure, pressures: Mechanical) -> Figure:
     return figure
 
 
-def _of_log(result: Pressure) -> Figure:
+def draw_routes(result: Pressure) -> Figure:
     """Draw Z of one log: every route with its error bar beside the theory of this route for the gas in its box."""
-    if result.mechanical:
-        return _of_walls(result, result.mechanical)
     figure, (ax,) = panels(1)
     routes = result.routes[::-1]
     values = [route.compressibility_factor.value for route in routes]
@@ -51,17 +44,17 @@ def _of_log(result: Pressure) -> Figure:
     ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
     name_rows(ax, [route.name for route in routes])
     low, high = ax.get_xlim()
-    for (name, theory), style in zip(result.known_theories.items(), cycle(LINES), strict=False):
-        shown = name == IDEAL or low < theory.value < high
-        if shown and theory.value not in known:
+    for (name, z), style in zip(result.theories.items(), cycle(LINES), strict=False):
+        shown = name == IDEAL or low < z < high
+        if shown and z not in known:
             colour = BLACK if name == IDEAL else GREY
-            ax.axvline(theory.value, color=colour, linestyle=style, linewidth=1, label=f"{name}: {theory.value:.5g}")
+            ax.axvline(z, color=colour, linestyle=style, linewidth=1, label=f"{name}: {z:.5g}")
     ax.set(xlabel="Z = PA/NT (no unit)", ylabel=f"Z by every route, at packing fraction {result.packing_fraction:.4g}")
     figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
     return figure
 
 
-def _of_states(result: EquationOfState) -> Figure:
+def draw_states(result: EquationOfState) -> Figure:
     """Draw Z against φ with the theories, and below it the deviation of each state from its theory."""
     figure, (above, below) = panels(2)
     phi = np.array([state.packing_fraction for state in result.states])

@@ -8,24 +8,19 @@ of the discs one radius inside the box.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.check import CheckResult, check_theory
-from idealgas.analysis.pressure.mechanical import Mechanical, mechanical
-from idealgas.analysis.pressure.routes import PAIRS, WALLS, PressureRoute, bulk_in_events, bulk_in_samples, routes_of
-from idealgas.analysis.result import Result
+from idealgas.analysis.pressure.mechanical import mechanical
+from idealgas.analysis.pressure.result import IDEAL, Pressure
+from idealgas.analysis.pressure.routes import bulk_in_events, bulk_in_samples, routes_of
 from idealgas.columns import SIDES, axis_of
-from idealgas.errors import NotApplicableError, UserError, unknown
-from idealgas.fields import INLINE, OMITTED, Key, reported
+from idealgas.errors import NotApplicableError, UserError
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import Gas
-from idealgas.statistics.estimates import Estimate
 from idealgas.tallies.chambers import Chambers, outward
-from idealgas.tallies.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths, theory_of
+from idealgas.tallies.collisions import collision_rates, expected_rates, free_paths, theory_of
 from idealgas.tallies.currents import Currents, pressure_tensor
 from idealgas.tallies.equilibration import Window, measure, unsteady
 from idealgas.tallies.equilibrium import becomes_uniform, known_ensemble, nonstationary_reason
@@ -46,75 +41,6 @@ from idealgas.theory.values import (
     fluid,
     mixture_error,
 )
-
-IDEAL = "ideal gas"
-"""Name of the theory of the ideal gas, Z = 1."""
-
-
-@dataclass(frozen=True)
-class Pressure(Result):
-    """Pressure of one log by every route, with theory, collision rates and free paths from the same events.
-
-    A gas without an equation of state has only the mechanical pressure on every wall: no routes, theories, rates or
-    paths.
-
-    Attributes:
-        window: window of time that was averaged.
-        number: number of discs.
-        area: area of the box, length²; without an equation of state the mean area of the gas.
-        temperature: temperature, energy (k_B = 1); without an equation of state the mean of m v²/2 over discs and time.
-        packing_fraction: packing fraction, no unit.
-        routes: pressure and Z by each route.
-        known_theories: Z by the name of each theory that applies.
-        collision_rates: collision rate of each pair of species.
-        free_paths: free path of each species; empty without events.
-        tensor: components xx, yy and xy of the pressure tensor, energy/length².
-        no_theory: why no theory applies to this gas in its box, as part of a sentence; None if one applies.
-        mechanical: pressure on every wall of a gas without an equation of state; None for other gases.
-    """
-
-    window: Window
-    number: int
-    area: float
-    temperature: float
-    packing_fraction: float
-    routes: tuple[PressureRoute, ...]
-    known_theories: Annotated[dict[str, Theory], OMITTED]
-    collision_rates: tuple[CollisionRate, ...]
-    free_paths: tuple[FreePath, ...]
-    tensor: Annotated[dict[str, Estimate], Key("pressure_tensor")]
-    no_theory: str | None = None
-    mechanical: Annotated[Mechanical | None, INLINE] = None
-
-    @property
-    @reported
-    def theories(self) -> dict[str, float]:
-        """Z by the name of each theory that applies."""
-        return {name: theory.value for name, theory in self.known_theories.items()}
-
-    @property
-    @reported
-    def theory_errors(self) -> dict[str, float]:
-        """Standard deviation of the error of Z by the name of each theory that applies."""
-        return {name: theory.error for name, theory in self.known_theories.items()}
-
-    def route(self, name: str) -> PressureRoute:
-        """Return the pressure by one route.
-
-        Raises:
-            UserError: if the gas has no such route; with the reason, if it has none at all.
-        """
-        if not self.routes:
-            raise UserError(self.no_theory or "")
-        names = [route.name for route in self.routes]
-        if name not in names:
-            raise unknown("route", name, names)
-        return self.routes[names.index(name)]
-
-    def check(self) -> CheckResult:
-        """Check that Z by the virial of the walls and by that of the pairs agrees with theory."""
-        virials = (route for route in self.routes if route.name.startswith((WALLS, PAIRS)))
-        return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 
 
 def pressure(
@@ -156,6 +82,7 @@ def pressure(
         impacts, paths, flow = samples, (), samples.flow
         bulk = bulk_in_samples(gas, log.periodic, window, samples, log.scene.properties.thermostat_rate > 0)
     tensor = pressure_tensor(log, equilibrium, theory, window.of(flow))
+    theories = hard_disc_theories(equilibrium.discs, gas, theory)
     return Pressure(
         window=window,
         number=len(gas),
@@ -163,7 +90,8 @@ def pressure(
         temperature=equilibrium.temperature,
         packing_fraction=gas.packing_fraction,
         routes=routes_of(gas, equilibrium.temperature, log.periodic, theory, window, bulk, impacts, tensor),
-        known_theories=hard_disc_theories(equilibrium.discs, gas, theory),
+        theories={name: z.value for name, z in theories.items()},
+        theory_errors={name: z.error for name, z in theories.items()},
         collision_rates=collision_rates(discs, expected, window, impacts),
         free_paths=paths,
         tensor=tensor,
@@ -201,21 +129,22 @@ def _without_theory(
         window, impacts = sampled(log, start, end, ())
         gauge = WallGauge(log, SampledWalls(log, impacts))
         energies = window.of(impacts.kinetic_flow)[:, :3:2].sum(axis=1)
-    walls = mechanical(log, gauge, window)
+    area = float(gauge.area(window.edges)[window.first :].mean())
     causes = log.scene.lacking("uniform", "conserves_energy")
     return Pressure(
         window=window,
         number=len(gas),
-        area=walls.area,
+        area=area,
         temperature=float(energies.mean()) / (2 * len(gas)),
-        packing_fraction=gas.packing_fraction * gas.area / walls.area,
+        packing_fraction=gas.packing_fraction * gas.area / area,
         routes=(),
-        known_theories={},
+        theories={},
+        theory_errors={},
         collision_rates=(),
         free_paths=(),
         tensor={},
         no_theory=f"no equation of state holds under {', '.join(causes) or 'several temperatures'}",
-        mechanical=walls,
+        mechanical=mechanical(log, gauge, window),
         caveats=(*_ends(log), *_chambers(log, window)),
     )
 

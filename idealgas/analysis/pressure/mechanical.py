@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.fields import OMITTED, Key
+from idealgas.fields import Key
 from idealgas.log import Log
 from idealgas.statistics.estimates import Estimate, mean_of_flux, mean_of_replicates, ratio
 from idealgas.tallies.equilibration import Window
@@ -69,14 +69,12 @@ class Mechanical:
     """Mechanical pressure on every face and force on every wall of a gas.
 
     Attributes:
-        area: mean area of the gas, length².
         walls: pressure on every face.
         forces: force on every wall, then on all walls together.
         unsteady: why the gas never becomes stationary, as part of a sentence; None if it may. If it is set, the numbers
             are means over a changing state.
     """
 
-    area: Annotated[float, OMITTED]
     walls: tuple[WallPressure, ...]
     forces: tuple[WallForce, ...]
     unsteady: str | None
@@ -89,7 +87,6 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
     faces = [(face, _external_pressure(gauge, face, window)) for face in present]
     balances = None if why else _balances(log, gauge, window, faces)
     return Mechanical(
-        area=float(gauge.area(window.edges)[used].mean()),
         walls=tuple(_pressure(face, used, balances, holding) for face, holding in faces),
         forces=_forces(log, gauge, window, balances),
         unsteady=why or None,

@@ -109,6 +109,101 @@ class Profile(Result):
         """Coordinates of the centres of the strips, (K,), length."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of density, temperature and pressure in every strip, and of the heat given by walls."""
+        axis, edges = self.axis, self.edges
+        strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
+        tables = []
+        for entry in self.species:
+            columns = {"density (1/length²)": entry.density, "temperature, m v²/2": entry.temperature}
+            columns |= {"temperature, I ω²": entry.spin} if entry.spin is not None else {}
+            columns |= {f"velocity along {self.flow} (length/time)": entry.velocity} if entry.velocity else {}
+            for name, column in columns.items():
+                tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
+        if gradients := [(entry.species, entry.gradient) for entry in self.species if entry.gradient is not None]:
+            tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
+        for name, parts in self.pressure.items():
+            tables.append(estimates(f"Pressure P_{name} (energy/length²)", zip(strips, parts, strict=True)))
+        tests = [
+            (name, Number(test.chi_squared, ".4g"), Number(test.waves, "d"), Number(test.p_value, ".3g"))
+            for name, test in _tests(self)
+        ]
+        if tests:
+            tables.append(Table("All strips together", ("", "χ²", "waves", "p"), tests))
+        if self.heat:
+            tables.append(estimates("Energy from each wall per time", self.heat.items()))
+        if self.heat_flow:
+            flow = [(f"along {axis}, mean of both sides", self.heat_flow)]
+            tables.append(estimates("Heat flow between the thermal sides (energy/time)", flow))
+        notes = (f"{self.window}, {self.frames} frames", f"theory: {self.law or 'none for this scene'}")
+        return [replace(tables[0], notes=notes), *tables[1:]]
+
+    def summary(self) -> str:
+        """Return density and temperature of the first and last known strip, and the agreement of all with theory."""
+        middles = [f"{self.axis} = {x:.4g}" for x in self.middles]
+        sentences: list[str] = []
+        rows: list[tuple[str, Estimate | PValue]] = []
+        for entry in self.species:
+            columns = {"density": entry.density, "temperature": entry.temperature}
+            columns |= {"velocity": entry.velocity} if entry.velocity else {}
+            for name, column in columns.items():
+                known = [(x, e) for x, e in zip(middles, column, strict=True) if e.standard_error > 0]
+                rows += [(f"{name} of {entry.species} at {x}", e) for x, e in known]
+                if not known:
+                    continue
+                (x0, first), (x1, last) = known[0], known[-1]
+                if name == "velocity":  # between sides the flow is fastest in the middle
+                    x1, last = max(known, key=lambda entry: abs(entry[1].value - known[0][1].value))
+                if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
+                    ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
+                    sentences.append(f"The {name} of {entry.species} is {ends}.")
+        same = "Nothing differs clearly between the first and the last strip."
+        law = f"theory, {self.law}"
+        rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(self)]
+        if flow := self.heat_flow:
+            verdict = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
+            sentences.append(f"Heat flows along {self.axis} at the rate {format_estimate(flow)}; {verdict}.")
+        return f"{' '.join(sentences) or same} In strips: {agreement(rows, law)}."
+
+    def figure(self) -> "Figure":
+        """Draw density, temperature, pressure and flow, theory dashed, the spin temperature as crosses."""
+        from idealgas.presentation.style import BLACK, Strips, curve_style, panels
+
+        def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
+            value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))
+            theory, off = np.array([(np.nan if e.theory is None else e.theory, e.theory_error) for e in column]).T
+            ax.theory(self.middles, theory, off, None)
+            ax.errorbar(self.middles, value, error, ms=4, capsize=2, **style)
+
+        figure, (density, temperature, stress, *flow) = panels(3 if self.flow is None else 4)
+        for k, entry in enumerate(self.species):
+            colour, _, marker = curve_style(k)
+            draw(density, entry.density, fmt=marker, color=colour, label=entry.species)
+            draw(temperature, entry.temperature, fmt=marker, color=colour, label=f"{entry.species}: m v²/2")
+            if entry.spin is not None:
+                draw(temperature, entry.spin, fmt="x", color=colour, label=f"{entry.species}: I ω²")
+            if entry.velocity is not None:
+                draw(flow[0], entry.velocity, fmt=marker, color=colour, label=entry.species)
+        for k, (name, parts) in enumerate(self.pressure.items()):
+            colour, _, marker = curve_style(k)
+            draw(stress, parts, fmt=marker, color=colour, label=f"P_{name}")
+        stress.set_ylabel("pressure tensor (energy/length²)")
+        if self.law is not None:
+            (*flow, density)[0].plot([], [], "--", color=BLACK, label=f"theory: {self.law}")
+            highest = [e.theory or 0.0 for entry in self.species for e in entry.density]
+            if max(highest) > 20 * min(highest) > 0:
+                density.set_yscale("log")
+        for ax in (density, temperature, stress, *flow):
+            ax.set_xlabel(f"{self.axis} (length)")
+            ax.legend()
+        low, high, number = self.edges[0], self.edges[-1], len(self.middles)
+        density.strips = Strips("xy".index(self.axis), float(low), float(high), number, self.strip)
+        density.set_ylabel("n (1/length²)")
+        temperature.set_ylabel("temperature (energy, k_B = 1)")
+        for ax in flow:
+            ax.set_ylabel(f"velocity along {self.flow} (length/time)")
+        return figure
+
 
 class ProfileAnalysis(Analysis):
     """Profiles of density, temperature, flow and pressure."""
@@ -171,104 +266,6 @@ class ProfileAnalysis(Analysis):
         axes = "xy"[axis], None if along_flow is None else "xy"[along_flow]
         heat = heat_of_walls(log, window), heat_flow(log, axis, window)
         return Profile(window, *axes, edges, strip, len(sums), law, species, pressure, *heat, caveats=caveats)
-
-    @staticmethod
-    def tables(result: Profile) -> list[Table]:
-        """Return the tables of density, temperature and pressure in every strip, and of the heat given by walls."""
-        axis, edges = result.axis, result.edges
-        strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
-        tables = []
-        for entry in result.species:
-            columns = {"density (1/length²)": entry.density, "temperature, m v²/2": entry.temperature}
-            columns |= {"temperature, I ω²": entry.spin} if entry.spin is not None else {}
-            columns |= {f"velocity along {result.flow} (length/time)": entry.velocity} if entry.velocity else {}
-            for name, column in columns.items():
-                tables.append(estimates(f"{entry.species}: {name}", zip(strips, column, strict=True)))
-        if gradients := [(entry.species, entry.gradient) for entry in result.species if entry.gradient is not None]:
-            tables.append(estimates(f"Temperature gradient along {axis} (energy/length)", gradients))
-        for name, parts in result.pressure.items():
-            tables.append(estimates(f"Pressure P_{name} (energy/length²)", zip(strips, parts, strict=True)))
-        tests = [
-            (name, Number(test.chi_squared, ".4g"), Number(test.waves, "d"), Number(test.p_value, ".3g"))
-            for name, test in _tests(result)
-        ]
-        if tests:
-            tables.append(Table("All strips together", ("", "χ²", "waves", "p"), tests))
-        if result.heat:
-            tables.append(estimates("Energy from each wall per time", result.heat.items()))
-        if result.heat_flow:
-            flow = [(f"along {axis}, mean of both sides", result.heat_flow)]
-            tables.append(estimates("Heat flow between the thermal sides (energy/time)", flow))
-        notes = (f"{result.window}, {result.frames} frames", f"theory: {result.law or 'none for this scene'}")
-        return [replace(tables[0], notes=notes), *tables[1:]]
-
-    @staticmethod
-    def summary(result: Profile) -> str:
-        """Return density and temperature of the first and last known strip, and the agreement of all with theory."""
-        middles = [f"{result.axis} = {x:.4g}" for x in result.middles]
-        sentences: list[str] = []
-        rows: list[tuple[str, Estimate | PValue]] = []
-        for entry in result.species:
-            columns = {"density": entry.density, "temperature": entry.temperature}
-            columns |= {"velocity": entry.velocity} if entry.velocity else {}
-            for name, column in columns.items():
-                known = [(x, e) for x, e in zip(middles, column, strict=True) if e.standard_error > 0]
-                rows += [(f"{name} of {entry.species} at {x}", e) for x, e in known]
-                if not known:
-                    continue
-                (x0, first), (x1, last) = known[0], known[-1]
-                if name == "velocity":  # between sides the flow is fastest in the middle
-                    x1, last = max(known, key=lambda entry: abs(entry[1].value - known[0][1].value))
-                if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
-                    ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
-                    sentences.append(f"The {name} of {entry.species} is {ends}.")
-        same = "Nothing differs clearly between the first and the last strip."
-        law = f"theory, {result.law}"
-        rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(result)]
-        if flow := result.heat_flow:
-            verdict = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
-            sentences.append(f"Heat flows along {result.axis} at the rate {format_estimate(flow)}; {verdict}.")
-        return f"{' '.join(sentences) or same} In strips: {agreement(rows, law)}."
-
-    @staticmethod
-    def figure(result: Profile) -> "Figure":
-        """Draw density, temperature, pressure and flow, theory dashed, the spin temperature as crosses."""
-        from idealgas.presentation.style import BLACK, Strips, curve_style, panels
-
-        def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
-            value, error = (np.array([getattr(e, name) for e in column]) for name in ("value", "standard_error"))
-            theory, off = np.array([(np.nan if e.theory is None else e.theory, e.theory_error) for e in column]).T
-            ax.theory(result.middles, theory, off, None)
-            ax.errorbar(result.middles, value, error, ms=4, capsize=2, **style)
-
-        figure, (density, temperature, stress, *flow) = panels(3 if result.flow is None else 4)
-        for k, entry in enumerate(result.species):
-            colour, _, marker = curve_style(k)
-            draw(density, entry.density, fmt=marker, color=colour, label=entry.species)
-            draw(temperature, entry.temperature, fmt=marker, color=colour, label=f"{entry.species}: m v²/2")
-            if entry.spin is not None:
-                draw(temperature, entry.spin, fmt="x", color=colour, label=f"{entry.species}: I ω²")
-            if entry.velocity is not None:
-                draw(flow[0], entry.velocity, fmt=marker, color=colour, label=entry.species)
-        for k, (name, parts) in enumerate(result.pressure.items()):
-            colour, _, marker = curve_style(k)
-            draw(stress, parts, fmt=marker, color=colour, label=f"P_{name}")
-        stress.set_ylabel("pressure tensor (energy/length²)")
-        if result.law is not None:
-            (*flow, density)[0].plot([], [], "--", color=BLACK, label=f"theory: {result.law}")
-            highest = [e.theory or 0.0 for entry in result.species for e in entry.density]
-            if max(highest) > 20 * min(highest) > 0:
-                density.set_yscale("log")
-        for ax in (density, temperature, stress, *flow):
-            ax.set_xlabel(f"{result.axis} (length)")
-            ax.legend()
-        low, high, number = result.edges[0], result.edges[-1], len(result.middles)
-        density.strips = Strips("xy".index(result.axis), float(low), float(high), number, result.strip)
-        density.set_ylabel("n (1/length²)")
-        temperature.set_ylabel("temperature (energy, k_B = 1)")
-        for ax in flow:
-            ax.set_ylabel(f"velocity along {result.flow} (length/time)")
-        return figure
 
 
 def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:

@@ -1,7 +1,8 @@
 """Measure the relaxation of the velocities to the Maxwell-Boltzmann distribution.
 
 The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error follows from the
-fluctuations of a gas with this number of discs. Several logs are drawn in one figure.
+fluctuations of a gas with this number of discs. Several logs are drawn in one figure. DIR is the
+folder of a sweep with the analysis "relaxation".
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,9 +26,9 @@ from idealgas.analysis.relaxation.speeds import (
     speed_distributions,
     speed_table,
 )
-from idealgas.analysis.result import Result
+from idealgas.analysis.result import Result, RunResult
 from idealgas.errors import UserError
-from idealgas.fields import OMITTED, Key, reported
+from idealgas.fields import Key, reported
 from idealgas.log import Log
 from idealgas.presentation.tables import Cell, Number, Table, format_estimate, with_error
 from idealgas.statistics.estimates import Estimate, ks_distance
@@ -72,7 +73,7 @@ DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
 @dataclass(frozen=True)
-class Relaxation(Result):
+class Relaxation(RunResult):
     """Relaxation of the gas of one log at K instants.
 
     All measures use the reduced energy x = m v²/2T of a disc, whose density in equilibrium is exp(-x) for any mass. As
@@ -92,8 +93,8 @@ class Relaxation(Result):
         in_time: fitted relaxation time of the kurtosis, time; None if the initial kurtosis is within its fluctuations
             in equilibrium.
         in_collisions: the same in collisions per disc.
-        first_indistinguishable: index of the first instant at which the distance is below the critical distance; None
-            if there is none.
+        indistinguishable_after: time and collisions per disc at the first instant at which the distance is below the
+            critical distance; None if there is none.
         acceptance: acceptance of Monte Carlo trials; None for other methods.
         speeds: speed distributions; None unless they were counted.
     """
@@ -109,7 +110,7 @@ class Relaxation(Result):
     critical_distance: float
     in_time: Annotated[Estimate | None, Key("relaxation_time")]
     in_collisions: Annotated[Estimate | None, Key("relaxation_collisions_per_disc")]
-    first_indistinguishable: Annotated[int | None, OMITTED]
+    indistinguishable_after: dict[str, float] | None
     acceptance: Acceptance | None
     speeds: Annotated[SpeedDistributions | None, Key("speed_distributions")]
 
@@ -119,20 +120,55 @@ class Relaxation(Result):
         """Time after which a gas counts as settled; None without a relaxation time."""
         return SETTLED * self.in_time.value if self.in_time else None
 
-    @property
-    @reported
-    def indistinguishable_after(self) -> dict[str, float] | None:
-        """Time and collisions per disc at `first_indistinguishable`; None if there is none."""
-        if (k := self.first_indistinguishable) is None:
-            return None
-        return {"time": float(self.time[k]), "collisions_per_disc": float(self.collisions[k])}
-
 
 @dataclass(frozen=True)
 class Relaxations(Result):
     """Relaxation of the gas of each log."""
 
     logs: tuple[Relaxation, ...]
+
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of speed distributions, if they were counted, relaxation times, and Monte Carlo trials."""
+        in_time = [_row(r, r.in_time, "time", float(r.time[0])) for r in self.logs]
+        in_collisions = [_row(r, r.in_collisions, "collisions_per_disc") for r in self.logs]
+        tried = {r.path: r.acceptance for r in self.logs if r.acceptance is not None}
+        return [
+            *(speed_table(r.path, r.speeds) for r in self.logs if r.speeds is not None),
+            Table("Relaxation to Maxwell-Boltzmann, in units of time", HEADS, in_time, NOTES),
+            Table("The same in collisions per disc", HEADS, in_collisions),
+            *(acceptance_tables(tried) if tried else ()),
+        ]
+
+    def summary(self) -> str:
+        """Return the relaxation time of each gas, and the theory near equilibrium."""
+        times = [
+            f"{log.number} discs in {format_estimate(log.in_collisions)}" for log in self.logs if log.in_collisions
+        ]
+        theory = (
+            f"Theory: {LINEAR:g} near equilibrium; not available for the whole relaxation from equal speeds, which is "
+            "slower."
+        )
+        if not times:
+            return f"No relaxation is seen: the velocities are those of equilibrium from the start. {theory}"
+        return (
+            f"Velocities relax to the Maxwell–Boltzmann distribution: {', '.join(times)} collisions per disc. {theory}"
+        )
+
+    def figure(self) -> "Figure":
+        """Draw kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
+
+        With several logs, the same is drawn against collisions per disc on the left.
+        """
+        from idealgas.presentation.style import panels
+
+        if len(self.logs) == 1:
+            figure, axes = panels(3)
+            _draw(axes, self, in_time=True)
+        else:
+            figure, axes = panels(3, columns=2)
+            _draw(axes[::2], self, in_time=False)
+            _draw(axes[1::2], self, in_time=True)
+        return figure
 
 
 class RelaxationAnalysis(Analysis):
@@ -186,7 +222,9 @@ class RelaxationAnalysis(Analysis):
             kurtosis[k] = number * (energy**2).sum() / energy.sum() ** 2
         collisions, critical = collisions_per_disc(log, time), critical_distance(number)
         target = 2 / (1 + 2 / equilibrium.dof)
-        indistinguishable = np.flatnonzero(distance < critical)
+        after = None
+        if len(below := np.flatnonzero(distance < critical)):
+            after = {"time": float(time[below[0]]), "collisions_per_disc": float(collisions[below[0]])}
         in_collisions = fit_decay(collisions, kurtosis, number, target)
         return Relaxation(
             path=str(log.path),
@@ -200,7 +238,7 @@ class RelaxationAnalysis(Analysis):
             critical_distance=critical,
             in_time=fit_decay(time - first, kurtosis, number, target),
             in_collisions=in_collisions,
-            first_indistinguishable=int(indistinguishable[0]) if len(indistinguishable) else None,
+            indistinguishable_after=after,
             acceptance=acceptance(log),
             speeds=None if every is None else speed_distributions(log, every, start, end),
             caveats=tuple(_caveats(in_collisions, collisions, kurtosis, number, first > log.start_time)),
@@ -210,52 +248,6 @@ class RelaxationAnalysis(Analysis):
     def combine(results: Sequence[Relaxation]) -> Relaxations:
         """Combine the relaxation of several logs, in their order."""
         return Relaxations(tuple(results))
-
-    @staticmethod
-    def tables(found: Relaxations) -> list[Table]:
-        """Return the tables of speed distributions, if they were counted, relaxation times, and Monte Carlo trials."""
-        in_time = [_row(r, r.in_time, r.time - r.time[0]) for r in found.logs]
-        in_collisions = [_row(r, r.in_collisions, r.collisions) for r in found.logs]
-        tried = {r.path: r.acceptance for r in found.logs if r.acceptance is not None}
-        return [
-            *(speed_table(r.path, r.speeds) for r in found.logs if r.speeds is not None),
-            Table("Relaxation to Maxwell-Boltzmann, in units of time", HEADS, in_time, NOTES),
-            Table("The same in collisions per disc", HEADS, in_collisions),
-            *(acceptance_tables(tried) if tried else ()),
-        ]
-
-    @staticmethod
-    def summary(found: Relaxations) -> str:
-        """Return the relaxation time of each gas, and the theory near equilibrium."""
-        times = [
-            f"{log.number} discs in {format_estimate(log.in_collisions)}" for log in found.logs if log.in_collisions
-        ]
-        theory = (
-            f"Theory: {LINEAR:g} near equilibrium; not available for the whole relaxation from equal speeds, which is "
-            "slower."
-        )
-        if not times:
-            return f"No relaxation is seen: the velocities are those of equilibrium from the start. {theory}"
-        return (
-            f"Velocities relax to the Maxwell–Boltzmann distribution: {', '.join(times)} collisions per disc. {theory}"
-        )
-
-    @staticmethod
-    def figure(found: Relaxations) -> "Figure":
-        """Draw kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
-
-        With several logs, the same is drawn against collisions per disc on the left.
-        """
-        from idealgas.presentation.style import panels
-
-        if len(found.logs) == 1:
-            figure, axes = panels(3)
-            _draw(axes, found, in_time=True)
-        else:
-            figure, axes = panels(3, columns=2)
-            _draw(axes[::2], found, in_time=False)
-            _draw(axes[1::2], found, in_time=True)
-        return figure
 
 
 def _caveats(
@@ -280,14 +272,14 @@ def _caveats(
         yield "The error of the relaxation time is that of a start with equal speeds; later curves scatter more."
 
 
-def _row(result: Relaxation, fit: Estimate | None, series: np.ndarray) -> tuple[Cell, ...]:
-    first = result.first_indistinguishable
+def _row(result: Relaxation, fit: Estimate | None, unit: str, start: float = 0.0) -> tuple[Cell, ...]:
+    after = result.indistinguishable_after
     return (
         result.path,
         Number(result.number, "d"),
         *(with_error(fit.value, fit.standard_error) if fit else (Number(None, absent="none seen"), Number(None))),
         Number(SETTLED * fit.value if fit else None, ".4g"),
-        Number(None if first is None else float(series[first]), ".3g", absent="not reached"),
+        Number(after[unit] - start if after else None, ".3g", absent="not reached"),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from idealgas.fields import OMITTED, Key, reported
+from idealgas.fields import Key
 from idealgas.log import Log
 from idealgas.presentation.tables import Cell, Number, Table, estimates
 from idealgas.scene import Scene
@@ -30,6 +30,14 @@ MANY = 2000  # largest number of discs whose pairs are all averaged
 
 
 @dataclass(frozen=True)
+class ReferenceSpeed:
+    """Speed v_ref of a Monte Carlo run, length/time, and the number of trials before it."""
+
+    after_trials: int
+    v_ref: float
+
+
+@dataclass(frozen=True)
 class Acceptance:
     """Acceptance of the trials of a Monte Carlo run: fraction of the trials that became collisions.
 
@@ -41,7 +49,7 @@ class Acceptance:
         at_start: fraction expected for the initial velocities.
         expected: fraction expected in equilibrium, by the name of the ensemble.
         published: published number of collisions; None for other scenes.
-        raises: number of trials before each v_ref and the v_ref from then on (length/time), in order of time.
+        reference_speeds: each v_ref of the run, in order of time.
     """
 
     number: Annotated[int, Key("trials")]
@@ -51,13 +59,7 @@ class Acceptance:
     at_start: Annotated[float, Key("acceptance_at_start")]
     expected: Annotated[dict[str, float], Key("acceptance_in_equilibrium")]
     published: Annotated[int | None, Key("published_collisions")]
-    raises: Annotated[tuple[tuple[int, float], ...], OMITTED]
-
-    @property
-    @reported
-    def v_ref(self) -> list[dict[str, float]]:
-        """Each v_ref, length/time, with the number of trials before it."""
-        return [{"after_trials": trials, "v_ref": v_ref} for trials, v_ref in self.raises]
+    reference_speeds: Annotated[tuple[ReferenceSpeed, ...], Key("v_ref")]
 
 
 def acceptance(log: Log) -> Acceptance | None:
@@ -67,9 +69,9 @@ def acceptance(log: Log) -> Acceptance | None:
     number, collisions = log.summary["trials"] if log.complete else last_trial(log), len(log) // 2
     share = collisions / max(number, 1)
     error = float(np.sqrt(share * (1 - share) / max(number, 1)))
-    equilibrium, raises = ensemble(log), _raises(log)
+    equilibrium, speeds = ensemble(log), _reference_speeds(log)
     still = conserved.share_of_motion(log.discs, equilibrium.centre_of_mass_velocity) <= conserved.SAID_FROM
-    v_ref = _mean_reference_speed(raises, number)
+    v_ref = _mean_reference_speed(speeds, number)
     fixed = _equilibrium_acceptance(log, v_ref, equilibrium.temperature, equilibrium.dof)
     maxwell = _equilibrium_acceptance(log, v_ref, log.discs.temperature if still else equilibrium.temperature)
     return Acceptance(
@@ -77,13 +79,13 @@ def acceptance(log: Log) -> Acceptance | None:
         collisions,
         2 * collisions / len(log.discs),
         Estimate(share, error, float(number), theory=fixed),
-        at_start=_start_acceptance(log, raises[0][1]),
+        at_start=_start_acceptance(log, speeds[0].v_ref),
         expected={
             "Maxwell-Boltzmann": maxwell,
             f"fixed energy and momentum ({equilibrium.dof} degrees of freedom)": fixed,
         },
         published=PUBLISHED if _is_published(log.scene) else None,
-        raises=raises,
+        reference_speeds=speeds,
     )
 
 
@@ -92,20 +94,20 @@ def last_trial(log: Log) -> int:
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
-def _raises(log: Log) -> tuple[tuple[int, float], ...]:
-    """Return the number of trials before each v_ref of a log and the v_ref, length/time, starting with the first."""
+def _reference_speeds(log: Log) -> tuple[ReferenceSpeed, ...]:
+    """Return each v_ref of a log, starting with the first."""
     if V_REF not in log.observables:  # the scene gives the only one
-        return ((0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
+        return (ReferenceSpeed(0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
     values = log.observables[V_REF][1]
     trials = log.observables["trials"][1][: len(values)]
     first = np.flatnonzero(np.diff(values, prepend=0.0))
-    return tuple(zip(trials[first].tolist(), values[first].tolist(), strict=True))
+    return tuple(map(ReferenceSpeed, trials[first].tolist(), values[first].tolist()))
 
 
-def _mean_reference_speed(raises: tuple[tuple[int, float], ...], number: int) -> float:
+def _mean_reference_speed(speeds: tuple[ReferenceSpeed, ...], number: int) -> float:
     """Return the harmonic mean of v_ref over all trials, length/time, which accepts as many of them as the run."""
-    starts = np.array([trials for trials, _ in raises] + [max(number, raises[-1][0] + 1)])
-    return float(np.diff(starts).sum() / (np.diff(starts) / [v_ref for _, v_ref in raises]).sum())
+    starts = np.array([speed.after_trials for speed in speeds] + [max(number, speeds[-1].after_trials + 1)])
+    return float(np.diff(starts).sum() / (np.diff(starts) / [speed.v_ref for speed in speeds]).sum())
 
 
 def _largest_product(log: Log, v_ref: float) -> float:
@@ -162,9 +164,9 @@ def acceptance_tables(tried: dict[str, Acceptance]) -> list[Table]:
     ]
     expected = [row for path, trials_of_log in tried.items() for row in _expected(path, trials_of_log)]
     raised = [
-        (path, Number(trials, ","), Number(v_ref, ".6g"))
+        (path, Number(speed.after_trials, ","), Number(speed.v_ref, ".6g"))
         for path, trials_of_log in tried.items()
-        for trials, v_ref in trials_of_log.raises
+        for speed in trials_of_log.reference_speeds
     ]
     return [
         Table("Trials of pairs", ("", "trials", "collisions", "collisions per disc"), counts),

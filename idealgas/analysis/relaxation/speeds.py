@@ -233,23 +233,23 @@ def _check_number(instants: float) -> None:
         raise UserError(f"{instants:.3g} instants are too many for a table (allowed <= {MOST_INSTANTS})")
 
 
-def speed_table(path: str, found: SpeedDistributions) -> Table:
+def speed_table(path: str, speeds: SpeedDistributions) -> Table:
     """Return the table of the numbers of discs by speed, one row per instant; the last row is Maxwell-Boltzmann."""
-    title = f"{path}: discs by speed, in classes from multiples of {found.rms:.4g} (rms)"
-    classes = (f"{edge / found.rms:.1f}" for edge in found.edges)
-    clock = [Number(t, ".4g") for t in found.time.tolist()]
-    if found.trials is not None:
-        clock = [Number(trial, ",") for trial in found.trials.tolist()]
+    title = f"{path}: discs by speed, in classes from multiples of {speeds.rms:.4g} (rms)"
+    classes = (f"{edge / speeds.rms:.1f}" for edge in speeds.edges)
+    clock = [Number(t, ".4g") for t in speeds.time.tolist()]
+    if speeds.trials is not None:
+        clock = [Number(trial, ",") for trial in speeds.trials.tolist()]
     columns = zip(
         clock,
-        found.collisions.tolist(),
-        found.distance.tolist(),
-        found.counts.tolist(),
+        speeds.collisions.tolist(),
+        speeds.distance.tolist(),
+        speeds.counts.tolist(),
         strict=True,
     )
     rows: list[tuple[Cell, ...]] = [
         (instant, Number(collisions, ".2f"), Number(distance, ".3f"), *(Number(n, "d") for n in counts))
         for instant, collisions, distance, counts in columns
     ]
-    rows.append(("law", "", "", *(Number(number, ".1f") for number in found.expected.tolist())))
-    return Table(title, ("time" if found.trials is None else "trials", "coll/disc", "KS", *classes), rows)
+    rows.append(("law", "", "", *(Number(number, ".1f") for number in speeds.expected.tolist())))
+    return Table(title, ("time" if speeds.trials is None else "trials", "coll/disc", "KS", *classes), rows)

@@ -94,6 +94,103 @@ class Scattering(Result):
     time: np.ndarray
     non_gaussian: Curve
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
+        rows = [
+            (f"{name}, {wave.name}", estimate)
+            for wave in self.waves
+            for name, estimate in (
+                ("S(k) (no unit)", wave.structure),
+                ("⟨|j|²⟩/N along k ((length/time)²)", wave.longitudinal_square),
+                ("⟨|j|²⟩/N across k ((length/time)²)", wave.transverse_square),
+                (f"F_s at t = {wave.time[1]:.3g} (no unit)", wave.early),
+            )
+        ]
+        notes = [
+            str(self.window),
+            "theory: (1 − S/N) T/m; free flight and the first collision",
+            "errors by 32 segments; too small, by the rms of deviation over error in 150 runs, are those of the "
+            "current along k of the longest wave (1.23), S(k, ω) of the shortest wave (1.23) and the current across k "
+            "of the third wave (1.19)",
+        ]
+        tables = [estimates("Waves of density and current", rows, notes)]
+        for wave in self.waves:
+            curves = {"F": wave.density, "F_s": wave.self_part, "along": wave.longitudinal, "across": wave.transverse}
+            tables.append(_series(f"Correlations, {wave.name}", {"t": wave.time}, curves))
+            tables.append(_series(f"Spectrum, {wave.name}", {"ω": wave.frequency}, {"S(k, ω)": wave.spectrum}))
+        for moved in self.van_hove:
+            columns = {"r": moved.distance, "normal": moved.gaussian}
+            tables.append(_series(f"Displacements, G_s(r, {moved.time:.4g})", columns, {"G_s": moved.density}))
+        for around in self.distinct:
+            title = f"Other discs, G_d(r, {around.time:.4g})"
+            tables.append(_series(title, {"r": around.distance}, {"G_d": around.density}))
+        title = "Non-Gaussian parameter of displacements (no unit)"
+        return [*tables, _series(title, {"t": self.time}, {"α₂": self.non_gaussian})]
+
+    def summary(self) -> str:
+        """Return S(k) of the longest wave, and whether the moments of all waves agree with theory."""
+        rows = [
+            (f"{name}, {wave.name}", estimate)
+            for wave in self.waves
+            for name, estimate in (
+                ("along", wave.longitudinal_square),
+                ("across", wave.transverse_square),
+                ("F_s", wave.early),
+            )
+        ]
+        first = self.waves[0]
+        return f"S(k) is {format_estimate(first.structure)} at {first.name}; currents and F_s: {agreement(rows)}."
+
+    def figure(self) -> "Figure":
+        """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d, with free flight and normal distribution dashed."""
+        from idealgas.presentation.style import BAND, COLOURS, curve_style, panels
+
+        figure, (density, self_part, spectrum, along, across, gaussian, displaced, distinct) = panels(4, 2)
+        for index, wave in enumerate(self.waves):
+            colour, line, _ = curve_style(index)
+            rate, square = wave.k * self.thermal_speed, self.thermal_speed**2
+            for ax, x, curve, unit in (
+                (density, wave.time * rate, wave.density, 1.0),
+                (self_part, wave.time * rate, wave.self_part, 1.0),
+                (spectrum, wave.frequency / rate, wave.spectrum, 1 / rate),
+                (along, wave.time * rate, wave.longitudinal, square),
+                (across, wave.time * rate, wave.transverse, square),
+            ):
+                y, error = curve.value / unit, curve.error / unit
+                ax.plot(x, y, line, color=colour, label=wave.name)
+                ax.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        free = np.linspace(0, 5, 100)
+        self_part.theory(free, np.exp(-(free**2) / 2), label="free flight")
+        y, error = self.non_gaussian.value, self.non_gaussian.error
+        gaussian.errorbar(self.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
+        gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
+        for index, moved in enumerate(self.van_hove):
+            colour, line, _ = curve_style(index)
+            x, unit = moved.distance / math.sqrt(moved.square), 1 / moved.square
+            y, error = moved.density.value / unit, moved.density.error / unit
+            displaced.plot(x, y, line, color=colour, label=f"t = {moved.time:.4g}")
+            displaced.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
+        displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
+        displaced.legend()
+        for index, around in enumerate(self.distinct, -1):  # the colours of G_s, and a new colour for t = 0
+            colour, line, _ = curve_style(index % len(self.distinct))
+            x, y, error = around.distance, around.density.value, around.density.error
+            distinct.plot(x, y, line, color=colour, label=f"t = {around.time:.4g}")
+            distinct.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
+        distinct.set(xlabel="r (length)", ylabel="G_d(r, t) (1/length²)")
+        distinct.legend()
+        density.set_ylabel("F(k, t) (no unit)")
+        self_part.set_ylabel("self part F_s(k, t) (no unit)")
+        spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
+        along.set_ylabel("current along k, over T/m (no unit)")
+        across.set_ylabel("current across k, over T/m (no unit)")
+        for ax in (density, self_part, along, across):
+            ax.set_xlabel("k √(T/m) t (no unit)")
+        for ax in (density, self_part, spectrum, along, across):
+            ax.legend()
+        return figure
+
 
 class ScatteringAnalysis(Analysis):
     """Density and current correlations."""
@@ -150,106 +247,6 @@ class ScatteringAnalysis(Analysis):
         return Scattering(
             window, speed, tuple(waves), tuple(displaced), distinct, *non_gaussian(moments), caveats=caveats
         )
-
-    @staticmethod
-    def tables(result: Scattering) -> list[Table]:
-        """Return the tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
-        rows = [
-            (f"{name}, {wave.name}", estimate)
-            for wave in result.waves
-            for name, estimate in (
-                ("S(k) (no unit)", wave.structure),
-                ("⟨|j|²⟩/N along k ((length/time)²)", wave.longitudinal_square),
-                ("⟨|j|²⟩/N across k ((length/time)²)", wave.transverse_square),
-                (f"F_s at t = {wave.time[1]:.3g} (no unit)", wave.early),
-            )
-        ]
-        notes = [
-            str(result.window),
-            "theory: (1 − S/N) T/m; free flight and the first collision",
-            "errors by 32 segments; too small, by the rms of deviation over error in 150 runs, are those of the "
-            "current along k of the longest wave (1.23), S(k, ω) of the shortest wave (1.23) and the current across k "
-            "of the third wave (1.19)",
-        ]
-        tables = [estimates("Waves of density and current", rows, notes)]
-        for wave in result.waves:
-            curves = {"F": wave.density, "F_s": wave.self_part, "along": wave.longitudinal, "across": wave.transverse}
-            tables.append(_series(f"Correlations, {wave.name}", {"t": wave.time}, curves))
-            tables.append(_series(f"Spectrum, {wave.name}", {"ω": wave.frequency}, {"S(k, ω)": wave.spectrum}))
-        for moved in result.van_hove:
-            columns = {"r": moved.distance, "normal": moved.gaussian}
-            tables.append(_series(f"Displacements, G_s(r, {moved.time:.4g})", columns, {"G_s": moved.density}))
-        for around in result.distinct:
-            title = f"Other discs, G_d(r, {around.time:.4g})"
-            tables.append(_series(title, {"r": around.distance}, {"G_d": around.density}))
-        title = "Non-Gaussian parameter of displacements (no unit)"
-        return [*tables, _series(title, {"t": result.time}, {"α₂": result.non_gaussian})]
-
-    @staticmethod
-    def summary(result: Scattering) -> str:
-        """Return S(k) of the longest wave, and whether the moments of all waves agree with theory."""
-        rows = [
-            (f"{name}, {wave.name}", estimate)
-            for wave in result.waves
-            for name, estimate in (
-                ("along", wave.longitudinal_square),
-                ("across", wave.transverse_square),
-                ("F_s", wave.early),
-            )
-        ]
-        first = result.waves[0]
-        return f"S(k) is {format_estimate(first.structure)} at {first.name}; currents and F_s: {agreement(rows)}."
-
-    @staticmethod
-    def figure(result: Scattering) -> "Figure":
-        """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d, with free flight and normal distribution dashed."""
-        from idealgas.presentation.style import BAND, COLOURS, curve_style, panels
-
-        figure, (density, self_part, spectrum, along, across, gaussian, displaced, distinct) = panels(4, 2)
-        for index, wave in enumerate(result.waves):
-            colour, line, _ = curve_style(index)
-            rate, square = wave.k * result.thermal_speed, result.thermal_speed**2
-            for ax, x, curve, unit in (
-                (density, wave.time * rate, wave.density, 1.0),
-                (self_part, wave.time * rate, wave.self_part, 1.0),
-                (spectrum, wave.frequency / rate, wave.spectrum, 1 / rate),
-                (along, wave.time * rate, wave.longitudinal, square),
-                (across, wave.time * rate, wave.transverse, square),
-            ):
-                y, error = curve.value / unit, curve.error / unit
-                ax.plot(x, y, line, color=colour, label=wave.name)
-                ax.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
-        free = np.linspace(0, 5, 100)
-        self_part.theory(free, np.exp(-(free**2) / 2), label="free flight")
-        y, error = result.non_gaussian.value, result.non_gaussian.error
-        gaussian.errorbar(result.time, y, error, fmt="o-", ms=3, color=COLOURS[0], capsize=2)
-        gaussian.set(xscale="log", xlabel="t (time)", ylabel="non-Gaussian parameter α₂ (no unit)")
-        for index, moved in enumerate(result.van_hove):
-            colour, line, _ = curve_style(index)
-            x, unit = moved.distance / math.sqrt(moved.square), 1 / moved.square
-            y, error = moved.density.value / unit, moved.density.error / unit
-            displaced.plot(x, y, line, color=colour, label=f"t = {moved.time:.4g}")
-            displaced.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
-        displaced.theory(x, moved.gaussian * moved.square, label="normal distribution")
-        displaced.set(yscale="log", xlabel="r/√⟨Δr²⟩ (no unit)", ylabel="G_s(r, t) ⟨Δr²⟩ (no unit)")
-        displaced.legend()
-        for index, around in enumerate(result.distinct, -1):  # the colours of G_s, and a new colour for t = 0
-            colour, line, _ = curve_style(index % len(result.distinct))
-            x, y, error = around.distance, around.density.value, around.density.error
-            distinct.plot(x, y, line, color=colour, label=f"t = {around.time:.4g}")
-            distinct.fill_between(x, y - error, y + error, color=colour, alpha=BAND, linewidth=0)
-        distinct.set(xlabel="r (length)", ylabel="G_d(r, t) (1/length²)")
-        distinct.legend()
-        density.set_ylabel("F(k, t) (no unit)")
-        self_part.set_ylabel("self part F_s(k, t) (no unit)")
-        spectrum.set(xlabel="ω/(k √(T/m)) (no unit)", ylabel="S(k, ω) k √(T/m) (no unit)")
-        along.set_ylabel("current along k, over T/m (no unit)")
-        across.set_ylabel("current across k, over T/m (no unit)")
-        for ax in (density, self_part, along, across):
-            ax.set_xlabel("k √(T/m) t (no unit)")
-        for ax in (density, self_part, spectrum, along, across):
-            ax.legend()
-        return figure
 
 
 def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> ScatteringWave:

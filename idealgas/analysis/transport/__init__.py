@@ -6,15 +6,12 @@ Several logs, or DIR, the folder of a sweep with the analysis "transport", give 
 against the packing fraction.
 """
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
 
 from idealgas.analysis.analysis import Analysis, Option, Section
-from idealgas.analysis.transport.combine import States, TransportSample, combine_transport, restore_transport
-from idealgas.analysis.transport.measure import Transport, transport
-from idealgas.analysis.transport.tables import transport_summary, transport_tables
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from idealgas.analysis.transport.measure import transport
+from idealgas.analysis.transport.result import Transport
+from idealgas.analysis.transport.states import TransportStates, transport_states
 
 
 class TransportAnalysis(Analysis):
@@ -22,7 +19,7 @@ class TransportAnalysis(Analysis):
 
     position = 70
     headline = "diffusion.*.coefficient"
-    results = (Transport, States, TransportSample)
+    results = (Transport, TransportStates)
     sections = (
         Section(
             "Transport",
@@ -42,14 +39,8 @@ class TransportAnalysis(Analysis):
     averages = True
 
     measure = staticmethod(transport)
-    tables = staticmethod(transport_tables)
-    combine = staticmethod(combine_transport)
-    restore = staticmethod(restore_transport)
-    summary = staticmethod(transport_summary)
 
     @staticmethod
-    def figure(result: Any) -> "Figure":
-        """Draw the result; matplotlib is imported only here."""
-        from idealgas.analysis.transport.figure import transport_figure
-
-        return transport_figure(result)
+    def combine(results: Sequence[Transport]) -> Transport | TransportStates:
+        """Return the coefficients of several runs over Enskog's; one run remains as it is."""
+        return results[0] if len(results) == 1 else transport_states(results)

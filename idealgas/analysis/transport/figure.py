@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from idealgas.analysis.transport.coefficients import SYMBOLS
-from idealgas.analysis.transport.combine import DIFFUSION, States
-from idealgas.analysis.transport.measure import Transport
+from idealgas.analysis.transport.result import Transport
+from idealgas.analysis.transport.states import DIFFUSION, TransportStates
 from idealgas.presentation.style import BAND, COLOURS, GREY, Panel, curve_style, panels
 from idealgas.theory import hard_discs
 
@@ -20,12 +20,7 @@ THIN = 0.12
 """Largest packing fraction at which the pair distribution has a theory beyond contact."""
 
 
-def transport_figure(result: Transport | States) -> Figure:
-    """Draw the transport in one log, or the coefficients of several logs against the packing fraction."""
-    return _of_states(result) if isinstance(result, States) else _of_log(result)
-
-
-def _of_states(result: States) -> Figure:
+def draw_states(result: TransportStates) -> Figure:
     """Draw coefficients over Enskog's against φ, or against N if all logs have the same φ."""
     figure, (ax,) = panels(1)
     by_number = len({round(state.packing_fraction, 9) for state in result.states}) == 1 < len(result.states)
@@ -49,7 +44,7 @@ def _of_states(result: States) -> Figure:
     return figure
 
 
-def _of_log(result: Transport) -> Figure:
+def draw_transport(result: Transport) -> Figure:
     """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time.
 
     Without events only the coefficients are drawn; among fixed discs there is no pair distribution.

@@ -6,12 +6,9 @@ displacement use the exact positions and velocities of discs at evenly spaced in
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
 
-from idealgas.analysis.result import Result
 from idealgas.analysis.transport.coefficients import Collective, collective, flow_in_events, flow_in_samples
 from idealgas.analysis.transport.diffusion import (
     LEAST_LAG,
@@ -22,14 +19,13 @@ from idealgas.analysis.transport.diffusion import (
     diffusion_limits,
 )
 from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
-from idealgas.analysis.transport.pair_distribution import PairDistribution, pair_distributions
+from idealgas.analysis.transport.pair_distribution import pair_distributions
+from idealgas.analysis.transport.result import Contact, Transport
 from idealgas.errors import UserError
-from idealgas.fields import Key
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside
 from idealgas.state import MOST_PAIRED
-from idealgas.statistics.estimates import Estimate
-from idealgas.tallies.collisions import CollisionRate, FreePath, collision_rates, expected_rates, free_paths, theory_of
+from idealgas.tallies.collisions import CollisionRate, collision_rates, expected_rates, free_paths, theory_of
 from idealgas.tallies.currents import Currents, pressure_tensor
 from idealgas.tallies.equilibration import Window, measure
 from idealgas.tallies.equilibrium import ensemble
@@ -42,48 +38,6 @@ from idealgas.theory.ensemble import Composition, Ensemble, composition
 FEWEST_SEGMENTS = 8  # smallest number of segments of the window, each as long as the longest lag
 LEAST_WINDOW = 16.0  # longest lags; with 8, coefficients of the whole gas are too small by up to a quarter
 SURE_WINDOW = 200.0  # longest lags from which on errors are right; with 75 the rms deviation is up to 1.25 errors
-
-
-@dataclass(frozen=True)
-class Contact:
-    """Contact value χ of the pair distribution of two species (no unit), from their collision rate."""
-
-    species: str
-    other: str
-    value: Estimate
-
-
-@dataclass(frozen=True)
-class Transport(Result):
-    """Transport in the gas of one log.
-
-    Attributes:
-        window: window of time that was used.
-        packing_fraction: packing fraction φ.
-        number: number of discs.
-        free_times: lag up to which discs and currents are followed, in mean free times of the slowest species.
-        walled: whether walls reflect diffusing discs.
-        collision_rates: collision rate of each pair of species.
-        free_paths: free path of each species.
-        contacts: contact value of each pair of species.
-        diffusion: diffusion of each species.
-        collective: viscosities and thermal conductivity; None with walls, which change the currents.
-        pressure: components xx, yy and xy of the pressure tensor, energy/length².
-        pair_distributions: pair distribution of each pair of species.
-    """
-
-    window: Window
-    packing_fraction: float
-    number: int
-    free_times: float
-    walled: bool
-    collision_rates: tuple[CollisionRate, ...]
-    free_paths: tuple[FreePath, ...]
-    contacts: tuple[Contact, ...]
-    diffusion: tuple[Diffusion, ...]
-    collective: Collective | None
-    pressure: Annotated[dict[str, Estimate], Key("pressure_tensor")]
-    pair_distributions: tuple[PairDistribution, ...]
 
 
 def transport(

@@ -13,13 +13,12 @@ import numpy as np
 from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.caveats import must_be_one_gas
 from idealgas.analysis.check import agreement
-from idealgas.analysis.result import Result
+from idealgas.analysis.result import Result, RunResult
 from idealgas.analysis.work.processes import (
     DIGITS,
     Crossing,
     WorkProcess,
     crossings,
-    expectation_of,
     joined,
     poorly_sampled,
     process,
@@ -55,13 +54,81 @@ class Work(Result):
     processes: tuple[WorkProcess, ...]
     crossings: tuple[Crossing, ...]
 
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of work and free energy of each kind of strokes, and of the crossings."""
+        rows = [
+            (f"{strokes.name}: {name}", estimate)
+            for strokes in self.processes
+            for name, estimate in (
+                ("free energy, −T ln⟨exp(−W/T)⟩", strokes.free_energy),
+                ("mean work", strokes.mean_work),
+                ("kinetic energy before", strokes.kinetic_energy),
+            )
+        ]
+        tables = [estimates(f"Work and free energy, T = {self.temperature:g}, N = {self.number}", rows)]
+        crossings = [
+            (f"{strokes.name}: {name}", estimate)
+            for strokes in self.crossings
+            for name, estimate in (
+                ("crossing (energy)", strokes.free_energy),
+                ("slope, T d ln(P_F/P_R)/dW", strokes.slope),
+            )
+        ]
+        return [*tables, *([estimates("Work forward and minus work back", crossings)] if crossings else [])]
+
+    def summary(self) -> str:
+        """Return the free energy of the first kind of strokes, and whether all agree with theory."""
+        rows = [(strokes.name, strokes.free_energy) for strokes in self.processes]
+        rows += [(f"crossing {strokes.name}", strokes.free_energy) for strokes in self.crossings]
+        first = self.processes[0]
+        difference = f"Free energy difference of the strokes {first.name}: {format_estimate(first.free_energy)}"
+        return f"{difference}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
+
+    def figure(self) -> "Figure":
+        """Draw the distributions of the work and of minus the work of the reverse strokes, and their ratio."""
+        from idealgas.presentation.style import COLOURS, panels
+
+        if not self.crossings:
+            figure, axes = panels(len(self.processes))
+            for ax, strokes in zip(axes, self.processes, strict=True):
+                ax.hist(strokes.work, BINS, density=True, histtype="step", color=COLOURS[0], label=strokes.name)
+                _mark(ax, strokes.free_energy)
+            return figure
+        figure, axes = panels(len(self.crossings), 2)
+        for crossing, works, ratio in zip(self.crossings, axes[::2], axes[1::2], strict=True):
+            forward, back = crossing.forward, -crossing.back
+            edges = np.histogram_bin_edges(np.concatenate((forward, back)), BINS)
+            counts = [np.histogram(work[work != 0], edges)[0] for work in (forward, back)]
+            names = f"W, {crossing.name}", "−W of the reverse strokes"
+            for count, work, colour, label in zip(counts, (forward, back), COLOURS, names, strict=False):
+                works.stairs(count / len(work) / np.diff(edges), edges, color=colour, label=label)
+                if still := np.count_nonzero(work == 0):  # a discrete value, which has no density
+                    share = f"{100 * still / len(work):.0f} % of {'W' if work is forward else '−W'} are 0"
+                    marker = "^" if work is forward else "v"
+                    works.plot(0, 0, marker, color=colour, clip_on=False, fillstyle="none", label=share)
+            _mark(works, crossing.free_energy)
+            middle, (a, b) = _pairs(forward, back, edges)
+            logs, error = np.log(a / b * (len(back) / len(forward))), np.sqrt(1 / a + 1 / b)
+            ratio.errorbar(middle, logs, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="ln(P_F/P_R)")
+            if (theory := crossing.free_energy.theory) is not None:
+                ends = edges[[0, -1]]
+                line, doubt = (ends - theory) / self.temperature, crossing.free_energy.theory_error
+                ratio.theory(ends, line, doubt / self.temperature, "theory: (W − ΔF)/T")
+            ratio.set(xlabel="W (energy)", ylabel="ratio of the distributions, logarithm (no unit)")
+            ratio.legend()
+        return figure
+
+
+class WorkOfRun(RunResult, Work):
+    """Work of a piston in one run."""
+
 
 class WorkAnalysis(Analysis):
     """Work of a piston."""
 
     position = 115
     headline = "processes.*.free_energy"
-    results = (Work,)
+    results = (WorkOfRun, Work)
     sections = (
         Section("Work", "Distribution of the work of the piston forward and back, which cross at the free energy"),
     )
@@ -73,7 +140,7 @@ class WorkAnalysis(Analysis):
     @staticmethod
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
-    ) -> Work:
+    ) -> WorkOfRun:
         """Measure the work of each stroke of a piston and compare it with the free energy difference ΔF of the gas.
 
         Whatever the speed of the piston, ⟨exp(-W/T)⟩ = exp(-ΔF/T) over strokes that begin in equilibrium with a heat
@@ -111,7 +178,7 @@ class WorkAnalysis(Analysis):
             for (ends, protocol), pairs in strokes.items()
             for work, energy in [np.array(pairs).T]
         )
-        return Work(temperature, number, processes, crossings(processes, temperature))
+        return WorkOfRun(temperature, number, processes, crossings(processes, temperature))
 
     @staticmethod
     def combine(results: Sequence[Work]) -> Work:
@@ -128,85 +195,6 @@ class WorkAnalysis(Analysis):
         processes = tuple(joined(same, temperature, number) for same in kinds.values())
         caveats = tuple(sentence for strokes in processes for sentence in poorly_sampled(strokes, temperature))
         return Work(temperature, number, processes, crossings(processes, temperature), caveats=caveats)
-
-    @staticmethod
-    def restore(found: dict[str, Any], label: str) -> Work:
-        """Return the result of one point of a sweep."""
-        processes = []
-        for strokes in found["processes"]:
-            theory = expectation_of(Estimate.from_dict(strokes["free_energy"]))
-            ends, protocol = tuple(strokes["ends"]), tuple(map(tuple, strokes["protocol"]))
-            series = np.array(strokes["work"]), np.array(strokes["start_energy"])
-            processes.append(process(ends, protocol, *series, found["temperature"], found["number"], theory))
-        temperature, number = found["temperature"], found["number"]
-        return Work(temperature, number, tuple(processes), crossings(processes, temperature))
-
-    @staticmethod
-    def tables(result: Work) -> list[Table]:
-        """Return the tables of work and free energy of each kind of strokes, and of the crossings."""
-        rows = [
-            (f"{strokes.name}: {name}", estimate)
-            for strokes in result.processes
-            for name, estimate in (
-                ("free energy, −T ln⟨exp(−W/T)⟩", strokes.free_energy),
-                ("mean work", strokes.mean_work),
-                ("kinetic energy before", strokes.kinetic_energy),
-            )
-        ]
-        tables = [estimates(f"Work and free energy, T = {result.temperature:g}, N = {result.number}", rows)]
-        crossings = [
-            (f"{strokes.name}: {name}", estimate)
-            for strokes in result.crossings
-            for name, estimate in (
-                ("crossing (energy)", strokes.free_energy),
-                ("slope, T d ln(P_F/P_R)/dW", strokes.slope),
-            )
-        ]
-        return [*tables, *([estimates("Work forward and minus work back", crossings)] if crossings else [])]
-
-    @staticmethod
-    def summary(result: Work) -> str:
-        """Return the free energy of the first kind of strokes, and whether all agree with theory."""
-        rows = [(strokes.name, strokes.free_energy) for strokes in result.processes]
-        rows += [(f"crossing {strokes.name}", strokes.free_energy) for strokes in result.crossings]
-        first = result.processes[0]
-        difference = f"Free energy difference of the strokes {first.name}: {format_estimate(first.free_energy)}"
-        return f"{difference}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
-
-    @staticmethod
-    def figure(result: Work) -> "Figure":
-        """Draw the distributions of the work and of minus the work of the reverse strokes, and their ratio."""
-        from idealgas.presentation.style import COLOURS, panels
-
-        if not result.crossings:
-            figure, axes = panels(len(result.processes))
-            for ax, strokes in zip(axes, result.processes, strict=True):
-                ax.hist(strokes.work, BINS, density=True, histtype="step", color=COLOURS[0], label=strokes.name)
-                _mark(ax, strokes.free_energy)
-            return figure
-        figure, axes = panels(len(result.crossings), 2)
-        for crossing, works, ratio in zip(result.crossings, axes[::2], axes[1::2], strict=True):
-            forward, back = crossing.forward, -crossing.back
-            edges = np.histogram_bin_edges(np.concatenate((forward, back)), BINS)
-            counts = [np.histogram(work[work != 0], edges)[0] for work in (forward, back)]
-            names = f"W, {crossing.name}", "−W of the reverse strokes"
-            for count, work, colour, label in zip(counts, (forward, back), COLOURS, names, strict=False):
-                works.stairs(count / len(work) / np.diff(edges), edges, color=colour, label=label)
-                if still := np.count_nonzero(work == 0):  # a discrete value, which has no density
-                    share = f"{100 * still / len(work):.0f} % of {'W' if work is forward else '−W'} are 0"
-                    marker = "^" if work is forward else "v"
-                    works.plot(0, 0, marker, color=colour, clip_on=False, fillstyle="none", label=share)
-            _mark(works, crossing.free_energy)
-            middle, (a, b) = _pairs(forward, back, edges)
-            logs, error = np.log(a / b * (len(back) / len(forward))), np.sqrt(1 / a + 1 / b)
-            ratio.errorbar(middle, logs, error, fmt="o", ms=3, color=COLOURS[0], capsize=2, label="ln(P_F/P_R)")
-            if (theory := crossing.free_energy.theory) is not None:
-                ends = edges[[0, -1]]
-                line, doubt = (ends - theory) / result.temperature, crossing.free_energy.theory_error
-                ratio.theory(ends, line, doubt / result.temperature, "theory: (W − ΔF)/T")
-            ratio.set(xlabel="W (energy)", ylabel="ratio of the distributions, logarithm (no unit)")
-            ratio.legend()
-        return figure
 
 
 def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

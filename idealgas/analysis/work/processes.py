@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -67,13 +67,13 @@ class Crossing:
     name: str
     free_energy: Estimate
     slope: Estimate
-    forward: Annotated[np.ndarray, OMITTED]
-    back: Annotated[np.ndarray, OMITTED]
+    forward: Annotated[np.ndarray, OMITTED] = field(default_factory=lambda: np.empty(0))
+    back: Annotated[np.ndarray, OMITTED] = field(default_factory=lambda: np.empty(0))
 
 
-def expectation_of(found: Estimate) -> Theory | None:
+def expectation_of(estimate: Estimate) -> Theory | None:
     """Return the theory of an estimate; None without one."""
-    return None if found.theory is None else Theory(found.theory, found.theory_error, "")
+    return None if estimate.theory is None else Theory(estimate.theory, estimate.theory_error, "")
 
 
 def process(

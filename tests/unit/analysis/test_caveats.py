@@ -52,16 +52,16 @@ def test_runs_are_grouped_by_state_in_order_of_density():
 
 
 def test_a_sentence_is_in_tables_json_and_the_report():
-    analysis, log = registry.find("pressure"), made(TWO)
+    log = made(TWO)
     found = combined("pressure", log)
     sentence = only(found, "do not reach all states")
-    assert analysis.shown_tables(found)[0].notes[0] == f"caveat: {sentence}"
+    assert found.tables()[0].notes[0] == f"caveat: {sentence}"
     assert sentence in json.loads(json.dumps(found.as_dict()))["caveats"]
     shown = [section.tables for section in make_sections(log) if section.title == "Pressure"]
     assert shown[0][0].notes[0] == f"caveat: {sentence}"
     fine = combined("pressure", made())
     assert (fine.caveats, fine.as_dict()["caveats"]) == ((), [])
-    assert not any(note.startswith("caveat") for note in analysis.shown_tables(fine)[0].notes)
+    assert not any(note.startswith("caveat") for note in fine.tables()[0].notes)
 
 
 def test_sentences_of_many_logs_have_their_paths_and_are_bounded():
@@ -149,10 +149,11 @@ def test_a_sweep_counts_once():
     """Points of a sweep know their runs from their scenes."""
     analysis, log = registry.find("heat-capacity"), made()
     found = analysis.analyse(log)
-    point = analysis.restored(found.as_dict(), "a point", caveats.origin_of(log.scene, "sweep, point 0"))
+    origin = caveats.origin_of(log.scene, "sweep, point 0")
+    point = analysis.restored(found.as_dict(), origin)
     assert (point.caveats, point.energy) == ((), found.energy)
     raised(r"sweep, point 0: the same run as ", analysis.combined, [found, point])
-    stored = analysis.restored(found.as_dict() | {"caveats": ["a sentence."]}, "a point")
+    stored = analysis.restored(found.as_dict() | {"caveats": ["a sentence."]}, origin)
     assert stored.caveats == ("a sentence.",)
 
 
@@ -181,7 +182,7 @@ def test_the_equation_of_state_says_which_gases():
         found, "different gases, each in a separate row"
     )
     assert len(found.states) == 2
-    heads = registry.find("pressure").tables(found)[0].heads
+    heads = found.tables()[0].heads
     assert heads[:3] == ("gas", "φ", "N")
     alike = combined("pressure", walls, made("species.gas.radius=0.2", "scene.seed=9"))
     assert alike.caveats == ()
@@ -196,10 +197,13 @@ def test_what_does_not_combine():
 
 
 def test_effusion_of_different_gases_under_one_name():
+    def labelled(result):
+        return replace(result, origin=replace(result.origin, label="base scene"))
+
     analysis, log, other = registry.find("effusion"), made(*SLIT), made(*SLIT, "species.gas.count=50")
-    results = [replace(analysis.analyse(each), name="base scene") for each in (log, other)]
+    results = [labelled(analysis.analyse(each)) for each in (log, other)]
     raised(r"base scene: different gases under one name \(N = 40 .*; N = 50 .*\)", analysis.combined, results)
-    third = replace(analysis.analyse(made(*SLIT, "scene.seed=12")), name="base scene")
+    third = labelled(analysis.analyse(made(*SLIT, "scene.seed=12")))
     assert list(analysis.combined([results[0], third]).groups) == ["base scene"]
 
 
@@ -215,8 +219,8 @@ def test_effusion_takes_a_slit_narrower_than_a_mean_free_path():
     assert run.expected is None
     assert (run.speed.theory, run.speed.deviation) == (None, None)
     assert run.speed.value > 0
-    assert registry.find("effusion").figure(found).axes
-    assert registry.find("effusion").restored(run.as_dict(), "again").expected is None
+    assert found.figure().axes
+    assert registry.find("effusion").restored(run.as_dict(), run.origin).expected is None
     (narrow,) = combined("effusion", made(*SLIT)).groups.values()
     assert narrow[0].expected is not None
     assert narrow[0].speed.theory_error > 0.0125 * narrow[0].speed.theory
@@ -231,7 +235,7 @@ def test_fluctuations_take_samples():
     found = combined("heat-capacity", short)
     assert found.routes == ()
     only(found, "No heat capacity from Var(E)/T²: ")
-    assert registry.find("heat-capacity").figure(found).axes
+    assert found.figure().axes
     long = combined("heat-capacity", made(*bath, "run.until=4000", "log.snapshot_every=10"))
     assert [route.name for route in long.routes] == ["Var(E)/T²"]
     assert long.caveats == ()

@@ -29,7 +29,7 @@ def test_no_law_and_why(override, make):
     assert gas.mean.theory is None
     assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["no_law"] == found.no_law
-    (table,) = found.analysis.tables(found)
+    (table,) = found.plain_tables()
     assert f"Theory gives no distribution: {found.no_law}." in table.notes
     assert found.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
 

@@ -163,7 +163,7 @@ def test_laws_of_many_discs_take_many():
         "temperature", "species.gas.count=1", SPIN.replace("=0}", "=1}"), "run.collisions_per_disc=", "run.until=50"
     )
     assert spinning.species[0].both.theory is None
-    assert registry.find("transport").figure(registry.analyse(one, "transport")).axes
+    assert registry.analyse(one, "transport").figure().axes
 
 
 def test_a_slit_takes_a_thin_gas():

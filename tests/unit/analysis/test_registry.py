@@ -20,6 +20,7 @@ from idealgas import catalogue
 from idealgas.analysis import registry
 from idealgas.analysis.analysis import Option
 from idealgas.analysis.result import Result
+from idealgas.fields import reported_properties
 from idealgas.presentation.quantities import ESTIMATE, as_csv, names
 from idealgas.presentation.tables import Number, Table, escape, estimates, html_table
 from idealgas.report.sections import make_sections
@@ -131,7 +132,7 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
     assert isinstance(measured, Result)
     assert isinstance(result, Result)
     assert isinstance(result.as_dict()["caveats"], list)
-    tables = analysis.shown_tables(result)
+    tables = measured.tables()
     assert any(table.rows for table in tables)
     headline = measured.summary()
     assert headline == result.summary() == str(measured).splitlines()[0]
@@ -151,11 +152,27 @@ def test_terminal_csv_and_json_have_the_same_numbers(make, analysis):
 
 
 @every_analysis
+def test_a_result_is_restored_from_its_plain_values(make, analysis):
+    measured = analysis.analyse(make(*TAKES.get(analysis.name, ())))
+    if analysis.combine is None:
+        return
+    stored = json.loads(json.dumps(measured.as_dict()))
+    restored = analysis.restored(stored, measured.origin)
+    assert (type(restored), restored.origin) == (type(measured), measured.origin)
+    assert json.dumps(restored.as_dict()) == json.dumps(stored)
+    assert restored.summary() == measured.summary()
+    assert restored.figure().axes
+    message = f"{measured.origin.path}: damaged results of the analysis {analysis.key}"
+    for name in set(stored) - {"caveats", *reported_properties(type(measured))}:
+        raised(message, analysis.restored, stored | {name: {"of": ["another", "kind"]}}, measured.origin)
+
+
+@every_analysis
 def test_results_show_themselves_in_a_notebook(make, analysis):
     log = make(*TAKES.get(analysis.name, ()))
     result = getattr(idealgas, analysis.name)(log)
     combined = analysis.combined([analysis.analyse(log)])
-    assert repr(result.tables()) == repr(combined.tables()) == repr(analysis.shown_tables(combined))  # nan is not nan
+    assert repr(result.tables()) == repr(combined.tables())  # nan is not nan
     shown, text = result._repr_html_(), str(result)
     for table in result.tables():
         assert all(escape(note) in shown for note in table.notes)

@@ -119,19 +119,20 @@ def test_what_was_seen_of_equal_speeds(log):
     assert found.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
     assert found.equilibrium_kurtosis == pytest.approx(2 * 160 / 162, rel=1e-15)
     assert found.collisions[-1] == pytest.approx(40, abs=2 / 80)
-    k = found.first_indistinguishable
+    k = int(np.flatnonzero(found.time == found.indistinguishable_after["time"])[0])
+    assert found.collisions[k] == found.indistinguishable_after["collisions_per_disc"]
     assert found.distance[k] < found.critical_distance <= found.distance[:k].min()
     assert found.in_collisions.value / found.in_time.value == pytest.approx(
         found.collisions[-1] / found.time[-1], rel=0.1
     )
-    axes = found.analysis.figure(found.analysis.combine([found, found])).axes
+    axes = found.analysis.combine([found, found]).figure().axes
     assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
 
 
 def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make):
     found = relaxation(make("species.gas.speed=", "species.gas.temperature=1.0"))
     assert found.in_time is None
-    assert found.first_indistinguishable is not None
+    assert found.indistinguishable_after is not None
     assert found.as_dict()["relaxation_time"] is None
 
 

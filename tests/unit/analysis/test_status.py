@@ -7,7 +7,8 @@ import pytest
 from helpers.logs import gas
 
 from idealgas.analysis import status as module
-from idealgas.analysis.pressure.measure import PAIRS, pressure
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.routes import PAIRS
 from idealgas.analysis.status import status
 
 pytestmark = pytest.mark.interpreted

@@ -130,7 +130,7 @@ def test_strokes_of_a_log(log):
 def test_results_of_a_sweep_are_those_of_its_logs(log):
     analysis = find("work")
     found = analysis.analyse(log)
-    again = analysis.restored(found.as_dict(), "point", found.origin)
+    again = analysis.restored(found.as_dict(), found.origin)
     assert again.as_dict() == found.as_dict()
     both = analysis.combine([found, again])
     assert [len(one.work) for one in both.processes] == [20, 20]

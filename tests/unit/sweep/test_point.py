@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from helpers.support import called
 
-from idealgas.analysis.pressure.combine import restore_pressure
+from idealgas.analysis import registry
 from idealgas.errors import UserError
 from idealgas.scene import parse_scene
 from idealgas.sweep.figure import sweep_figure
@@ -68,11 +68,10 @@ def test_the_table_is_tidy(point, tmp_path):
     assert all(part.isidentifier() or part.isdigit() for name in by_name for part in name.split("."))
     pairs = by_name["pressure.routes.pairs_virial.compressibility_factor"]
     assert pairs["group"] == "pairs, virial"
-    ((label, result, _),) = stored_results(tmp_path, "pressure")
-    assert label == "phi = 0.1, species.x = [1, 2]"
-    sample = restore_pressure(result, label)
-    assert float(pairs["value"]) == sample.compressibility_factor.value
-    assert float(pairs["theory"]) == sample.compressibility_factor.theory
+    ((values, origin),) = stored_results(tmp_path, "pressure")
+    assert origin.label == "phi = 0.1, species.x = [1, 2]"
+    z = registry.find("pressure").restored(values, origin).route("pairs, virial").compressibility_factor
+    assert (float(pairs["value"]), float(pairs["theory"])) == (z.value, z.theory)
     assert pairs["species.x"] == "[1, 2]"
     assert by_name["temperature.species.gas.both"]["standard_error"]
     if len(tables) == 2:

@@ -11,7 +11,7 @@ from helpers.crafted import craft
 from helpers.logs import PERIODIC, gas
 
 from idealgas import evolution, open_log
-from idealgas.analysis.evolution import MOST_SAMPLES, EvolutionAnalysis
+from idealgas.analysis.evolution import MOST_SAMPLES
 from idealgas.analysis.evolution.pressure_series import STATES
 from idealgas.columns import SIDES
 from idealgas.log.hdf5.commit import Commit
@@ -49,7 +49,7 @@ def test_more_gases_than_colours(make):
     found = evolution(make(f"piston=[{', '.join([*pistons, last])}]", *discs))
     assert [*found.pistons] == [*(f"{name} piston" for name in "abcdefg"), "piston"]
     assert [*found.chambers][-2:] == ["between g piston and piston", "right"]
-    lines = EvolutionAnalysis().figure(found).axes[0].lines
+    lines = found.figure().axes[0].lines
     looks = {(line.get_color(), line.get_linestyle()) for line in lines}
     assert len(lines) == len(looks) == 1 + len(found.chambers)
     assert lines[1].get_label() == "left of the pistons"
@@ -86,7 +86,7 @@ def test_a_gate_counts_who_is_beyond(make):
     share = found.beyond["gas"]
     assert (share[found.time <= 5] == 0).all()
     assert share[-1] == (log.state_at(20.0).position[:, 0] > 6).mean() > 0.2
-    assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in EvolutionAnalysis.summary(found)
+    assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in found.summary()
 
 
 PISTON = "piston=[{ velocity = -0.05 }]"
@@ -205,7 +205,7 @@ def test_pressure_in_bins_of_time(make):
     n = len(series.area)
     assert series.area[[0, -1]] == pytest.approx(96 - 0.8 * 20 * np.array([0.5, n - 0.5]) / n)
     assert {*series.pressure} == {f"{side} wall" for side in SIDES}
-    titles = [table.title for table in found.analysis.tables(found)]
+    titles = [table.title for table in found.plain_tables()]
     assert titles[1] == "Pressure on walls, means over bins of time"
     axes = [ax.get_ylabel() for ax in found.plot().axes]
     assert axes.count("pressure (energy/length²)") == 2

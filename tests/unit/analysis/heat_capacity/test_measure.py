@@ -17,6 +17,7 @@ from idealgas.analysis.heat_capacity.fluctuations import (
     expected_capacity,
     kinetic_fluctuations,
 )
+from idealgas.fields import from_dict
 from idealgas.statistics.estimates import Estimate
 
 N = 20
@@ -99,7 +100,7 @@ def test_gamma_takes_the_best_measured_capacity_at_constant_area():
 
 def test_json_comes_back():
     log = measured(PISTON, 2.0, 1.0, (0.0, 0.01), {"E/T": Estimate(1.0, 0.1, float("inf"), 1.0)}, 2.0, 1.0)
-    assert HeatCapacityAnalysis.restore(log.as_dict(), "point") == log
+    assert from_dict(Measured, log.as_dict()) == log
 
 
 def test_a_short_run_with_a_piston_lacks_samples_not_a_piston():
@@ -110,7 +111,7 @@ def test_a_short_run_with_a_piston_lacks_samples_not_a_piston():
     assert "it requires" not in of_energy
     assert refused["γ"].startswith("the heat capacity of the gas with the piston was not measured")
     assert refused["Var(E)/T²"].startswith("it requires thermal walls")
-    rows = [label.get_text() for label in HeatCapacityAnalysis.figure(result).axes[0].get_yticklabels()]
+    rows = [label.get_text() for label in result.figure().axes[0].get_yticklabels()]
     assert rows == ["no dE/dT", "no E/T", "no Var(E)/T²", "no fluctuations", "no γ"]
 
 

@@ -8,12 +8,21 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from idealgas.analysis.pressure.equation_of_state import PressureSample, equation_of_state
-from idealgas.analysis.pressure.tables import pressure_tables
+from idealgas.analysis.pressure.equation_of_state import equation_of_state
+from idealgas.analysis.pressure.result import Pressure
+from idealgas.analysis.pressure.routes import PAIRS, PressureRoute
 from idealgas.analysis.result import Origin
 from idealgas.presentation.quantities import as_csv
 from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.equilibration import Window
 from idealgas.theory import hard_discs
+
+
+def pressure_of(phi, number, z):
+    """Result of a run, of which the equation of state uses φ, N and Z of the pairs only."""
+    window = Window(np.array([0.0, 1.0]), 0, True)
+    route = PressureRoute(PAIRS, z, z)
+    return Pressure(window, number, 1.0, 1.0, phi, (route,), {}, {}, (), (), {})
 
 
 def samples(phis, error, number=1000, runs=4, seed=0):
@@ -22,7 +31,7 @@ def samples(phis, error, number=1000, runs=4, seed=0):
     for phi in phis:
         z = float(hard_discs.compressibility_factor(phi, number))
         for value in random.normal(z, error * z, runs):
-            yield PressureSample(phi, number, Estimate(float(value), error * z, 500.0, z))
+            yield pressure_of(phi, number, Estimate(float(value), error * z, 500.0, z))
 
 
 def test_virial_coefficients_come_back():
@@ -45,8 +54,8 @@ def test_spread_of_the_fit_is_its_standard_error():
 
 
 def test_a_wrong_pressure_is_found():
-    right = [(run.packing_fraction, run.compressibility_factor) for run in samples([0.1, 0.2], 1e-4)]
-    wrong = [PressureSample(phi, 1000, Estimate(1.01 * z.value, 1e-3, 500.0, z.theory)) for phi, z in right]
+    right = [(run.packing_fraction, run.route(PAIRS).compressibility_factor) for run in samples([0.1, 0.2], 1e-4)]
+    wrong = [pressure_of(phi, 1000, Estimate(1.01 * z.value, 1e-3, 500.0, z.theory)) for phi, z in right]
     assert equation_of_state(wrong).check().agrees is False
 
 
@@ -58,7 +67,7 @@ def test_rows_of_states_have_n_and_phi_and_seeds():
     rows = {row["quantity"]: row for row in csv.DictReader(io.StringIO(as_csv(found.as_dict(), "pressure")))}
     z = [row for name, row in rows.items() if name.endswith(".Z")]
     assert [row["group"] for row in z] == [f"φ = {phi}, N = 100, seeds 3, 4" for phi in (0.1, 0.2)]
-    table = pressure_tables(found)[0]
+    table = found.plain_tables()[0]
     shown = [row[table.heads.index("Z")].value for row in table.rows]
     assert [float(row["value"]) for row in z] == shown == [state.infinite.value for state in found.states]
     of_n = [float(row["value"]) for name, row in rows.items() if name.endswith(".Z_of_this_N")]
@@ -67,8 +76,8 @@ def test_rows_of_states_have_n_and_phi_and_seeds():
 
 def test_every_phase_has_the_theory_that_is_known():
     """Fluid, published simulations, nothing where it freezes, and the crystal, with the error of free-volume theory."""
-    published = PressureSample(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
-    unknown, crystal = (PressureSample(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
+    published = pressure_of(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
+    unknown, crystal = (pressure_of(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
     found = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
     sources = ["virial series, resummed"] * 2 + ["published simulations", None, "free volume, of a crystal"]
     assert [state.source for state in found.states] == sources
@@ -80,10 +89,10 @@ def test_every_phase_has_the_theory_that_is_known():
     assert checked.agrees is True
     assert len(checked.compared) == 4
     assert equation_of_state([unknown]).check().agrees is None
-    (row,) = (row for row in pressure_tables(found)[0].shown if row[0] == "0.71")
+    (row,) = (row for row in found.plain_tables()[0].shown if row[0] == "0.71")
     assert row[5:] == ["", "", "", "", ""]
-    without_error = equation_of_state([PressureSample(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
-    assert pressure_tables(without_error)[0].shown[0][4:6] == ["nan", ""]
+    without_error = equation_of_state([pressure_of(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
+    assert without_error.plain_tables()[0].shown[0][4:6] == ["nan", ""]
 
 
 @pytest.mark.parametrize(("phis", "numbers"), [((0.05, 0.1), (100, 400)), ((0.05, 0.1, 0.2), (100, 200, 400))])
@@ -92,7 +101,7 @@ def test_few_packing_fractions_give_states_however_many_they_are(phis, numbers):
     found = equation_of_state([s for n in numbers for s in samples(phis, 1e-3, n, runs=1)])
     assert [(state.packing_fraction, state.number) for state in found.states] == list(product(phis, numbers))
     assert (found.b2, found.b3) == (None, None)
-    states, coefficients = pressure_tables(found)
+    states, coefficients = found.plain_tables()
     assert len(states.rows) == len(phis) * len(numbers)
     assert states.heads[:2] == ("φ", "N")
     assert coefficients.notes == ("No virial coefficients: a fit takes 4 packing fractions or more, up to 0.25.",)

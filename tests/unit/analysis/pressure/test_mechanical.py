@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from helpers.logs import PERIODIC, gas, raised
 
-from idealgas.analysis.pressure.combine import combine_pressure, restore_pressure
-from idealgas.analysis.pressure.figure import pressure_figure
+from idealgas.analysis import registry
+from idealgas.analysis.caveats import origin_of
 from idealgas.analysis.pressure.measure import pressure
 from idealgas.analysis.pressure.mechanical import WallPressure
-from idealgas.analysis.pressure.tables import _on_walls, _unlike, pressure_tables
+from idealgas.analysis.pressure.result import _on_walls, _unlike
 from idealgas.statistics.estimates import Estimate
 
 UP = "piston=[{ side = 'top', position = 4, mass = 8, pressure = 2 }]"
@@ -40,10 +40,10 @@ def test_every_effect_has_a_pressure_of_its_walls(override, make):
     known = json.loads(json.dumps(found.as_dict(), allow_nan=False))
     assert [wall["wall"] for wall in known["walls"]] == list(walls)
     assert known["forces"][-1]["wall"] == "all walls"
-    tables = pressure_tables(found)
+    tables = found.plain_tables()
     assert f"Theory is not available: {found.no_theory}." in tables[0].notes
     assert len(tables[0].rows) == len(walls)
-    assert [label.get_text() for label in pressure_figure(found).axes[0].get_yticklabels()] == list(walls)[::-1]
+    assert [label.get_text() for label in found.figure().axes[0].get_yticklabels()] == list(walls)[::-1]
 
 
 def test_a_plain_box_has_routes_and_no_more(make):
@@ -71,7 +71,7 @@ def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
     found = pressure(make("piston=[{ velocity = -0.05 }]"))
     assert (found.window.start, found.window.detected) == (0.0, False)
     assert found.mechanical.unsteady == "the gas is driven (piston)"
-    assert any("`evolution` shows P(t)" in note for note in pressure_tables(found)[0].notes)
+    assert any("`evolution` shows P(t)" in note for note in found.plain_tables()[0].notes)
     assert found.area == pytest.approx(6 * 7)
     assert found.packing_fraction == pytest.approx(30 * np.pi * 0.01 / 42)
     assert found.mechanical.forces[-1].x.theory is None
@@ -112,22 +112,25 @@ def test_smooth_walls_have_no_stress_and_rough_ones_do(make):
     assert all(wall.stress is None for wall in pressure(make(gravity)).mechanical.walls)
     rough = pressure(make(gravity, "rotation={ wall_roughness = 0.5, roughness = 1 }"))
     assert all(wall.stress is not None for wall in rough.mechanical.walls if wall.pressure.value > 0)
-    assert "Stress along walls (energy/length²)" in [table.title for table in pressure_tables(rough)]
+    assert "Stress along walls (energy/length²)" in [table.title for table in rough.plain_tables()]
 
 
 def test_a_wall_that_is_never_hit_has_no_error_bar(make):
     found = pressure(make("gravity.acceleration=[0, -20]", "species.region=[0, 0, 8, 2]", "run.until=4"), start=1.0)
     top = next(wall.pressure for wall in found.mechanical.walls if wall.name == "top wall")
     assert (top.value, top.as_dict()["standard_error"]) == (0.0, None)
-    (row,) = [row for row in pressure_tables(found)[0].shown if row[0] == "top wall"]
+    (row,) = [row for row in found.plain_tables()[0].shown if row[0] == "top wall"]
     assert row[1:3] == ["0", ""]
 
 
 def test_no_equation_of_state_of_such_gases(make):
-    found = pressure(make("gravity.acceleration=[0, -0.3]"))
-    assert combine_pressure([found]) is found
-    raised("no equation of state holds under gravity", combine_pressure, [found, found])
-    raised("point 3: no equation of state holds under gravity", restore_pressure, found.as_dict(), "point 3")
+    log = make("gravity.acceleration=[0, -0.3]")
+    found, analysis = registry.analyse(log, "pressure"), registry.find("pressure")
+    assert analysis.combined([found]) is found
+    point = analysis.restored(found.as_dict(), origin_of(log.scene, "sweep, point 3"))
+    raised(f"{log.path}: no equation of state holds under gravity", analysis.combine, [found, found])
+    raised("sweep, point 3: no equation of state holds under gravity", analysis.combine, [point, point])
+    assert repr(point.mechanical) == repr(found.mechanical)
 
 
 def walls_at(*pressures):

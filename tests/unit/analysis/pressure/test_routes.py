@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from helpers.support import gas_of
 
-from idealgas.analysis.pressure.measure import PAIRS, pressure
-from idealgas.analysis.pressure.routes import WALLS, _across, _average, _on_sides, _reach
+from idealgas.analysis.pressure.measure import pressure
+from idealgas.analysis.pressure.routes import PAIRS, WALLS, _across, _average, _on_sides, _reach
 from idealgas.theory.values import Theory
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
@@ -95,4 +95,4 @@ def test_pressures_of_two_discs_in_lanes(lanes):
     along_x = sum(impulse[d][0] * (hits[d, 1] - hits[d, 0]) for d in (0, 1)) / 180
     assert forces["wall 4"][1] == pytest.approx(on_wall, rel=1e-9)
     assert forces["all walls"][0] == pytest.approx(along_x, abs=1e-9)
-    assert found.mechanical.area == 80.0
+    assert found.area == 80.0

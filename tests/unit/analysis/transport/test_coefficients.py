@@ -10,7 +10,7 @@ from helpers.logs import PERIODIC, gas, log_of, species, streamed
 from idealgas.analysis.transport.coefficients import _coefficients, flow_in_samples
 from idealgas.analysis.transport.helfand import Lags, growth, lags_of
 from idealgas.analysis.transport.measure import transport
-from idealgas.analysis.transport.tables import WALLS, transport_tables
+from idealgas.analysis.transport.result import WALLS
 from idealgas.tallies.currents import APART_X, CARRIED, HEAT_X, HEAT_Y, PASSED_ON, XX, XY, YY, Currents
 from idealgas.tallies.flights import Moments
 from idealgas.tallies.impacts import Impacts
@@ -169,14 +169,14 @@ def test_coefficients_of_a_log(log):
     assert trace == pytest.approx((len(gas) * temperature + virial) / gas.area, rel=1e-9)
     assert abs(found.pressure["xy"].deviation) < 4
     assert json.dumps(found.as_dict(), allow_nan=False)
-    assert any("plateau: t = " in note for table in transport_tables(found) for note in table.notes)
+    assert any("plateau: t = " in note for table in found.plain_tables() for note in table.notes)
 
 
 def test_walls_have_no_coefficients_of_the_whole_gas(make):
     log = make("box.left=reflecting", "box.right=reflecting")
     found = transport(log)
     assert found.collective is None
-    assert any(WALLS in table.notes for table in transport_tables(found))
+    assert any(WALLS in table.notes for table in found.plain_tables())
     assert math.isfinite(found.diffusion[0].running[-1])
 
 
@@ -229,7 +229,7 @@ def test_the_same_coefficients_without_events():
         else:
             assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
             assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
-            assert len(transport_tables(found)) == 4
+            assert len(found.plain_tables()) == 4
             assert json.dumps(found.as_dict(), allow_nan=False)
     assert np.array_equal(flows["events"], flows["samples"], equal_nan=True)
 

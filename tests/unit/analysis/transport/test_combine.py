@@ -33,7 +33,7 @@ def test_states(results):
 
 def test_what_a_sweep_stores_gives_the_same(results):
     stored = [json.loads(json.dumps(one.as_dict())) for one in results]
-    restored = [ANALYSIS.restored(found, "point", one.origin) for found, one in zip(stored, results, strict=True)]
+    restored = [ANALYSIS.restored(values, run.origin) for values, run in zip(stored, results, strict=True)]
     assert ANALYSIS.combined(restored).states == ANALYSIS.combined(results).states
 
 
@@ -43,12 +43,12 @@ def test_a_single_log_stays_as_it_is(results):
 
 def test_tables_and_figures(results):
     combined = ANALYSIS.combined(results)
-    (table,) = ANALYSIS.tables(combined)
+    (table,) = combined.plain_tables()
     assert len(table.rows) == 8
-    (ax,) = ANALYSIS.figure(combined).axes
+    (ax,) = combined.figure().axes
     assert {"D", "η", "λ", "ζ", "Enskog's theory, bands: its errors"} == {
         text.get_text() for text in ax.get_legend().get_texts()
     }
-    assert ANALYSIS.figure(ANALYSIS.combined([results[0], results[2]])).axes[0].get_xlabel().startswith("packing")
+    assert ANALYSIS.combined([results[0], results[2]]).figure().axes[0].get_xlabel().startswith("packing")
     closer = [replace(found, packing_fraction=0.3 + 1e-15 * k) for k, found in enumerate(results)]
-    assert ANALYSIS.figure(ANALYSIS.combined(closer)).axes[0].get_xlabel() == "number of discs"
+    assert ANALYSIS.combined(closer).figure().axes[0].get_xlabel() == "number of discs"

@@ -8,11 +8,11 @@ import pytest
 from helpers.against_theory import agrees
 from helpers.logs import gas, log_of
 
-from idealgas.analysis.transport.combine import combine_transport, restore_transport
 from idealgas.analysis.transport.diffusion import LagLimits
-from idealgas.analysis.transport.figure import transport_figure
 from idealgas.analysis.transport.measure import transport
-from idealgas.analysis.transport.tables import transport_tables
+from idealgas.analysis.transport.result import Transport
+from idealgas.analysis.transport.states import transport_states
+from idealgas.fields import from_dict
 
 
 def measured(size, number, collisions, *lags, periodic="", **more):
@@ -29,12 +29,11 @@ def test_walls_at_a_few_free_paths_leave_no_coefficient():
     width = math.sqrt(4 * 10) / rate.rate.value / 0.05
     (sentence,) = [each for each in found.caveats if each.startswith("Walls reflect discs of gas")]
     assert f"or a box about {width:.2g} wide" in sentence
-    assert not any("D by displacement" in str(row) for table in transport_tables(found) for row in table.rows)
-    *_, coefficients = transport_figure(found).axes
+    assert not any("D by displacement" in str(row) for table in found.plain_tables() for row in table.rows)
+    *_, coefficients = found.figure().axes
     assert [text.get_text() for text in coefficients.get_legend().get_texts()] == ["D, gas: no plateau"]
-    stored = json.loads(json.dumps(found.as_dict(), allow_nan=False))
-    assert restore_transport(stored, "point").coefficients == {}
-    assert combine_transport([found, found]).states[0].coefficients == {}
+    restored = from_dict(Transport, json.loads(json.dumps(found.as_dict(), allow_nan=False)))
+    assert transport_states([found, restored]).states[0].coefficients == {}
 
 
 def test_the_longest_lag_fits_the_box():
@@ -52,7 +51,7 @@ def test_the_laws_in_the_figure_pass_through_the_data():
     """Displacement by Fürth (1920) and velocity correlation by Enskog, from the first free time on, not 4Dt from 0."""
     (found,) = measured([30, 30], 60, 1500, 20.0, periodic="xy")
     (gas,) = found.diffusion
-    correlation, displacement, *_ = transport_figure(found).axes
+    correlation, displacement, *_ = found.figure().axes
     (fuerth,) = (line.get_ydata() for line in displacement.lines if line.get_label().startswith("4D[t - τ"))
     assert fuerth[1:] == pytest.approx(gas.displacement[1:], rel=0.06)
     (enskog,) = (line.get_ydata() for line in correlation.lines if line.get_label().startswith("exp(-t/τ)"))

@@ -1,0 +1,111 @@
+"""Transport coefficients of several logs, or of the points of a sweep, against the packing fraction."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+from idealgas.analysis.caveats import by_state, name_of_state, seeds_of
+from idealgas.analysis.check import agreement
+from idealgas.analysis.result import Result
+from idealgas.analysis.transport.coefficients import SYMBOLS
+from idealgas.analysis.transport.result import Transport
+from idealgas.fields import Key
+from idealgas.presentation.tables import THEORY_ERROR, Cell, Number, Table, format_estimate, with_error
+from idealgas.statistics.estimates import Estimate, mean_of_replicates
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DIFFUSION = "D"
+"""Symbol of the diffusion coefficient of a single species."""
+
+
+@dataclass(frozen=True)
+class TransportState:
+    """Transport coefficients at one packing fraction and one number of discs, averaged over runs of one kind of gas.
+
+    Attributes:
+        name: φ, N, seeds and kind of gas in words.
+        packing_fraction: packing fraction φ.
+        number: number of discs.
+        kind: kind of gas in words; empty if unknown.
+        runs: number of runs.
+        seeds: seeds of the runs.
+        coefficients: coefficients over Enskog's, by symbol (no unit).
+    """
+
+    name: str
+    packing_fraction: float
+    number: int
+    kind: Annotated[str, Key("gas")]
+    runs: int
+    seeds: tuple[int, ...]
+    coefficients: Annotated[dict[str, Estimate], Key("over_enskog")]
+
+
+@dataclass(frozen=True)
+class TransportStates(Result):
+    """Transport coefficients over Enskog's, state by state in order of φ."""
+
+    states: tuple[TransportState, ...]
+
+    def plain_tables(self) -> list[Table]:
+        """Return the table of the coefficients of each state."""
+        rows: list[tuple[Cell, ...]] = [
+            (
+                f"{symbol} at φ = {state.packing_fraction:.5g}",
+                Number(state.number, "d"),
+                Number(state.runs, "d"),
+                *with_error(estimate.value, estimate.standard_error),
+                Number(estimate.theory_error, ".2g"),
+                Number(estimate.deviation, "+.2f"),
+            )
+            for state in self.states
+            for symbol, estimate in state.coefficients.items()
+        ]
+        heads = ("", "N", "runs", "value", "± s.e.", THEORY_ERROR, "deviation (σ)")
+        return [Table("Transport coefficients over Enskog's", heads, rows)]
+
+    def summary(self) -> str:
+        """Return the coefficients of the densest state, and whether all agree with Enskog's theory."""
+        rows = [
+            (f"{symbol} at φ = {state.packing_fraction:.5g}", estimate)
+            for state in self.states
+            for symbol, estimate in state.coefficients.items()
+        ]
+        last = self.states[-1]
+        values = ", ".join(f"{symbol} = {format_estimate(value)}" for symbol, value in last.coefficients.items())
+        values = values or "no coefficient has a theory"
+        densest = f"At φ = {last.packing_fraction:.5g}, in units of Enskog's values, {values}"
+        return f"{densest}; {agreement(rows, 'Enskog')}."
+
+    def figure(self) -> "Figure":
+        """Draw the coefficients against the packing fraction, or against the number of discs."""
+        from idealgas.analysis.transport.figure import draw_states
+
+        return draw_states(self)
+
+
+def transport_states(results: Sequence[Transport]) -> TransportStates:
+    """Return the coefficients over Enskog's of several runs, averaged over runs of one kind of gas, φ and N."""
+    return TransportStates(tuple(_state(kind, runs) for kind, runs in by_state(results)))
+
+
+def _over_theory(result: Transport) -> dict[str, Estimate]:
+    """Return the coefficients of a run that have a theory, in units of it, by their symbols."""
+    alone = result.diffusion[0].coefficient if len(result.diffusion) == 1 else None
+    coefficients = {DIFFUSION: alone} if alone else {}
+    if result.collective:
+        coefficients |= {
+            SYMBOLS[name]: coefficient.value for name, coefficient in result.collective.coefficients.items()
+        }
+    return {symbol: estimate.times(1 / estimate.theory) for symbol, estimate in coefficients.items() if estimate.theory}
+
+
+def _state(kind: str, runs: Sequence[Transport]) -> TransportState:
+    """Return the mean over the runs of one state, for all coefficients that every run has."""
+    first, *others = measured = [_over_theory(run) for run in runs]
+    symbols = [symbol for symbol in first if all(symbol in coefficients for coefficients in others)]
+    means = {symbol: mean_of_replicates([coefficients[symbol] for coefficients in measured]) for symbol in symbols}
+    phi, number, seeds = runs[0].packing_fraction, runs[0].number, seeds_of(runs)
+    return TransportState(name_of_state(phi, number, kind, seeds), phi, number, kind, len(runs), seeds, means)
