@@ -59,37 +59,7 @@ _HOMES = {
 }
 """Modules of all names that are not analyses; the analyses are in the registry."""
 
-__all__ = [  # and the names of all analyses
-    "Estimate",
-    "EventBatch",
-    "Kind",
-    "Log",
-    "LogError",
-    "LogState",
-    "OutputError",
-    "Progress",
-    "Scene",
-    "SceneError",
-    "Summary",
-    "UserError",
-    "__version__",
-    "analyse",
-    "animate",
-    "combine",
-    "export",
-    "load_example",
-    "load_scene",
-    "load_sweep",
-    "open_log",
-    "open_run",
-    "parse_scene",
-    "resume",
-    "run_sweep",
-    "sensitivity",
-    "simulate",
-    "study_accuracy",
-    "write_report",
-]
+__all__ = ["__version__", *sorted(name for names in _HOMES.values() for name in names)]  # and all analyses
 
 
 def __getattr__(name: str) -> Any:

@@ -14,6 +14,7 @@ import numpy as np
 from idealgas.analysis.analysis import Analysis, Section
 from idealgas.analysis.caveats import narrow
 from idealgas.analysis.check import agreement
+from idealgas.analysis.cooling.theory import UNTESTED, cooling_theory, law_error, parameters_of
 from idealgas.analysis.cooling.uniformity import cells_of, nonuniform, scatter_of
 from idealgas.analysis.result import Result
 from idealgas.errors import NotApplicableError
@@ -24,8 +25,6 @@ from idealgas.tallies.collisions import collisions_per_disc
 from idealgas.tallies.stream import ReadProgress, frames, span
 from idealgas.theory import granular, hard_discs
 from idealgas.theory.conserved import centre_of_mass_velocity, degrees_of_freedom
-from idealgas.theory.granular import GranularParameters
-from idealgas.theory.values import Theory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,23 +41,11 @@ FEWEST = 16
 SETTLED, FOLDS = 20.0, 5.0
 """Collisions per disc, and relaxation times of the temperature ratio, after which averages begin."""
 
-LOSS_ERROR, TIME_ERROR, RATIO_ERROR = 0.015, 0.025, 0.05
-"""Relative errors of theory for the loss per collision, Haff's time and the temperature ratio.
-
-They are from simulations of 300 discs at φ = 0.05, 20 runs each, with e = 0.8 to 0.98 without spin, and with e = 0.9 or
-0.95 and β = 0, 0.5 and 0.9.
-"""
-
-CUMULANT_ERROR = 0.05
-"""Relative error of a₂ by theory, due to neglected terms of higher order in a₂."""
-
 SPREAD = 1.0
 """Upper limit of the relative standard deviation of the temperature over runs, times the root of the number of discs.
 
 In 24 runs each it is 0.50 with e = 0.95 (300 discs, down to e⁻³·⁴ T₀), 0.53 with 100 discs, and 0.86 with e = 0.8.
 """
-
-UNTESTED = f"Theory is not available below e = {granular.TESTED_FROM:g}."
 
 
 @dataclass(frozen=True)
@@ -166,7 +153,7 @@ class Cooling(Result):
         doubt = self.haff.theory_error / self.haff.theory if self.haff.theory else 0.0
         for law, label in ((self.law, "law of a uniform gas"), (self.spin_law, None)):
             if law is not None:
-                ax.theory(self.time[shown], law[shown], _law_error(law, doubt)[shown], label, GREY)
+                ax.theory(self.time[shown], law[shown], law_error(law, doubt)[shown], label, GREY)
         ax.set(xscale="log", yscale="log", xlabel="t (time)", ylabel="temperature (energy, k_B = 1)")
         window = self.collisions[self.time.searchsorted([self.start, self.end])]
         for panel, (label, series, average) in zip(middle, means, strict=True):
@@ -210,16 +197,12 @@ class CoolingAnalysis(Analysis):
             NotApplicableError: if anything but collisions of equal discs changes the energy, or if the log is too
                 short.
         """
-        parameters, dof, number = _parameters(log), degrees_of_freedom(log.scene, log.discs), len(log.discs)
+        parameters, dof, number = parameters_of(log), degrees_of_freedom(log.scene, log.discs), len(log.discs)
         first, last = span(log, None, end)
         t0, s0, _ = _moments(log, log.state_at(log.start_time), dof)
-        contacts = hard_discs.box_contacts(log.discs.radius[:1], [number], log.box, log.periodic)[0, 0]
-        rate = float(contacts) * hard_discs.mean_relative_speed(
-            t0, float(log.discs.mass[0])
-        )  # inf if the gas is too dense
-        known = math.isfinite(rate)
-        tau = granular.cooling_time(parameters, rate) if known else last - first
+        rate = _collision_rate(log, t0)
         # by Haff's law, equal numbers of collisions lie between successive times
+        tau = granular.cooling_time(parameters, rate) if math.isfinite(rate) else last - first
         time = np.clip(np.geomspace(tau + first, tau + last, INSTANTS) - tau, first, last)
         temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
         shape = cells_of(log)
@@ -227,42 +210,16 @@ class CoolingAnalysis(Analysis):
             temperature[k], spin[k], cumulant[k] = _moments(log, state, dof)
             scatter[k], flow[k] = scatter_of(log, state, shape)
         collisions = collisions_per_disc(log, time)
-        settled = max(SETTLED, FOLDS * granular.relaxation(parameters))
-        window = np.flatnonzero(collisions >= settled if start is None else time >= start)
-        if len(window) < FEWEST:
-            raise NotApplicableError(
-                f"{log.path}: the log has {collisions[-1]:.3g} collisions per disc, and averages begin after "
-                f"{settled:.3g}; run longer, or use --from T to set the start by hand"
-            )
-        tested = parameters.normal >= granular.TESTED_FROM
-        rate /= dof / (2 * number)  # conserved momentum: fewer degrees of freedom share the energy
-        law = spin_law = None
-        if known and tested:
-            law, spin_law = granular.homogeneous_cooling(parameters, rate, t0, s0, time)
-        tenths = collisions / collisions[-1]
-        early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
-        together = mean_of_part(flow, tenths >= 0.9)
-        few = 1 / dof
-
-        def expected(value: float | None, relative: float) -> Theory | None:
-            """Return a value of the theory of a uniform gas with its relative error; None without theory."""
-            return Theory(value, relative * abs(value), "homogeneous cooling") if tested and value is not None else None
-
-        # averages over the window; the energy that motion and spin exchange is removed from `cooled`
+        window = _window(log, time, collisions, granular.relaxation(parameters), start)
+        theory = cooling_theory(parameters, rate, (t0, s0), time, number, dof)
+        # the energy that motion and spin exchange is removed from `cooled`
         energy = temperature[window] + number / dof * spin[window]
         cooled = energy * (temperature[window] / energy).mean()
-        loss = expected(granular.cooling_per_collision(parameters) * 2 * number / dof, math.hypot(LOSS_ERROR, few))
         slopes = np.diff(cooled**-0.5) / np.diff(time[window])  # constant by Haff's law
-        haff = expected(granular.cooling_time(parameters, rate) if known else None, math.hypot(TIME_ERROR, few))
-        a2, share, cold = None, None, None
-        if law is not None and haff is not None:
-            error = float(_law_error(law, haff.error / haff.value)[-1])
-            cold = Theory(float(law[-1]), error, "homogeneous cooling")
-        if parameters.rough:
-            relative = expected(granular.temperature_ratio(parameters), RATIO_ERROR)
-            share = mean(spin[window] / temperature[window], relative)
-        else:
-            a2 = expected(granular.fourth_cumulant(parameters.normal), CUMULANT_ERROR)
+        tenths, at_end = collisions / collisions[-1], float(temperature[-1])
+        early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
+        together = mean_of_part(flow, tenths >= 0.9)
+        ratio_of_spin = mean(spin[window] / temperature[window], theory.temperature_ratio) if parameters.rough else None
         return Cooling(
             time,
             collisions,
@@ -272,66 +229,53 @@ class CoolingAnalysis(Analysis):
             scatter,
             flow,
             cells=int(shape.prod()),
-            law=law,
-            spin_law=None if log.inertia is None else spin_law,
+            law=theory.law,
+            spin_law=None if log.inertia is None else theory.spin_law,
             start=float(time[window[0]]),
             end=float(time[-1]),
             last_temperature=Estimate(
-                float(temperature[-1]), SPREAD * float(temperature[-1]) / math.sqrt(number), math.inf, *parts_of(cold)
+                at_end, SPREAD * at_end / math.sqrt(number), math.inf, *parts_of(theory.last_temperature)
             ),
-            loss=ratio(-np.diff(np.log(cooled)), np.diff(collisions[window]), loss),
-            haff=estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=haff),
-            fourth=mean(cumulant[window], a2),
-            temperature_ratio=share,
+            loss=ratio(-np.diff(np.log(cooled)), np.diff(collisions[window]), theory.loss),
+            haff=estimate(lambda slope: 1 / (slope * math.sqrt(t0)), slopes, theory=theory.haff),
+            fourth=mean(cumulant[window], theory.fourth),
+            temperature_ratio=ratio_of_spin,
             first_scatter=early,
             last_scatter=late,
             last_flow=together,
             caveats=(
                 *([] if number >= FEW else [f"The laws are for many discs, and this gas has {number}."]),
-                *([] if tested else [UNTESTED]),
+                *([] if parameters.normal >= granular.TESTED_FROM else [UNTESTED]),
                 *narrow(log),
                 *nonuniform(early.value, late.value, together.value, int(shape.prod())),
             ),
         )
 
 
-def _parameters(log: Log) -> GranularParameters:
-    """Return the coefficients of the collisions.
+def _collision_rate(log: Log, temperature: float) -> float:
+    """Return the collision rate of a disc at a temperature, 1/time; inf if the gas is too dense for theory."""
+    discs = log.discs
+    contacts = hard_discs.box_contacts(discs.radius[:1], [len(discs)], log.box, log.periodic)[0, 0]
+    return float(contacts) * hard_discs.mean_relative_speed(temperature, float(discs.mass[0]))
+
+
+def _window(log: Log, time: np.ndarray, collisions: np.ndarray, relaxation: float, start: float | None) -> np.ndarray:
+    """Return the indices of the instants that are averaged.
+
+    They begin at `start`, or by default when the ratio of temperatures, with its relaxation time in collisions per
+    disc, and the distribution of the velocities have settled.
 
     Raises:
-        NotApplicableError: unless equal discs lose energy in their collisions and nothing else changes the energy.
+        NotApplicableError: if there are too few of them.
     """
-    scene, properties = log.scene, log.scene.properties
-    parameters = GranularParameters(
-        1.0 if scene.restitution is None else scene.restitution.normal,
-        -1.0 if scene.rotation is None else scene.rotation.roughness,
-        properties.inertia,
-    )
-    effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
-    elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
-    why = ""
-    if parameters.normal == 1 and abs(parameters.roughness) == 1:
-        why = "collisions that lose energy, and discs of this gas conserve it"
-    elif effects or not (all(log.periodic) or elastic_walls):
-        others = ", ".join(effects) or "walls"
-        why = f"that only collisions of discs change the energy (got {others}); use `idealgas evolution`"
-    elif not log.has_positions or not log.has_events:
-        why = "events with positions"
-    elif len(log.discs.species_names) > 1:
-        why = "equal discs, and this gas has several species"
-    elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
-        why = "discs that collide, and these have no radius or do not move"
-    if why:
-        raise NotApplicableError(f"{log.path}: cooling requires {why}")
-    return parameters
-
-
-def _law_error(law: np.ndarray, relative: float) -> np.ndarray:
-    """Return the errors (F,) of temperatures (F,) by Haff's law, for a relative error dτ/τ of its time.
-
-    dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ.
-    """
-    return 2 * (1 - np.sqrt(np.minimum(law / law[0], 1))) * relative * law
+    settled = max(SETTLED, FOLDS * relaxation)
+    window = np.flatnonzero(collisions >= settled if start is None else time >= start)
+    if len(window) < FEWEST:
+        raise NotApplicableError(
+            f"{log.path}: the log has {collisions[-1]:.3g} collisions per disc, and averages begin after "
+            f"{settled:.3g}; run longer, or use --from T to set the start by hand"
+        )
+    return window
 
 
 def _moments(log: Log, state: LogState, dof: int) -> tuple[float, float, float]:

@@ -5,6 +5,7 @@ events of the whole gas. Impact parameters are those of collisions. Collisions a
 times. The Kolmogorov-Smirnov tests use independent samples.
 """
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -21,13 +22,13 @@ from idealgas.analysis.histogram.intervals import (
     waiting_times,
 )
 from idealgas.analysis.histogram.laws import expectation, velocity_laws
-from idealgas.analysis.histogram.samples import independent_samples
 from idealgas.analysis.result import Result
 from idealgas.log import Log
 from idealgas.presentation.tables import Cell, Number, Table, bars, estimates, format_estimate
+from idealgas.statistics.autoregression import inefficiency
 from idealgas.statistics.estimates import Estimate, mean, mean_of_flux
 from idealgas.tallies.equilibration import Window, measure
-from idealgas.tallies.equilibrium import nonstationary_reason
+from idealgas.tallies.equilibrium import ROUNDING, nonstationary_reason
 from idealgas.tallies.flights import VELOCITY_QUANTITIES, Moments, VelocityHistogram
 from idealgas.tallies.stream import ReadProgress
 from idealgas.theory.conserved import degrees_of_freedom
@@ -60,6 +61,13 @@ OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, 
 
 LINES = 24  # lines of the histogram in characters; bins are merged to fit
 SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
+
+GROUPS = 16
+"""Number of groups of discs that are sampled in turn.
+
+The discs share energy and momentum, but a sixteenth of them hardly correlates with itself for this reason. A disc
+hardly correlates with itself sixteen statistical inefficiencies later, even if it is confined between walls.
+"""
 
 
 @dataclass(frozen=True)
@@ -289,3 +297,20 @@ def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bo
     if confined:
         return mean_of_flux(series, np.zeros(len(series)), expected)
     return mean(series, theory=expected)
+
+
+def independent_samples(values: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return independent samples (n,) of values (B, M) of M discs at B instants, and the spacing of the samples.
+
+    The spacing, in instants, is the largest statistical inefficiency of single discs and of their mean, which
+    fluctuates slowly if walls or a thermostat exchange energy with the gas. The squares of the values are also
+    considered, as a light disc among heavy ones keeps its speed for longer than its direction.
+    """
+    memory = 1.0
+    for x in (values, values**2):
+        mean = x.mean(axis=1)
+        conserved = np.ptp(mean) <= ROUNDING * np.abs(x).max()
+        memory = max(memory, inefficiency(x), 1.0 if conserved else inefficiency(mean))
+    spacing, groups = math.ceil(memory), min(GROUPS, values.shape[1])
+    samples = [row[k % groups :: groups] for k, row in enumerate(values[::spacing])]
+    return np.concatenate(samples), spacing

@@ -16,9 +16,10 @@ from idealgas.fields import Key
 from idealgas.presentation.tables import Cell, Number, Table, estimates, format_estimate, with_error
 from idealgas.statistics.estimates import Estimate, mean_of_replicates
 from idealgas.theory import hard_discs
-from idealgas.theory.values import SOLID, crystal
+from idealgas.theory.values import FREEZING, MELTING, PUBLISHED, SOLID, crystal
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FITTED = 0.25
@@ -141,10 +142,38 @@ class EquationOfState(Result):
         return sentence
 
     def figure(self) -> "Figure":
-        """Draw Z against φ with the theories, and the deviation of each state from its theory."""
-        from idealgas.analysis.pressure.figure import draw_states
+        """Draw Z against φ with the theories, and below it the deviation of each state from its theory."""
+        from idealgas.presentation.style import BAND, COLOURS, GREY, panels
 
-        return draw_states(self)
+        figure, (above, below) = panels(2)
+        phi = np.array([state.packing_fraction for state in self.states])
+        z = np.array([state.infinite.value for state in self.states])
+        error = np.array([state.infinite.standard_error for state in self.states])
+        best = np.array([state.infinite.theory or np.nan for state in self.states])
+        band = 1e3 * np.array([state.infinite.theory_error for state in self.states]) / best
+        x = np.linspace(1e-9, min(1.05 * phi.max(), hard_discs.HIGHEST), 400)
+        curves = (
+            ("virial series, resummed", hard_discs.compressibility_factor, "-", COLOURS[1]),
+            ("virial series to B10", hard_discs.virial_series, "--", COLOURS[2]),
+            ("Henderson 1975", hard_discs.henderson_compressibility_factor, ":", COLOURS[3]),
+        )
+        above.axhline(1.0, color=GREY, label="ideal gas")
+        for name, function, style, colour in curves:
+            above.plot(x, function(x), style, color=colour, label=name)
+            below.plot(x, 1e3 * (function(x) / hard_discs.compressibility_factor(x) - 1), style, color=colour)
+        if phi.max() > hard_discs.HIGHEST:
+            _draw_dense(above, float(phi.max()))
+        above.errorbar(phi, z, error, fmt="o", ms=4, color=COLOURS[0], label="measured")
+        below.fill_between(phi, -band, band, color=COLOURS[1], alpha=BAND, linewidth=0)
+        below.errorbar(phi, 1e3 * (z / best - 1), 1e3 * error / best, fmt="o", ms=4, color=COLOURS[0], capsize=3)
+        if np.isfinite(best).any():
+            low, high = (1e3 * (z / best - 1 + sign * 3 * error / best) for sign in (-1, 1))
+            below.set_ylim(min(np.nanmin(low), 0.0), max(np.nanmax(high), 0.0))
+        above.set_ylabel("Z = PA/NT (no unit)")
+        below.set(ylabel="deviation from theory (‰ of Z)", xlabel="packing fraction φ (no unit)")
+        below.set_xlim(above.get_xlim())
+        above.legend(frameon=False, fontsize="small")
+        return figure
 
 
 def equation_of_state(results: Sequence[Pressure]) -> EquationOfState:
@@ -212,3 +241,23 @@ def _virial_coefficients(states: Sequence[PressureState]) -> tuple[Estimate | No
     slope = np.array([-2 * b[1] / b[0] ** 3, 1 / b[0] ** 2])
     b3_error = float(np.sqrt(slope @ covariance[:2, :2] @ slope))
     return b2, Estimate(float(ratio), b3_error, samples, theory=hard_discs.VIRIAL[2])
+
+
+def _draw_dense(ax: "Axes", most: float) -> None:
+    """Draw what is known above the range of the virial series: published points, freezing, and the crystal."""
+    from idealgas.presentation.style import COLOURS, GREY
+
+    published, pressure = np.array(list(PUBLISHED)), np.array([value for value, _ in PUBLISHED.values()])
+    points = pressure * np.pi / (4 * published)
+    ax.plot(published, points, "D", ms=7, mfc="none", color=COLOURS[4], label="870 discs, Li et al. 2022")
+    ax.axvspan(FREEZING, MELTING, color=GREY, alpha=0.2, label="two phases in a large gas")
+    if most > SOLID:
+        x = np.linspace(SOLID, min(1.01 * most, 0.99 * hard_discs.CLOSE_PACKING), 200)
+        ax.plot(
+            x,
+            hard_discs.free_volume_compressibility_factor(x),
+            "-.",
+            color=COLOURS[5],
+            label="free volume, of a crystal",
+        )
+        ax.set_yscale("log")

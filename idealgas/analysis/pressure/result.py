@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING, Annotated
 
 from idealgas.analysis.check import CheckResult, agreement, check_theory
@@ -161,10 +162,50 @@ class Pressure(Result):
         return f"P A = {format_estimate(z)} N T: {beside}; {agreement([(PAIRS, z)], theory, self.no_theory)}."
 
     def figure(self) -> "Figure":
-        """Draw Z by every route, or the pressure on every wall."""
-        from idealgas.analysis.pressure.figure import draw_routes, draw_walls
+        """Draw Z by every route beside its theory for the gas in its box, or the pressure on every wall."""
+        from idealgas.presentation.style import BLACK, COLOURS, GREY, LINES, name_rows, panels
 
-        return draw_walls(self, self.mechanical) if self.mechanical else draw_routes(self)
+        if self.mechanical:
+            return self._wall_figure(self.mechanical)
+        figure, (ax,) = panels(1)
+        routes = self.routes[::-1]
+        values = [route.compressibility_factor.value for route in routes]
+        errors = [route.compressibility_factor.standard_error for route in routes]
+        known = [route.compressibility_factor.theory for route in routes]
+        last = max((k for k, z in enumerate(known) if z), default=None)
+        for k, route in enumerate(routes):
+            label = "theory, ± its error" if k == last else None
+            ax.theory_of_row(k, route.compressibility_factor, label)
+        ax.errorbar(values, range(len(routes)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
+        name_rows(ax, [route.name for route in routes])
+        low, high = ax.get_xlim()
+        for (name, z), style in zip(self.theories.items(), cycle(LINES), strict=False):
+            shown = name == IDEAL or low < z < high
+            if shown and z not in known:
+                colour = BLACK if name == IDEAL else GREY
+                ax.axvline(z, color=colour, linestyle=style, linewidth=1, label=f"{name}: {z:.5g}")
+        ax.set(
+            xlabel="Z = PA/NT (no unit)", ylabel=f"Z by every route, at packing fraction {self.packing_fraction:.4g}"
+        )
+        figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
+        return figure
+
+    def _wall_figure(self, pressures: Mechanical) -> "Figure":
+        """Draw the mechanical pressure on every wall, and the external pressure on a piston."""
+        from idealgas.presentation.style import BLACK, COLOURS, name_rows, panels
+
+        figure, (ax,) = panels(1)
+        walls = pressures.walls[::-1]
+        values, errors = [w.pressure.value for w in walls], [w.pressure.standard_error for w in walls]
+        ax.errorbar(values, range(len(walls)), xerr=errors, fmt="o", color=COLOURS[0], capsize=3, label="measured")
+        for k, wall in enumerate(walls):
+            ax.theory_of_row(k, wall.pressure, "external pressure")
+        ideal = self.number * self.temperature / self.area
+        ax.axvline(ideal, color=BLACK, linewidth=1, label=f"{IDEAL}, N T/A: {ideal:.5g}")
+        name_rows(ax, [wall.name for wall in walls])
+        ax.set(xlabel="P (energy/length²)", ylabel="pressure on every wall")
+        figure.legend(frameon=False, fontsize="small", loc="outside lower left", ncols=2)
+        return figure
 
 
 def _unlike(walls: Sequence[WallPressure]) -> list[WallPressure]:

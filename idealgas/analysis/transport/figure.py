@@ -1,16 +1,15 @@
-"""Figures of the transport in a gas."""
+"""Panels of the figures of the transport in a gas."""
 
 import math
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from idealgas.analysis.transport.coefficients import SYMBOLS
-from idealgas.analysis.transport.result import Transport
-from idealgas.analysis.transport.states import DIFFUSION, TransportStates
-from idealgas.presentation.style import BAND, COLOURS, GREY, Panel, curve_style, panels
+from idealgas.analysis.transport.coefficients import SYMBOLS, Collective
+from idealgas.analysis.transport.diffusion import Diffusion
+from idealgas.analysis.transport.pair_distribution import Contact, PairDistribution
+from idealgas.presentation.style import BAND, COLOURS, GREY, Panel, curve_style
 from idealgas.theory import hard_discs
 
 FAINTEST = 1e-4
@@ -20,55 +19,13 @@ THIN = 0.12
 """Largest packing fraction at which the pair distribution has a theory beyond contact."""
 
 
-def draw_states(result: TransportStates) -> Figure:
-    """Draw coefficients over Enskog's against φ, or against N if all logs have the same φ."""
-    figure, (ax,) = panels(1)
-    by_number = len({round(state.packing_fraction, 9) for state in result.states}) == 1 < len(result.states)
-    for symbol, colour in zip((DIFFUSION, *SYMBOLS.values()), COLOURS, strict=False):
-        shown = [state for state in result.states if symbol in state.coefficients]
-        ones = [state.coefficients[symbol] for state in shown]
-        places = [state.number if by_number else state.packing_fraction for state in shown]
-        values, errors = [estimate.value for estimate in ones], [estimate.standard_error for estimate in ones]
-        if shown:
-            ax.errorbar(places, values, errors, fmt="o-", ms=4, capsize=3, color=colour, label=symbol)
-            _band(ax, places, np.ones(len(ones)), np.array([estimate.theory_error for estimate in ones]), colour)
-    ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory, bands: its errors")
-    ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
-    if by_number:
-        numbers = [state.number for state in result.states]
-        ax.set_xscale("log")
-        ax.set_xticks(numbers, [str(number) for number in numbers])
-        ax.minorticks_off()
-        ax.set_xlabel("number of discs")
-    ax.legend()
-    return figure
-
-
-def draw_transport(result: Transport) -> Figure:
-    """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time.
-
-    Without events only the coefficients are drawn; among fixed discs there is no pair distribution.
-    """
-    if not result.diffusion:
-        figure, (coefficients,) = panels(1)
-    else:
-        has_pairs = bool(result.pair_distributions)
-        figure, (correlation, displacement, *pairs, coefficients) = panels(2, 2) if has_pairs else panels(3)
-        _draw_diffusion(correlation, displacement, result)
-        if has_pairs:
-            _draw_pairs(pairs[0], result)
-    _draw_coefficients(coefficients, result)
-    for ax in figure.axes:
-        ax.legend()
-    return figure
-
-
-def _draw_diffusion(correlation: Panel, displacement: Panel, result: Transport) -> None:
+def draw_diffusion(correlation: Panel, displacement: Panel, diffusion: Sequence[Diffusion], free_time: float) -> None:
     """Draw velocity correlation and mean square displacement of each species, with the laws of a memory exp(-t/τ).
 
-    The displacement is then 4D [t - τ(1 - exp(-t/τ))]: Fürth, Z. Phys. 2, 244 (1920).
+    The displacement is then 4D [t - τ(1 - exp(-t/τ))]: Fürth, Z. Phys. 2, 244 (1920). The correlation has a tail from
+    five mean free times on.
     """
-    for k, entry in enumerate(result.diffusion):
+    for k, entry in enumerate(diffusion):
         _curve(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
         lag, memory = entry.lag, entry.velocity_correlation_time
         if memory is not None and memory.theory:
@@ -76,7 +33,7 @@ def _draw_diffusion(correlation: Panel, displacement: Panel, result: Transport) 
             error = decay * lag / memory.theory * memory.theory_error / memory.theory
             correlation.theory(lag, decay, error, "exp(-t/τ), τ = mD/T by Enskog", curve_style(k)[0])
         if entry.tail is not None:
-            late = lag > 5 * result.free_paths[0].time.value
+            late = lag > 5 * free_time
             correlation.plot(lag[late], entry.tail[late], ":", color=COLOURS[1], label="tail 1/(8πn(D + ν)t)")
         name = f"{entry.species}, measured"
         _curve(displacement, lag, entry.displacement, entry.displacement_error, k, name)
@@ -84,7 +41,7 @@ def _draw_diffusion(correlation: Panel, displacement: Panel, result: Transport) 
             d, tau = entry.coefficient.value, memory.value
             law = 4 * d * (lag - tau * (1 - np.exp(-lag / tau)))
             displacement.plot(lag, law, "--", color=GREY, label=f"4D[t - τ(1 - exp(-t/τ))], D = {d:.4g}")
-    if all((entry.correlation > -3 * entry.correlation_error).all() for entry in result.diffusion):
+    if all((entry.correlation > -3 * entry.correlation_error).all() for entry in diffusion):
         correlation.set(yscale="log", ylim=(FAINTEST, 1.5))  # no value is significantly negative
     correlation.set(xlabel="t (time)", ylabel="⟨v(0)·v(t)⟩/⟨v²⟩ (no unit)")
     displacement.set(xlabel="t (time)", ylabel="mean square displacement (length²)")
@@ -94,41 +51,43 @@ def _curve(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: i
     """Draw curve k of several with a band of its standard error."""
     colour, line, _ = curve_style(k)
     ax.plot(lag, value, line, color=colour, label=label)
-    _band(ax, lag, value, error, colour)
+    draw_band(ax, lag, value, error, colour)
 
 
-def _band(ax: Axes, x: Sequence[float] | np.ndarray, value: np.ndarray, error: np.ndarray, colour: str) -> None:
+def draw_band(ax: Axes, x: Sequence[float] | np.ndarray, value: np.ndarray, error: np.ndarray, colour: str) -> None:
+    """Draw a band of errors around a curve."""
     ax.fill_between(x, value - error, value + error, color=colour, alpha=BAND, linewidth=0)
 
 
-def _draw_pairs(ax: Axes, result: Transport) -> None:
+def draw_pairs(
+    ax: Axes, pairs: Sequence[PairDistribution], contacts: Sequence[Contact], packing_fraction: float
+) -> None:
     """Draw the pair distribution of each pair of species, with its value at contact."""
-    for k, pair in enumerate(result.pair_distributions):
+    for k, pair in enumerate(pairs):
         colour, _, marker = curve_style(k)
         middle = (pair.edges[1:] + pair.edges[:-1]) / 2
         label = f"{pair.species} and {pair.other}"
         ax.errorbar(middle, pair.value, pair.error, fmt=marker, ms=2, color=colour, label=label)
-        for contact in result.contacts:
+        for contact in contacts:
             if (contact.species, contact.other) == (pair.species, pair.other):
                 ax.plot(pair.contact, contact.value.value, "D", color=colour, label=f"{label}: by collisions")
                 if (theory := contact.value.theory) is not None:
                     off, label = contact.value.theory_error, "theory at contact"
                     ax.errorbar(pair.contact, theory, off, fmt="+", ms=12, color=GREY, label=label)
         diameter = pair.edges[0]
-        if len(result.pair_distributions) == 1 and pair.contact == diameter and result.packing_fraction <= THIN:
-            density = 4 * result.packing_fraction / (math.pi * diameter**2)
+        if len(pairs) == 1 and pair.contact == diameter and packing_fraction <= THIN:
+            density = 4 * packing_fraction / (math.pi * diameter**2)
             curve = hard_discs.thin_pair_distribution(middle, diameter, density)
             ax.plot(middle, curve, "--", color=GREY, linewidth=0.9, label="first order in φ")
     ax.axhline(1.0, color=GREY, linewidth=0.8)
     ax.set(xlabel="r (length)", ylabel="g(r) (no unit)")
 
 
-def _draw_coefficients(ax: Panel, result: Transport) -> None:
+def draw_coefficients(ax: Panel, diffusion: Sequence[Diffusion], collective: Collective | None) -> None:
     """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, in units of Enskog's values or else of their own."""
-    whole = result.collective.coefficients if result.collective else {}
+    whole = collective.coefficients if collective else {}
     curves = [
-        (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient)
-        for entry in result.diffusion
+        (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient) for entry in diffusion
     ] + [
         (SYMBOLS[name], coefficient.times, coefficient.running, coefficient.running_error, coefficient.value)
         for name, coefficient in whole.items()
@@ -140,7 +99,7 @@ def _draw_coefficients(ax: Panel, result: Transport) -> None:
         _curve(ax, times, running / unit, error / unit, k, name if value else f"{name}: no plateau")
         if by_theory and value:
             ax.theory(None, 1.0, value.theory_error / unit, None, curve_style(k)[0])
-    plateaus = [result.collective.plateau] if result.collective else [entry.plateau for entry in result.diffusion]
+    plateaus = [collective.plateau] if collective else [entry.plateau for entry in diffusion]
     for first, last in filter(None, plateaus[:1]):
         ax.axvspan(first, last, color=GREY, alpha=0.12, linewidth=0, label="plateau")
     ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's, bands: its errors" if by_theory and values else None)

@@ -19,8 +19,8 @@ from idealgas.analysis.transport.diffusion import (
     diffusion_limits,
 )
 from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
-from idealgas.analysis.transport.pair_distribution import pair_distributions
-from idealgas.analysis.transport.result import Contact, Transport
+from idealgas.analysis.transport.pair_distribution import Contact, pair_distributions
+from idealgas.analysis.transport.result import Transport
 from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.scene.walls import walls_inside

@@ -7,10 +7,20 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from idealgas.log import Log
+from idealgas.statistics.estimates import Estimate
 from idealgas.tallies.pairs import BINS_A_DIAMETER, REACH, inside
 from idealgas.theory.ensemble import Composition
 
 FRAMES = 64  # number of instants
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Contact value χ of the pair distribution of two species (no unit), from their collision rate."""
+
+    species: str
+    other: str
+    value: Estimate
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from idealgas.analysis.check import agreement
 from idealgas.analysis.result import Result
 from idealgas.analysis.transport.coefficients import SYMBOLS, Coefficient, Collective
 from idealgas.analysis.transport.diffusion import Diffusion
-from idealgas.analysis.transport.pair_distribution import PairDistribution
+from idealgas.analysis.transport.pair_distribution import Contact, PairDistribution
 from idealgas.fields import Key
 from idealgas.presentation.tables import Table, estimates, format_estimate, pressure_table
 from idealgas.statistics.estimates import Estimate
@@ -21,15 +21,6 @@ WALLS = (
     "No viscosities and thermal conductivity: they need periodic sides and nothing else in the box, as walls change "
     "the currents of the gas."
 )
-
-
-@dataclass(frozen=True)
-class Contact:
-    """Contact value χ of the pair distribution of two species (no unit), from their collision rate."""
-
-    species: str
-    other: str
-    value: Estimate
 
 
 @dataclass(frozen=True)
@@ -100,10 +91,25 @@ class Transport(Result):
         return f"{sentence}; {agreement(rows, theory)}."
 
     def figure(self) -> "Figure":
-        """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time."""
-        from idealgas.analysis.transport.figure import draw_transport
+        """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time.
 
-        return draw_transport(self)
+        Without events only the coefficients are drawn; among fixed discs there is no pair distribution.
+        """
+        from idealgas.analysis.transport.figure import draw_coefficients, draw_diffusion, draw_pairs
+        from idealgas.presentation.style import panels
+
+        if not self.diffusion:
+            figure, (coefficients,) = panels(1)
+        else:
+            has_pairs = bool(self.pair_distributions)
+            figure, (correlation, displacement, *pairs, coefficients) = panels(2, 2) if has_pairs else panels(3)
+            draw_diffusion(correlation, displacement, self.diffusion, self.free_paths[0].time.value)
+            if has_pairs:
+                draw_pairs(pairs[0], self.pair_distributions, self.contacts, self.packing_fraction)
+        draw_coefficients(coefficients, self.diffusion, self.collective)
+        for ax in figure.axes:
+            ax.legend()
+        return figure
 
 
 def _of_currents(collective: Collective, free_times: float) -> list[Table]:

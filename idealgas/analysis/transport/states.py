@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
+
 from idealgas.analysis.caveats import by_state, name_of_state, seeds_of
 from idealgas.analysis.check import agreement
 from idealgas.analysis.result import Result
@@ -80,10 +82,33 @@ class TransportStates(Result):
         return f"{densest}; {agreement(rows, 'Enskog')}."
 
     def figure(self) -> "Figure":
-        """Draw the coefficients against the packing fraction, or against the number of discs."""
-        from idealgas.analysis.transport.figure import draw_states
+        """Draw coefficients over Enskog's against φ, or against N if all logs have the same φ."""
+        from idealgas.analysis.transport.figure import draw_band
+        from idealgas.presentation.style import COLOURS, GREY, panels
 
-        return draw_states(self)
+        figure, (ax,) = panels(1)
+        by_number = len({round(state.packing_fraction, 9) for state in self.states}) == 1 < len(self.states)
+        for symbol, colour in zip((DIFFUSION, *SYMBOLS.values()), COLOURS, strict=False):
+            shown = [state for state in self.states if symbol in state.coefficients]
+            measured = [state.coefficients[symbol] for state in shown]
+            places = [state.number if by_number else state.packing_fraction for state in shown]
+            values, errors, of_theory = (
+                np.array([getattr(estimate, name) for estimate in measured])
+                for name in ("value", "standard_error", "theory_error")
+            )
+            if shown:
+                ax.errorbar(places, values, errors, fmt="o-", ms=4, capsize=3, color=colour, label=symbol)
+                draw_band(ax, places, np.ones(len(shown)), of_theory, colour)
+        ax.axhline(1.0, color=GREY, linewidth=0.8, label="Enskog's theory, bands: its errors")
+        ax.set(xlabel="packing fraction φ (no unit)", ylabel="coefficient over Enskog's (no unit)")
+        if by_number:
+            numbers = [state.number for state in self.states]
+            ax.set_xscale("log")
+            ax.set_xticks(numbers, [str(number) for number in numbers])
+            ax.minorticks_off()
+            ax.set_xlabel("number of discs")
+        ax.legend()
+        return figure
 
 
 def transport_states(results: Sequence[Transport]) -> TransportStates:

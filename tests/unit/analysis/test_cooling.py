@@ -11,7 +11,8 @@ from helpers.against_theory import agrees
 from helpers.logs import gas
 
 from idealgas import cooling
-from idealgas.analysis.cooling import _law_error, _moments
+from idealgas.analysis.cooling import _moments
+from idealgas.analysis.cooling.theory import law_error
 
 GAS = gas(300, 0.1, (14, 14), "collisions_per_disc = 70", periodic="xy", seed=1, then="restitution.normal = 0.95")
 
@@ -90,4 +91,4 @@ def test_moments_of_few_discs():
 def test_the_error_of_haffs_law():
     """dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ, with 1 + t/τ = √(T₀/T)."""
     law = np.array([4.0, 1.0, 0.25])
-    assert _law_error(law, 0.1) == pytest.approx([0.0, 0.2 * 0.5 * 1.0, 0.2 * 0.75 * 0.25])
+    assert law_error(law, 0.1) == pytest.approx([0.0, 0.2 * 0.5 * 1.0, 0.2 * 0.75 * 0.25])

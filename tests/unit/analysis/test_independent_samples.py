@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import signal, stats
 
+from idealgas.analysis.histogram import independent_samples
 from idealgas.analysis.histogram.distribution import distribution_of
-from idealgas.analysis.histogram.samples import independent_samples
 from idealgas.statistics.estimates import Estimate
 from idealgas.theory.distributions import WaitingTimeLaw
 

@@ -1,0 +1,125 @@
+"""Theory of a gas that cools uniformly, with the errors of its predictions."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from idealgas.errors import NotApplicableError
+from idealgas.log import Log
+from idealgas.theory import granular
+from idealgas.theory.granular import GranularParameters
+from idealgas.theory.values import Theory
+
+LOSS_ERROR, TIME_ERROR, RATIO_ERROR = 0.015, 0.025, 0.05
+"""Relative errors of theory for the loss per collision, Haff's time and the temperature ratio.
+
+They are from simulations of 300 discs at φ = 0.05, 20 runs each, with e = 0.8 to 0.98 without spin, and with e = 0.9 or
+0.95 and β = 0, 0.5 and 0.9.
+"""
+
+CUMULANT_ERROR = 0.05
+"""Relative error of a₂ by theory, due to neglected terms of higher order in a₂."""
+
+UNTESTED = f"Theory is not available below e = {granular.TESTED_FROM:g}."
+
+
+@dataclass(frozen=True)
+class CoolingTheory:
+    """Predictions for a gas that cools uniformly; None where theory has no value.
+
+    Attributes:
+        law: (F,), temperature of the motion, energy.
+        spin_law: (F,), temperature of the spins, energy.
+        last_temperature: temperature of the motion at the last time, energy.
+        loss: fraction of the temperature that is lost per collision of a disc.
+        haff: Haff's time.
+        fourth: fourth cumulant a₂ of smooth discs.
+        temperature_ratio: temperature of the spins over that of the motion.
+    """
+
+    law: np.ndarray | None = None
+    spin_law: np.ndarray | None = None
+    last_temperature: Theory | None = None
+    loss: Theory | None = None
+    haff: Theory | None = None
+    fourth: Theory | None = None
+    temperature_ratio: Theory | None = None
+
+
+def cooling_theory(
+    parameters: GranularParameters, rate: float, start: tuple[float, float], time: np.ndarray, number: int, dof: int
+) -> CoolingTheory:
+    """Return the predictions of the theory of homogeneous cooling; none below the tested coefficients.
+
+    Args:
+        parameters: coefficients of the collisions.
+        rate: collision rate of a disc at time 0, 1/time; inf if it is not known.
+        start: temperatures of motion and spin at time 0, energy.
+        time: (F,), times.
+        number: number of discs.
+        dof: number of degrees of freedom.
+    """
+    if parameters.normal < granular.TESTED_FROM:
+        return CoolingTheory()
+    few = 1 / dof
+
+    def expected(value: float, *errors: float) -> Theory:
+        """Return a value with the relative errors of its theory."""
+        return Theory(value, math.hypot(*errors) * abs(value), "homogeneous cooling")
+
+    law = spin_law = haff = last = None
+    if math.isfinite(rate):
+        rate /= dof / (2 * number)  # conserved momentum: fewer degrees of freedom share the energy
+        law, spin_law = granular.homogeneous_cooling(parameters, rate, *start, time)
+        haff = expected(granular.cooling_time(parameters, rate), TIME_ERROR, few)
+        last = Theory(float(law[-1]), float(law_error(law, haff.error / haff.value)[-1]), haff.source)
+    spin_ratio = granular.temperature_ratio(parameters)
+    return CoolingTheory(
+        law=law,
+        spin_law=spin_law,
+        last_temperature=last,
+        loss=expected(granular.cooling_per_collision(parameters) * 2 * number / dof, LOSS_ERROR, few),
+        haff=haff,
+        fourth=None if parameters.rough else expected(granular.fourth_cumulant(parameters.normal), CUMULANT_ERROR),
+        temperature_ratio=None if spin_ratio is None else expected(spin_ratio, RATIO_ERROR),
+    )
+
+
+def parameters_of(log: Log) -> GranularParameters:
+    """Return the coefficients of the collisions.
+
+    Raises:
+        NotApplicableError: unless equal discs lose energy in their collisions and nothing else changes the energy.
+    """
+    scene, properties = log.scene, log.scene.properties
+    parameters = GranularParameters(
+        1.0 if scene.restitution is None else scene.restitution.normal,
+        -1.0 if scene.rotation is None else scene.rotation.roughness,
+        properties.inertia,
+    )
+    effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
+    elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
+    why = ""
+    if parameters.normal == 1 and abs(parameters.roughness) == 1:
+        why = "collisions that lose energy, and discs of this gas conserve it"
+    elif effects or not (all(log.periodic) or elastic_walls):
+        others = ", ".join(effects) or "walls"
+        why = f"that only collisions of discs change the energy (got {others}); use `idealgas evolution`"
+    elif not log.has_positions or not log.has_events:
+        why = "events with positions"
+    elif len(log.discs.species_names) > 1:
+        why = "equal discs, and this gas has several species"
+    elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
+        why = "discs that collide, and these have no radius or do not move"
+    if why:
+        raise NotApplicableError(f"{log.path}: cooling requires {why}")
+    return parameters
+
+
+def law_error(law: np.ndarray, relative: float) -> np.ndarray:
+    """Return the errors (F,) of temperatures (F,) by Haff's law, for a relative error dτ/τ of its time.
+
+    dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ.
+    """
+    return 2 * (1 - np.sqrt(np.minimum(law / law[0], 1))) * relative * law
