@@ -16,16 +16,16 @@ ABILITIES = json.loads((ROOT / "tests" / "cases" / "abilities.json").read_text(e
 def commands(command, name=""):
     """Options of a command and those below it, by name."""
     context = click.Context(command, **command.context_settings)
-    found = {name: {option for one in command.get_params(context) for option in one.opts + one.secondary_opts}}
+    actual = {name: {option for item in command.get_params(context) for option in item.opts + item.secondary_opts}}
     for each in command.list_commands(context) if isinstance(command, click.Group) else ():
-        found |= commands(command.get_command(context, each), f"{name} {each}".strip())
-    return found
+        actual |= commands(command.get_command(context, each), f"{name} {each}".strip())
+    return actual
 
 
 def test_all_commands_have_their_options():
-    found = commands(idealgas_cli.main.main)
+    result = commands(idealgas_cli.main.main)
     for name, options in ABILITIES["commands"].items():
-        assert set(options) <= found[name], name
+        assert set(options) <= result[name], name
 
 
 @pytest.mark.parametrize("name", ABILITIES["python"])

@@ -61,6 +61,6 @@ def test_the_orbit_of_three_discs(tmp_path):
     assert (done.returncode, done.stderr) == (0, written)
     result = json.loads(done.stdout)
     assert result["placements"] >= 12
-    medians = [found["median"] for found in result["survivals"]]
+    medians = [measured["median"] for measured in result["survivals"]]
     assert medians == sorted(medians)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.csv", "orbit.json", "orbit.png"]

@@ -82,8 +82,8 @@ def test_errors_against_the_length_of_blocks(folder, path, tmp_path):
 
 def test_seed_and_window(path):
     assert type(json.loads(output_of("info", path, "--json"))["scene"]["seed"]) is int
-    found = json.loads(called("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
-    assert found["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}
+    result = json.loads(called("temperature", path, "--from", 10, "--to", 20, "--json").stdout)
+    assert result["window"] == {"start": 10.0, "end": 20.0, "equilibration_detected": False}
 
 
 def test_temperatures_of_one_species_are_printed_once(path):
@@ -97,11 +97,11 @@ def test_check_names_what_it_compares(path):
     assert shown.splitlines()[-1].startswith("Measurement and theory agree. A correct gas fails this check with a ")
     table = shown[shown.index("Check: difference between measurement and theory") :]
     assert " ".join(re.sub("[│┃]", " ", table).split()).count(": virial series") == 2  # cells may have several lines
-    found = json.loads(called("pressure", path, "--check", "--json").stdout)
-    assert (found["agrees"], found["no_theory"]) == (True, None)
-    assert [row["name"] for row in found["compared"]] == ["walls, virial", "pairs, virial"]
-    assert all(abs(row["difference"]) < row["allowed"] < row["detectable"] for row in found["compared"])
-    assert [row["agrees"] for row in found["compared"]] == [True, True]
+    result = json.loads(called("pressure", path, "--check", "--json").stdout)
+    assert (result["agrees"], result["no_theory"]) == (True, None)
+    assert [row["name"] for row in result["compared"]] == ["walls, virial", "pairs, virial"]
+    assert all(abs(row["difference"]) < row["allowed"] < row["detectable"] for row in result["compared"])
+    assert [row["agrees"] for row in result["compared"]] == [True, True]
 
 
 @pytest.mark.parametrize(
@@ -121,9 +121,9 @@ def test_check_without_a_theory_says_so(overrides, why, tmp_path):
     (line,) = silent.stderr.splitlines()
     assert line.startswith("Theory is not available: ")
     assert why in line
-    found = json.loads(output_of("pressure", "run.h5", "--check", "--json", folder=tmp_path))
-    assert found["agrees"] is None
-    assert why in found["no_theory"]
+    result = json.loads(output_of("pressure", "run.h5", "--check", "--json", folder=tmp_path))
+    assert result["agrees"] is None
+    assert why in result["no_theory"]
 
 
 def test_check_of_several_logs_without_a_theory_says_so(tmp_path):

@@ -69,8 +69,8 @@ def test_two_discs_that_do_not_reach_all_states(states, tmp_path):
 
 def test_a_flow_is_no_temperature(states):
     """The discs differ from (3, 0) by 0.1 along x, and two of them by 0.1 along y."""
-    found = json.loads(shown("check", "flow.toml", "--json", folder=states).stdout)
-    assert found["temperature"] == pytest.approx((4 * 0.01 + 2 * 0.01) / 6, rel=1e-9)  # 6 degrees of freedom
+    result = json.loads(shown("check", "flow.toml", "--json", folder=states).stdout)
+    assert result["temperature"] == pytest.approx((4 * 0.01 + 2 * 0.01) / 6, rel=1e-9)  # 6 degrees of freedom
     line = "caveat: The gas moves as a whole with the velocity (3, 0), 99.8% of its kinetic energy"
     assert line in shown("check", "flow.toml", folder=states).stdout
     said = " ".join(shown("follow", "flow.h5", "--once", folder=states).stdout.split())

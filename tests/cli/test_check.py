@@ -47,11 +47,11 @@ def test_walls_are_listed_by_their_numbers():
 def test_what_theory_does_not_know_and_what_it_knows_roughly_is_said():
     shown = check(CONFIGS / "piston.toml").stdout
     assert "not known: the theory of a uniform gas does not cover piston\n" in shown
-    found = json.loads(check(CONFIGS / "piston.toml", "--json").stdout)
-    assert (found["effects"], found["beyond"]) == (["piston"], ["piston"])
-    assert (found["temperature"], found["rows"]) == (None, None)
-    assert found["duration"] == 2000
-    assert found["compiled_out"] == [name for name in EFFECT_NAMES if name != "piston"]
+    result = json.loads(check(CONFIGS / "piston.toml", "--json").stdout)
+    assert (result["effects"], result["beyond"]) == (["piston"], ["piston"])
+    assert (result["temperature"], result["rows"]) == (None, None)
+    assert result["duration"] == 2000
+    assert result["compiled_out"] == [name for name in EFFECT_NAMES if name != "piston"]
     shown = check(CONFIGS / "atmosphere.toml").stdout
     assert "about: the law of a dilute column, whose lowest layer has a packing fraction of 0.0063\n" in shown
     assert "not known" not in shown
@@ -81,12 +81,12 @@ def test_numbers_of_a_good_theory_are_not_about():
 
 def test_json():
     shown = output_of("check", CONFIGS / "mixture.toml", "--json", "--set", "species.heavy.count=100")
-    found = json.loads(shown)
-    assert found["number"] == 900
-    assert [(s["name"], s["number"]) for s in found["species"]] == [("light", 800), ("heavy", 100)]
-    assert found["scene"]["species"][1]["count"] == 100
-    assert found["effects"] == []
-    assert found["rows"] > found["events"] > 0
+    result = json.loads(shown)
+    assert result["number"] == 900
+    assert [(s["name"], s["number"]) for s in result["species"]] == [("light", 800), ("heavy", 100)]
+    assert result["scene"]["species"][1]["count"] == 100
+    assert result["effects"] == []
+    assert result["rows"] > result["events"] > 0
 
 
 def test_the_shown_scene_is_a_scene(tmp_path):
@@ -122,8 +122,8 @@ def test_discs_that_may_come_to_rest(override, said, warned, tmp_path):
     assert said in result.stdout
     assert ("warning:" in result.stdout) == bool(warned)
     assert warned in result.stdout
-    found = json.loads(called("check", "scene.toml", "--json", "--set", override, folder=tmp_path).stdout)
-    assert (found["rest"] is None) == (not said and not warned)
+    measured = json.loads(called("check", "scene.toml", "--json", "--set", override, folder=tmp_path).stdout)
+    assert (measured["rest"] is None) == (not said and not warned)
 
 
 def test_rough_discs_that_come_to_rest(tmp_path):

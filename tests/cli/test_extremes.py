@@ -56,10 +56,10 @@ def test_numbers_or_one_line(name, log, tmp_path):
 
 def test_numbers_of_a_large_box(log):
     """P = N T/A = 40/(8e28)² without collisions, and Henderson's Z = (1 + φ²/8)/(1 - φ)² = 1.1786 for many discs."""
-    found = json.loads(output_of("pressure", log("large box"), "--json"))
+    result = json.loads(output_of("pressure", log("large box"), "--json"))
     filling = 40 * math.pi * 2e27**2 / 8e28**2
     henderson = (1 + filling**2 / 8) / (1 - filling) ** 2
-    pairs = next(route for route in found["routes"] if route["route"] == "pairs, virial")
+    pairs = next(route for route in result["routes"] if route["route"] == "pairs, virial")
     z = pairs["compressibility_factor"]
     assert abs(z["value"] - henderson) < 4 * z["standard_error"]
     assert pairs["pressure"]["value"] / z["value"] == pytest.approx(40 / 8e28**2)
@@ -67,7 +67,7 @@ def test_numbers_of_a_large_box(log):
 
 def test_numbers_of_fast_discs(log):
     """⟨v⟩ of N = 40 discs with ⟨v²⟩ = v₀² at fixed energy: v₀ √π/2 Γ(N)/Γ(N + 1/2) √N = 0.8890 v₀."""
-    (found,) = json.loads(output_of("histogram", log("fast"), "--json"))["distributions"]
+    (result,) = json.loads(output_of("histogram", log("fast"), "--json"))["distributions"]
     expected = 1e29 * math.sqrt(math.pi * 40) / 2 * math.exp(math.lgamma(40) - math.lgamma(40.5))
-    assert found["mean"]["theory"] == pytest.approx(expected)
-    assert abs(found["mean"]["value"] - expected) < 4 * found["mean"]["standard_error"]
+    assert result["mean"]["theory"] == pytest.approx(expected)
+    assert abs(result["mean"]["value"] - expected) < 4 * result["mean"]["standard_error"]

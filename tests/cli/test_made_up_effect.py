@@ -158,15 +158,15 @@ def run(tmp_path_factory):
 
 
 def test_it_runs_like_any_other(run):
-    found = json.loads(run(PROGRAM))
-    assert found["acceleration"] == pytest.approx([0.5 * 0.5403023058681398, 0.5 * 0.8414709848078965], rel=1e-15)
-    assert found["effects"] == found["sample"] == ["tilt"]
-    assert found["rows"] >= 120
-    assert [found[name] for name in ("oracle", "resumed")] == [True] * 2
-    assert "potential_energy" in found["parts"]
-    assert abs(found["drift"]) < 1e-12
-    assert "tilt" in found["bench"]
-    assert found["error"].endswith("tilt.strength: too strong (got 9.0; allowed at most the size of the box)")
+    result = json.loads(run(PROGRAM))
+    assert result["acceleration"] == pytest.approx([0.5 * 0.5403023058681398, 0.5 * 0.8414709848078965], rel=1e-15)
+    assert result["effects"] == result["sample"] == ["tilt"]
+    assert result["rows"] >= 120
+    assert [result[name] for name in ("oracle", "resumed")] == [True] * 2
+    assert "potential_energy" in result["parts"]
+    assert abs(result["drift"]) < 1e-12
+    assert "tilt" in result["bench"]
+    assert result["error"].endswith("tilt.strength: too strong (got 9.0; allowed at most the size of the box)")
 
 
 def test_commands_show_it(run):
@@ -264,8 +264,8 @@ def test_a_gas_whose_collisions_give_energy_is_steady(tmp_path):
     replace_once(law, first, f"from idealgas.physics.delta import push_apart\n{first}")
     (folder / "scene.toml").write_text(DELTA_SCENE)
     run(COMMAND, "run", "scene.toml", "-o", "run.h5")
-    found = json.loads(run(COMMAND, "temperature", "run.h5", "--json"))
+    result = json.loads(run(COMMAND, "temperature", "run.h5", "--json"))
     alpha, delta = 0.8, 0.1
     half = alpha * delta * math.sqrt(math.pi) / (2 * (1 - alpha**2))
     theory = (half + math.sqrt(half**2 + delta**2 / (1 - alpha**2))) ** 2
-    assert found["species"][0]["both"]["value"] == pytest.approx(theory, rel=0.03)
+    assert result["species"][0]["both"]["value"] == pytest.approx(theory, rel=0.03)

@@ -84,10 +84,10 @@ def test_every_command_is_listed_once():
 @pytest.mark.parametrize("page", PAGES)
 def test_each_figure_is_followed_by_its_command(page):
     text = PAGES[page]
-    for found in PICTURE.finditer(text):
-        (path,) = pictures_of(page, found[0])
+    for result in PICTURE.finditer(text):
+        (path,) = pictures_of(page, result[0])
         assert (ROOT / path).is_file()
-        command = re.match(r"\n\n```bash\n(.*)\n```\n", text[found.end() :])
+        command = re.match(r"\n\n```bash\n(.*)\n```\n", text[result.end() :])
         assert command, path
         assert path in commands(command[1])[-1].split(), path
 

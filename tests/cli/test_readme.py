@@ -54,10 +54,10 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def run_blocks(page, found):
+def run_blocks(page, result):
     """Run blocks of a page in turn in the current folder, and return each command or program with what it prints."""
     printed = []
-    for language, text in found:
+    for language, text in result:
         assert language in NOT_RUN | {"bash", "python"}
         if language == "bash":
             printed += run_shell(text)

@@ -44,10 +44,10 @@ def test_numbers_for_machines(logs):
     assert random["acceptance"]["collisions"] == 1500
     assert exact["speed_distributions"]["trials"] is None
     assert random["speed_distributions"]["trials"][:3] == [0, 300, 600]
-    for found in (exact, random):
-        assert found["relaxation_time"]["standard_error"] > 0
-        assert len(found["time"]) == len(found["kurtosis"]) == len(found["distance"]) == len(found["entropy"])
-        assert found["collisions_per_disc"][-1] == pytest.approx(30)
+    for result in (exact, random):
+        assert result["relaxation_time"]["standard_error"] > 0
+        assert len(result["time"]) == len(result["kurtosis"]) == len(result["distance"]) == len(result["entropy"])
+        assert result["collisions_per_disc"][-1] == pytest.approx(30)
 
 
 def test_speeds_at_instants(logs):

@@ -91,12 +91,12 @@ def test_everyone_can_read_it(sized, width, scheme):
     """Nothing to mend by the rules of axe-core, contrast of at least 4.5:1 among them."""
     browser = sized("piston", width, scheme)
     browser.execute_script(AXE.read_text(encoding="utf-8"))
-    found = browser.execute_async_script("""
+    result = browser.execute_async_script("""
         const done = arguments[0];
         axe.run({ resultTypes: ["violations"] }).then(({ violations }) => done(violations
             .map(rule => [rule.id, rule.nodes.length, rule.nodes[0].html])))
     """)
-    assert found == []
+    assert result == []
 
 
 def test_pictures_have_the_colours_of_the_page(sized):
@@ -178,12 +178,12 @@ def test_a_gas_without_positions_shows_its_speeds(opened, pages):
 def test_pictures_are_there_and_every_one_has_words(opened):
     browser = opened("plain")
     browser.execute_script("document.querySelector('.more').open = true")
-    found = browser.execute_script("""
+    result = browser.execute_script("""
         const pictures = document.querySelectorAll("figure svg");
         return Array.from(pictures, svg => [svg.getBoundingClientRect().width, svg.getAttribute("aria-label")])
     """)
-    assert len(found) >= 8
-    assert all(width > 200 and words for width, words in found)
+    assert len(result) >= 8
+    assert all(width > 200 and words for width, words in result)
     assert browser.title == "Some <discs> & no more"
 
 
@@ -191,7 +191,7 @@ def test_pictures_are_there_and_every_one_has_words(opened):
 def test_the_page_needs_nothing_else(pages, name):
     text = pages(name)[1].read_text(encoding="utf-8")
     assert not re.search(r"https?://|@import|url\((?!#)", text)
-    assert {found[0] for found in re.findall(r'(?:src|href)="([^"]+)', text)} == {"#"}
+    assert {result[0] for result in re.findall(r'(?:src|href)="([^"]+)', text)} == {"#"}
     assert "default-src 'none'" in text
 
 

@@ -53,17 +53,17 @@ def test_workers_make_no_difference_and_nothing_is_done_twice(plan, tmp_path):
         assert done.returncode == 0, done.stderr
         assert done.stderr == ""
         assert done.stdout.startswith("6 points run, 0 done before, 0 failed")
-    one, two = (results(tmp_path / f"with-{workers}") for workers in (1, 2))
-    assert len(one) == 7
-    assert one == two
+    result, two = (results(tmp_path / f"with-{workers}") for workers in (1, 2))
+    assert len(result) == 7
+    assert result == two
     (tmp_path / "with-2" / "points" / "0004.json").unlink()
     plan.write_text(SWEEP.replace("[0.02, 0.1]", "[0.05, 0.02, 0.1]"))
     again = idealgas("sweep", plan, "-o", tmp_path / "with-2")
     assert again.stdout.startswith("4 points run, 5 done before, 0 failed")
     more = results(tmp_path / "with-2")
     assert len(more) == 11
-    assert more["results.previous-1.csv"] == one["results.csv"]  # of the points of the first plan
-    assert all(more[name] == one[name] for name in one if name not in ("results.csv", "0004.json"))
+    assert more["results.previous-1.csv"] == result["results.csv"]  # of the points of the first plan
+    assert all(more[name] == result[name] for name in result if name not in ("results.csv", "0004.json"))
     table = idealgas("pressure", tmp_path / "with-1", "--check")
     assert table.returncode == 0, table.stderr
     assert "Measurement and theory agree." in table.stdout
@@ -110,8 +110,8 @@ def test_a_dry_run_has_the_axes_in_their_order_also_as_json(plan, tmp_path):
     head, first = (line.split() for line in shown.splitlines()[1:4:2])
     assert [word for word in head if word != "┃"][:4] == ["point", "replicate", "phi", "species.gas.count"]
     assert [word for word in first if word != "│"][:4] == ["0", "0", "0.02", "20"]
-    found = json.loads(called("sweep", plan, "--dry-run", "--json").stdout)
-    assert [point["values"] for point in found["points"][::6]] == [
+    result = json.loads(called("sweep", plan, "--dry-run", "--json").stdout)
+    assert [point["values"] for point in result["points"][::6]] == [
         {"phi": 0.02, "species.gas.count": 20},
         {"phi": 0.1, "species.gas.count": 20},
     ]
@@ -143,8 +143,8 @@ def test_all_that_people_want_of_a_sweep(plan, tmp_path):
     assert {row["quantity"].partition(".")[0] for row in rows} == {"run", "pressure", "profile", "evolution"}
     assert list(rows[0])[-1] == "caveats"
     again = called("sweep", plan, "-o", tmp_path / "out", "--json")
-    found = json.loads(again.stdout)
-    assert (found["ran"], found["before"], len(found["results"])) == (0, 4, len(rows))
+    result = json.loads(again.stdout)
+    assert (result["ran"], result["before"], len(result["results"])) == (0, 4, len(rows))
     for option, name in (("--of", "pressure.area"), ("--against", "phi")):
         wrong = error_of("sweep", plan, "-o", tmp_path / "out", "-q", "--plot", tmp_path / "y.png", option, f"{name}s")
         assert f'did you mean "{name}"' in wrong

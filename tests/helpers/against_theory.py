@@ -14,10 +14,10 @@ STANDARD_ERRORS = 4
 LEAST_P = 0.001
 
 
-def agrees(found: Estimate, resolution: float) -> None:
+def agrees(result: Estimate, resolution: float) -> None:
     """Within STANDARD_ERRORS of theory, with an error below `resolution` times it."""
-    assert found.standard_error < resolution * abs(found.theory)
-    assert abs(found.deviation) < STANDARD_ERRORS, found
+    assert result.standard_error < resolution * abs(result.theory)
+    assert abs(result.deviation) < STANDARD_ERRORS, result
 
 
 def all_agree(log: Log, resolution: float, analysis: str, *quantities: str, **options: Any) -> None:

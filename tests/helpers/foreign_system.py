@@ -62,10 +62,10 @@ def _check_closed(path):
         return
     for descriptor in os.listdir("/proc/self/fd"):
         try:
-            found = os.fstat(int(descriptor))
+            result = os.fstat(int(descriptor))
         except OSError:
             continue
-        if os.path.samestat(found, wanted):
+        if os.path.samestat(result, wanted):
             raise PermissionError(13, "the file is open", str(path))
 
 

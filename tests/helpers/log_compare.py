@@ -28,21 +28,21 @@ def contents(path: Path) -> dict[str, np.ndarray | str | dict]:
     """Everything that does not tell of the writing: runs, commits, the seconds it took and the threads."""
     with open_log(path) as log:
         summary = {name: value for name, value in log.summary.items() if name not in OWN}
-        found: dict[str, np.ndarray | str | dict] = {"summary": summary, "scene": log.scene_text}
+        result: dict[str, np.ndarray | str | dict] = {"summary": summary, "scene": log.scene_text}
         rows = len(log)
 
     def keep(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and name.partition("/")[0] not in ("runs", "commit", "summary"):
-            found[name] = item[:rows] if name.startswith("events/") else item[()]
+            result[name] = item[:rows] if name.startswith("events/") else item[()]
 
     with h5py.File(path) as file:
         file.visititems(keep)
-    return found
+    return result
 
 
-def differences(one: Path, other: Path) -> list[str]:
+def differences(each: Path, other: Path) -> list[str]:
     """Names of what is not equal bit for bit in two logs."""
-    a, b = contents(one), contents(other)
+    a, b = contents(each), contents(other)
     assert a.keys() == b.keys()
     return [name for name in a if not _equal(a[name], b[name])]
 

@@ -201,4 +201,4 @@ class Paths:
             along = walls[:, 1] - walls[:, 0]
             normal = np.column_stack((-along[:, 1], along[:, 0]))
             tops = -(normal @ velocity) / (normal @ self.pull)
-        return [found[(found > 0) & (found < duration)] for found in (best, tops)]
+        return [result[(result > 0) & (result < duration)] for result in (best, tops)]

@@ -73,8 +73,8 @@ class Block(NamedTuple):
 
 def blocks(page: str, language: str | None = None) -> list[Block]:
     """Fenced blocks of a page, of one language or of all."""
-    found = [Block(*parts) for parts in FENCE.findall(PAGES[page])]
-    return [block for block in found if language in (None, block.language)]
+    actual = [Block(*parts) for parts in FENCE.findall(PAGES[page])]
+    return [block for block in actual if language in (None, block.language)]
 
 
 def section(page: str, title: str) -> str:
@@ -100,7 +100,7 @@ def make_folder(folder: Path) -> Path:
         text = re.sub(r"^replicates = \d+", "replicates = 1", path.read_text(encoding="utf-8"), flags=re.M)
         for key, factor in SHORTER_SWEEPS:
             text = re.sub(
-                rf"^{key} = ([\d_]+)", lambda found, k=key, f=factor: f"{k} = {int(found[1]) // f}", text, flags=re.M
+                rf"^{key} = ([\d_]+)", lambda result, k=key, f=factor: f"{k} = {int(result[1]) // f}", text, flags=re.M
             )
         path.write_text(text, encoding="utf-8")
     return folder

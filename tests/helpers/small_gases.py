@@ -39,11 +39,11 @@ def analysed(name, *overrides, **options):
     return registry.analyse(made(*overrides), name, **options)
 
 
-def only(found, words):
+def only(result, words):
     """The sentence of a result that has these words; there is one."""
-    (sentence,) = (each for each in found.caveats if words in each)
+    (sentence,) = (each for each in result.caveats if words in each)
     return sentence
 
 
-def silent(found, words):
-    return not any(words in each for each in found.caveats)
+def silent(result, words):
+    return not any(words in each for each in result.caveats)

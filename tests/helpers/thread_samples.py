@@ -212,8 +212,8 @@ def compare(sample, seed: int, threads: tuple[int, ...] = (2, 3, 4, 7)) -> Count
         lead = float(draw.choice([0.1, EAGER.lead, 1e9]))
         method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=lead))
         with late_threads(draw):
-            found = log_with(*sample(), stop, events, method)
-        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(found, expected, strict=True)), (
+            result = log_with(*sample(), stop, events, method)
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(result, expected, strict=True)), (
             seed,
             number,
             method.workers.counts,

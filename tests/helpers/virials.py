@@ -42,8 +42,8 @@ def virials(radius, box, periodic=(False, False), *, seeds, collisions, warm_up=
     radius: (N,), one species a radius. lattice: start from one, where random places are too few.
     """
     radius = np.asarray(radius, float)
-    found = [_run(radius, box, periodic, np.random.default_rng(seed), collisions, warm_up, lattice) for seed in seeds]
-    return Virials(*(np.array(column) for column in zip(*found, strict=True)))
+    actual = [_run(radius, box, periodic, np.random.default_rng(seed), collisions, warm_up, lattice) for seed in seeds]
+    return Virials(*(np.array(column) for column in zip(*actual, strict=True)))
 
 
 def _run(radius, box, periodic, random, collisions, warm_up, lattice):

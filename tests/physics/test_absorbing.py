@@ -81,8 +81,8 @@ def test_analyses_count_those_that_are_left(two):
 
 def test_pictures_leave_it_out(two, tmp_path):
     paint_frame(two, tmp_path / "frame.png", 9.0)
-    found = player(two, start=3.0)
-    assert found.head["speed"] == pytest.approx(10 / 5)
+    result = player(two, start=3.0)
+    assert result.head["speed"] == pytest.approx(10 / 5)
 
 
 @pytest.mark.usefixtures("uncompiled")
@@ -95,10 +95,10 @@ def test_a_start_from_a_state_has_those_that_are_left(tmp_path):
     here, (expected,) = np.flatnonzero(log.state_at(at).inside), log.chunks(None, row)
     assert 10 < len(here) < 40
     output_of("scene", log.path, "--at", repr(at), "-o", tmp_path / "next.toml")
-    (found,) = log_of(tmp_path / "next.toml", "run.events=50").chunks()
-    rows = slice(0, len(found.disc))
-    assert np.array_equal(here[found.disc], expected.disc[rows])
-    assert np.array_equal(found.position, expected.position[rows])
+    (result,) = log_of(tmp_path / "next.toml", "run.events=50").chunks()
+    rows = slice(0, len(result.disc))
+    assert np.array_equal(here[result.disc], expected.disc[rows])
+    assert np.array_equal(result.position, expected.position[rows])
 
 
 @pytest.mark.usefixtures("uncompiled")

@@ -58,9 +58,9 @@ def of_a_piston(log, kind, partner):
 
 def of_two_pistons(log, kind, partner):
     assert {*partner[kind == Kind.PISTON].tolist()} == {-2, -5}
-    found = evolution(log)
-    assert (found.law, [*found.pistons], [*found.chambers]) == (None, ["piston", "right piston"], ["left", "right"])
-    assert np.abs(found.balance).max() < 1e-12
+    result = evolution(log)
+    assert (result.law, [*result.pistons], [*result.chambers]) == (None, ["piston", "right piston"], ["left", "right"])
+    assert np.abs(result.balance).max() < 1e-12
 
 
 def of_shear(log, kind, partner):

@@ -62,5 +62,5 @@ def test_the_stadium_is_filled(stadium):
 
 def test_the_pressure_in_a_stadium_is_that_of_its_own_walls(stadium):
     """No disc reaches the sides of the box: the picture has the four walls inside."""
-    found = evolution(stadium)
-    assert found.pressure.shown == ("wall 4, up", "wall 5, inside", "wall 6, down", "wall 7, inside")
+    result = evolution(stadium)
+    assert result.pressure.shown == ("wall 4, up", "wall 5, inside", "wall 6, down", "wall 7, inside")

@@ -26,9 +26,9 @@ OWN = "[[1.1, 0.2], [-0.3, 1.6]]"
 )
 def test_both_directions_have_one_pressure(overrides, reached):
     log = log_of(GAS, *overrides)
-    found = registry.analyse(log, "pressure", start=1.0)
-    z = {route.name: route.compressibility_factor for route in found.routes}
+    result = registry.analyse(log, "pressure", start=1.0)
+    z = {route.name: route.compressibility_factor for route in result.routes}
     left, bottom = z["left wall"], z["bottom wall"]
     deviation = abs(left.value - bottom.value) / math.hypot(left.standard_error, bottom.standard_error)
     assert deviation < 4 if reached else deviation > 20
-    assert bool(found.caveats) is not reached
+    assert bool(result.caveats) is not reached

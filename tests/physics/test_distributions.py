@@ -37,11 +37,11 @@ def test_bars_of_bins(quantity):
     """
     deviations = []
     for seed in range(SEEDS):
-        (found,) = histogram(log_of(f"[scene]\nseed = {seed}\n{GASES['closed']}{RUN}"), quantity).distributions
-        law = np.diff(found.tests[-1].law.cdf(found.edges)) / np.diff(found.edges)
-        known = found.error > 0
+        (result,) = histogram(log_of(f"[scene]\nseed = {seed}\n{GASES['closed']}{RUN}"), quantity).distributions
+        law = np.diff(result.tests[-1].law.cdf(result.edges)) / np.diff(result.edges)
+        known = result.error > 0
         assert known.sum() > 40
-        deviations.append((found.density - law)[known] / found.error[known])
+        deviations.append((result.density - law)[known] / result.error[known])
     z = np.concatenate(deviations)
     print(quantity, len(z), np.sqrt((z**2).mean()), (np.abs(z) < 1.96).mean())
     assert 0.9 < np.sqrt((z**2).mean()) < 1.1
@@ -54,9 +54,9 @@ def test_error_of_the_law_of_free_flights(quantity):
     p, without = [], 0
     for seed in range(SEEDS):
         gas = GASES["periodic"].replace("count = 40", "count = 64").replace("radius = 0.04", "radius = 0.0315")
-        (found,) = histogram(log_of(f"[scene]\nseed = {seed}\n{gas}{RUN}"), quantity).distributions
-        assert found.samples > 8_000
-        p.append(found.tests[0].p_value)
-        without += stats.kstwo.sf(found.tests[0].distance, found.samples) < 0.05
+        (result,) = histogram(log_of(f"[scene]\nseed = {seed}\n{gas}{RUN}"), quantity).distributions
+        assert result.samples > 8_000
+        p.append(result.tests[0].p_value)
+        without += stats.kstwo.sf(result.tests[0].distance, result.samples) < 0.05
     print(quantity, without, np.sort(p))
     assert sum(value < 0.05 for value in p) <= 3

@@ -73,11 +73,11 @@ def test_conduction():
     """
     fluxes, slopes, ends, pressures = [], [], [], []
     for seed in range(1, 7):
-        found = profile(log_of("conduction", "run.until=800", f"scene.seed={seed}"), bins=10, start=100)
-        entry = found.species[0]
+        result = profile(log_of("conduction", "run.until=800", f"scene.seed={seed}"), bins=10, start=100)
+        entry = result.species[0]
         n, t = (np.array([e.value for e in column]) for column in (entry.density, entry.temperature))
-        slope, middle = np.polyfit(found.middles - 10, t**1.5, 1)
-        fluxes.append((found.heat["left"].value, -found.heat["right"].value))
+        slope, middle = np.polyfit(result.middles - 10, t**1.5, 1)
+        fluxes.append((result.heat["left"].value, -result.heat["right"].value))
         slopes.append(-slope)
         ends.append((middle - 10 * slope, middle + 10 * slope))
         pressures.append((n * t * hard_discs.compressibility_factor(math.pi * n * 0.01))[1:-1])
@@ -100,13 +100,13 @@ def test_compression():
     At the piston's speed u the gas is compressed along x at the rate u/L, against which viscosity adds ε = η u/(L P)
     to the pressure (Landau & Lifshitz, Fluid Mechanics, § 15, in two dimensions): 0.2 %. Work and energy to 1e-10.
     """
-    found = []
+    actual = []
     for seed in range(1, 13):
         log = log_of("compression", f"scene.seed={seed}")
         course = evolution(log)
         assert np.abs(course.balance).max() < 1e-10
         assert course.given["piston"][-1] == pytest.approx(course.parts["motion"][-1] - 400, rel=1e-10)
-        found.append(course.temperature[-1])
+        actual.append(course.temperature[-1])
     lengths = np.linspace(20, 10, 129)
     middles = (lengths[1:] + lengths[:-1]) / 2
     log_t = 0.0
@@ -115,7 +115,7 @@ def test_compression():
         chi = float(hard_discs.contact_value(n * math.pi * 0.0004))
         excess = hard_discs.enskog_viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
         log_t -= piston_force(log, length) * (1 + excess) * step
-    agrees(of_runs(found, math.exp(log_t)), 1.5e-3)
+    agrees(of_runs(actual, math.exp(log_t)), 1.5e-3)
 
 
 def piston_at(log, times):

@@ -41,7 +41,7 @@ SLOPE = "wall = [{from = [3, 4], to = [9, 11]}, {from = [15, 2], to = [15, 9], o
 def test_a_million_events_of_all_effects(effects):
     log = log_of(GAS + effects)
     assert log.summary["events"] > 0.3 * EVENTS
-    found = evolution(log)
+    result = evolution(log)
     given, lost = (log.observables[name][1][-1] for name in ("wall_energy", "dissipated_energy"))
     energy = log.observables["energy"][1][-1]
     turned_over = max(np.abs(given).max(), lost.sum())
@@ -50,8 +50,8 @@ def test_a_million_events_of_all_effects(effects):
     assert lost[1 + 2] == 0  # the thermal wall takes and gives, but loses nothing
     assert (lost[[1, 2, 4]] > 0).all()
     assert abs(log.summary["energy_drift"]) < 1e-12
-    assert np.abs(found.balance).max() < 1e-12
-    print(f"balance {np.abs(found.balance).max():.1e}, {turned_over / energy:.0f} times the energy turned over")
+    assert np.abs(result.balance).max() < 1e-12
+    print(f"balance {np.abs(result.balance).max():.1e}, {turned_over / energy:.0f} times the energy turned over")
 
 
 def test_a_gas_that_cools():

@@ -67,17 +67,17 @@ def test_pressure_collision_rate_and_free_path(million):
 
 @pytest.mark.parametrize("quantity", ["speed", "vx", "vy", "energy"])
 def test_velocities(million, quantity):
-    (found,) = histogram(million, quantity).distributions
-    assert found.samples > 5_000
-    assert all(test.p_value > LEAST_P for test in found.tests)
+    (result,) = histogram(million, quantity).distributions
+    assert result.samples > 5_000
+    assert all(test.p_value > LEAST_P for test in result.tests)
 
 
 @pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time"])
 def test_free_flights_and_waits(million, quantity):
     """The laws are those of many discs in a dilute gas, and have errors of their own."""
-    (found,) = histogram(million, quantity).distributions
-    assert found.samples > 4_000
-    (test,) = found.tests
+    (result,) = histogram(million, quantity).distributions
+    assert result.samples > 4_000
+    (test,) = result.tests
     assert test.p_value > LEAST_P
     assert test.law_error < 0.012
 
@@ -85,8 +85,8 @@ def test_free_flights_and_waits(million, quantity):
 def test_small_gas_tells_fixed_energy_from_maxwell():
     """Four discs have eight degrees of freedom, and no speed beyond √(2E/m)."""
     log = log_of(scene(4, 0.05, 40_000, seed=2))
-    (found,) = histogram(log, "speed").distributions
-    maxwell, finite = found.tests
+    (result,) = histogram(log, "speed").distributions
+    maxwell, finite = result.tests
     assert maxwell.p_value < 1e-6
     assert finite.p_value > LEAST_P
 
@@ -109,12 +109,12 @@ def test_few_discs_with_momentum_along_one_axis(channel, quantity):
     assert fixed_energy.p_value > LEAST_P
     if quantity != "energy":
         return
-    found = temperature(channel)
-    assert (found.species[0].x.theory, found.species[0].y.theory) == pytest.approx((10 / 11, 12 / 11), rel=1e-9)
-    for estimate in (found.species[0].x, found.species[0].y):
+    result = temperature(channel)
+    assert (result.species[0].x.theory, result.species[0].y.theory) == pytest.approx((10 / 11, 12 / 11), rel=1e-9)
+    for estimate in (result.species[0].x, result.species[0].y):
         assert estimate.standard_error < 0.01
         assert abs(estimate.deviation) < STANDARD_ERRORS
-    assert found.law == "T = 1.09091 (2E/D with D = 11), T(1 - m/M) along x"
+    assert result.law == "T = 1.09091 (2E/D with D = 11), T(1 - m/M) along x"
 
 
 def test_few_discs_in_a_heat_bath():

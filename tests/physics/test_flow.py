@@ -64,21 +64,21 @@ def test_poiseuille_flow_with_slip():
 
     The parabola without slip is further off than that, and so is a viscosity 15 % larger or smaller.
     """
-    found = []
+    actual = []
     for seed in range(1, 5):
         log = log_of("poiseuille", f"scene.seed={seed}")
-        found.append(profile(log, start=400))
+        actual.append(profile(log, start=400))
         if seed == 1:
             assert "steady from 357 on" in " ".join(profile(log, start=0).caveats)
-    assert not any("The flow relaxes" in sentence for one in found for sentence in one.caveats)
-    assert {(one.axis, one.flow) for one in found} == {("y", "x")}
-    strips = np.array([[e.value for e in one.species[0].velocity] for one in found])
-    theory, off = np.array([(e.theory, e.theory_error) for e in found[0].species[0].velocity]).T
-    errors = np.array([[e.standard_error for e in one.species[0].velocity] for one in found])
+    assert not any("The flow relaxes" in sentence for each in actual for sentence in each.caveats)
+    assert {(each.axis, each.flow) for each in actual} == {("y", "x")}
+    strips = np.array([[e.value for e in each.species[0].velocity] for each in actual])
+    theory, off = np.array([(e.theory, e.theory_error) for e in actual[0].species[0].velocity]).T
+    errors = np.array([[e.standard_error for e in each.species[0].velocity] for each in actual])
     deviation = (strips.mean(axis=0) - theory) / np.hypot(np.sqrt((errors**2).sum(axis=0)) / 4, off)
     assert np.abs(deviation).max() < 4
     mean, error = strips.mean(), strips.mean(axis=1).std(ddof=1) / 2
     print(f"mean {mean:.4f} ± {error:.4f}, theory {theory.mean():.4f} ± {off.mean():.4f}; strips {deviation.round(1)}")
     assert abs(mean - theory.mean()) < 4 * np.hypot(error, off.mean())
-    temperature = np.array([[e.value for e in one.species[0].temperature] for one in found]).mean(axis=0)
+    temperature = np.array([[e.value for e in each.species[0].temperature] for each in actual]).mean(axis=0)
     assert 1.0 < temperature[10] < 1.05  # the heat of friction, without the motion of the flow

@@ -52,9 +52,9 @@ def test_every_collision_conserves_energy_and_momentum(log):
 
 @pytest.mark.parametrize("quantity", ["speed", "vx", "energy"])
 def test_velocities_in_equilibrium(log, quantity):
-    (found,) = histogram(log, quantity).distributions
-    assert found.samples > 7000
-    maxwell, fixed = found.tests
+    (result,) = histogram(log, quantity).distributions
+    assert result.samples > 7000
+    maxwell, fixed = result.tests
     assert maxwell.p_value > LEAST_P
     assert fixed.p_value > LEAST_P
     assert fixed.law_name == "fixed energy (998 degrees of freedom)"
@@ -63,20 +63,20 @@ def test_velocities_in_equilibrium(log, quantity):
 @pytest.mark.parametrize("quantity", ["free-path", "free-time", "waiting-time", "collisions"])
 def test_time_is_that_of_kinetic_theory(log, quantity):
     """Collision rate and mean free path, and the laws of free flights, which a gas without memory follows exactly."""
-    (found,) = histogram(log, quantity).distributions
-    assert found.samples > 4_000
-    assert found.tests[0].p_value > LEAST_P
+    (result,) = histogram(log, quantity).distributions
+    assert result.samples > 4_000
+    assert result.tests[0].p_value > LEAST_P
     if quantity != "waiting-time":
-        agrees(found.mean, 3e-3)
-    for name, one in found.cumulants.items():  # a Poisson process has 1
-        assert abs(one.deviation) < STANDARD_ERRORS, name
-        assert one.theory > 1 + 4 * one.standard_error
+        agrees(result.mean, 3e-3)
+    for name, each in result.cumulants.items():  # a Poisson process has 1
+        assert abs(each.deviation) < STANDARD_ERRORS, name
+        assert each.theory > 1 + 4 * each.standard_error
 
 
 def test_acceptance(log):
-    found = acceptance(log)
-    assert found.collisions == 500_000
-    agrees(found.acceptance, 3e-3)
+    result = acceptance(log)
+    assert result.collisions == 500_000
+    agrees(result.acceptance, 3e-3)
 
 
 def test_equipartition_in_a_mixture():
@@ -89,10 +89,10 @@ def test_equipartition_in_a_mixture():
 
 def test_relaxation_agrees_with_the_event_driven_gas():
     """The fourth moment at φ = 0.01, against collisions and against time."""
-    found = {}
+    result = {}
     for method, keys in (("event_driven", ""), ("monte_carlo", "run.v_ref = 9.0")):
-        found[method] = relaxation(log_of(equal_speeds(method, 4000, 12, 20, keys=keys)))
-    exact, random = found["event_driven"], found["monte_carlo"]
+        result[method] = relaxation(log_of(equal_speeds(method, 4000, 12, 20, keys=keys)))
+    exact, random = result["event_driven"], result["monte_carlo"]
     for name in ("in_collisions", "in_time"):
         a, b = getattr(exact, name), getattr(random, name)
         error = math.hypot(a.standard_error, b.standard_error)
@@ -108,13 +108,13 @@ def test_relaxation_agrees_with_the_event_driven_gas():
 def test_the_classic_run():
     """28 000 trials of 200 equal speeds: about 7 020 collisions, and speeds that nobody can tell from Maxwell's."""
     log = log_of("novak-bortz")
-    tried, found = acceptance(log), relaxation(log)
+    tried, result = acceptance(log), relaxation(log)
     assert tried.number == 28_000
     assert tried.published == 6_552
     assert tried.at_start == pytest.approx(4 / math.pi / 5, rel=0.02)
     assert tried.expected["Maxwell-Boltzmann"] == pytest.approx(math.sqrt(math.pi / 2) / 5, rel=1e-12)
     assert abs(tried.collisions - 7_020) < STANDARD_ERRORS * math.sqrt(7_020 * 0.75)
-    assert found.indistinguishable_after["collisions_per_disc"] < 12
+    assert result.indistinguishable_after["collisions_per_disc"] < 12
 
 
 def test_too_small_a_reference_speed_leaves_a_readable_log(tmp_path):
@@ -130,15 +130,15 @@ def test_a_default_reference_speed_is_enough_for_every_run(tmp_path):
     deviations = []
     for seed in range(40):
         log, part = log_of(equal_speeds("monte_carlo", 300, seed, 60)), tmp_path / "part.h5"
-        found = acceptance(log)
+        result = acceptance(log)
         values = log.observables["v_ref"][1]
         told = info(log)["run"]["v_ref"]
-        assert told == {"start": values[0], "end": values[-1], "raises": len(found.reference_speeds) - 1}
-        deviations.append(found.acceptance.deviation)
+        assert told == {"start": values[0], "end": values[-1], "raises": len(result.reference_speeds) - 1}
+        deviations.append(result.acceptance.deviation)
         assert values[0] == pytest.approx(5)
         assert (np.diff(values) >= 0).all()
-        assert [speed.v_ref for speed in found.reference_speeds] == sorted(set(values.tolist()))
-        assert len(found.reference_speeds) > 1
+        assert [speed.v_ref for speed in result.reference_speeds] == sorted(set(values.tolist()))
+        assert len(result.reference_speeds) > 1
         if seed < 4:
             simulate(parse_scene(equal_speeds("monte_carlo", 300, seed, 20)), part, force=True)
             resume(part, ["run.collisions_per_disc=60"])
@@ -156,7 +156,7 @@ def test_a_large_gas_of_equal_speeds():
 @pytest.mark.parametrize(("number", "settled"), [(500, 5.0), (100, 25.0)])
 def test_the_time_to_settle_goes_with_the_density(number, settled):
     """About 5 units for 500 discs, about 25 for a fifth of them, within three standard errors of a single run."""
-    found = relaxation(log_of(f"relaxation-{number}"))
-    assert found.number == number
-    assert abs(3 * found.in_time.value - settled) < 3 * 3 * found.in_time.standard_error
-    assert found.in_time.standard_error < (0.2 if number == 500 else 0.4) * found.in_time.value
+    result = relaxation(log_of(f"relaxation-{number}"))
+    assert result.number == number
+    assert abs(3 * result.in_time.value - settled) < 3 * 3 * result.in_time.standard_error
+    assert result.in_time.standard_error < (0.2 if number == 500 else 0.4) * result.in_time.value

@@ -57,18 +57,18 @@ def test_it_is_reflected_at_a_side():
 def test_what_an_analysis_tells():
     """Pressure on both faces, over the area of both gases; temperatures of each; no heat capacity."""
     log = log_of(ADIABATIC, "run.until=60")
-    found, mechanical = evolution(log, 20.0), pressure(log, 20.0).mechanical
+    result, mechanical = evolution(log, 20.0), pressure(log, 20.0).mechanical
     assert {"piston, left", "piston, right"} <= {wall.name for wall in mechanical.walls}
-    assert found.pressure.shown == ("piston, left", "piston, right")
-    assert (mechanical.area, found.pressure.area[0]) == (200, 200)
+    assert result.pressure.shown == ("piston, left", "piston, right")
+    assert (mechanical.area, result.pressure.area[0]) == (200, 200)
     left, right = (wall.pressure for wall in mechanical.walls if wall.name.startswith("piston"))
     assert left.value - right.value == pytest.approx(0, abs=4 * math.hypot(left.standard_error, right.standard_error))
-    assert found.chambers.keys() == {"left", "right"}
-    assert found.temperature == pytest.approx((found.chambers["left"] + 2 * found.chambers["right"]) / 3)
+    assert result.chambers.keys() == {"left", "right"}
+    assert result.temperature == pytest.approx((result.chambers["left"] + 2 * result.chambers["right"]) / 3)
     assert evolution(log).chambers["left"][0] == pytest.approx(3)
     assert evolution(log).law.chambers == {}  # the pressures differ at the start
-    assert found.law.chambers["left"][0] == found.chambers["left"][0]
-    assert found.law.piston == pytest.approx(0.1 + 19.8 * 101 / 302)
+    assert result.law.chambers["left"][0] == result.chambers["left"][0]
+    assert result.law.piston == pytest.approx(0.1 + 19.8 * 101 / 302)
     raised(
         "the heat capacity requires at most one piston, with gas on one side of it",
         registry.analyse,
@@ -154,11 +154,11 @@ def test_relaxation(mass):
             seed=seed, mass=mass, position="", a=200, b=400, radius=0.04, hot=2, cold=1, place=10, every=tau / 2,
             until=1.01 * tau,
         )  # fmt: skip
-        found = evolution(log_of(text.replace("log.events = false", "")))
-        runs.append(np.interp(times, found.time, found.chambers["left"] - found.chambers["right"]))
-    law = found.law.chambers["left"] - found.law.chambers["right"]
+        result = evolution(log_of(text.replace("log.events = false", "")))
+        runs.append(np.interp(times, result.time, result.chambers["left"] - result.chambers["right"]))
+    law = result.law.chambers["left"] - result.law.chambers["right"]
     for k, time in enumerate(times):
-        agrees(of_runs(np.array(runs)[:, k], np.interp(time, found.time, law)), 0.12)
+        agrees(of_runs(np.array(runs)[:, k], np.interp(time, result.time, law)), 0.12)
 
 
 @pytest.mark.slow

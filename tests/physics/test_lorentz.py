@@ -91,11 +91,11 @@ def test_the_mean_free_path_is_exact(lorentz):
 
 def test_diffusion_by_both_routes(lorentz):
     """Displacement and velocity correlation give one D, within 4 s.e. of both; that of a billiard within 3."""
-    found = transport(lorentz)
-    (entry,) = found.diffusion
+    result = transport(lorentz)
+    (entry,) = result.diffusion
     einstein, memory = entry.coefficient, entry.velocity_correlation_time
-    assert found.collective is None
-    assert not found.collision_rates
+    assert result.collective is None
+    assert not result.collision_rates
     assert abs(einstein.value - memory.value / 2) < 4 * (einstein.standard_error + memory.standard_error / 2)
     assert 0 < einstein.standard_error < 0.03 * einstein.value
     billiard, error = billiard_diffusion(0.25)

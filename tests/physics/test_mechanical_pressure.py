@@ -30,10 +30,10 @@ def walls(result):
     return {wall.name: wall.pressure for wall in result.mechanical.walls}
 
 
-def agrees(found, expected, resolution):
+def agrees(result, expected, resolution):
     """Whether an estimate is what is expected, and its error bar at most a part `resolution` of that."""
-    assert found.standard_error < resolution * abs(expected)
-    return abs(found.value - expected) < STANDARD_ERRORS * found.standard_error
+    assert result.standard_error < resolution * abs(expected)
+    return abs(result.value - expected) < STANDARD_ERRORS * result.standard_error
 
 
 def test_between_walls_of_one_temperature():
@@ -53,8 +53,8 @@ def test_the_floor_carries_the_column():
     """P_bottom - P_top = N m g/L, and left and right are alike: momentum balance, whatever the density profile."""
     log = run_with("box.size=[10, 15]", species(200, 0.1), "gravity.acceleration=[0, -0.3]", "run.until=1500")
     result = pressure(log)
-    found, forces = walls(result), result.mechanical.forces[-1]
-    below, above = found["bottom wall"], found["top wall"]
+    measured, forces = walls(result), result.mechanical.forces[-1]
+    below, above = measured["bottom wall"], measured["top wall"]
     difference, error = below.value - above.value, math.hypot(below.standard_error, above.standard_error)
     assert error < 0.02 * 6
     assert abs(difference - 200 * 0.3 / 10) < STANDARD_ERRORS * error
@@ -62,7 +62,7 @@ def test_the_floor_carries_the_column():
     assert forces.y.theory == pytest.approx(-60)
     assert agrees(forces.y, -60, 0.002)
     assert abs(forces.x.deviation) < STANDARD_ERRORS
-    assert agrees(found["left wall"], found["right wall"].value, 0.03)
+    assert agrees(measured["left wall"], measured["right wall"].value, 0.03)
 
 
 def test_a_piston_is_held_by_the_gas():
@@ -73,12 +73,12 @@ def test_a_piston_is_held_by_the_gas():
     log = run_with(
         "box.size=[40, 10]", species(100, 0.02), "run.until=8000", "piston=[{ position = 10, mass = 5, pressure = 1 }]"
     )
-    found = walls(pressure(log))
-    assert found["right wall"].theory == 1.0
-    assert agrees(found["right wall"], 1.0, 0.001)  # its momentum is bounded, so that its mean force is exact in time
-    assert agrees(found["bottom wall"], 100 / 101, 0.03)
-    assert agrees(found["top wall"], 100 / 101, 0.03)
-    assert agrees(found["left wall"], 1.0, 0.003)  # it takes what the piston does not, and both are held together
+    result = walls(pressure(log))
+    assert result["right wall"].theory == 1.0
+    assert agrees(result["right wall"], 1.0, 0.001)  # its momentum is bounded, so that its mean force is exact in time
+    assert agrees(result["bottom wall"], 100 / 101, 0.03)
+    assert agrees(result["top wall"], 100 / 101, 0.03)
+    assert agrees(result["left wall"], 1.0, 0.003)  # it takes what the piston does not, and both are held together
 
 
 def test_a_gas_of_unknown_temperature_forgets_its_start():
@@ -100,10 +100,10 @@ def test_a_plate_in_a_gas_has_its_pressure_on_both_faces():
     """A plate in an ideal gas: N T/A on each face, with A the area that centres reach; no net force."""
     log = run_with("wall=[{ from = [3, 4], to = [6, 8], name = 'plate' }]", species(400, 0.002), "run.until=1000")
     result = pressure(log)
-    found = walls(result)
-    assert set(found) > {"plate, left", "plate, right"}
+    measured = walls(result)
+    assert set(measured) > {"plate, left", "plate, right"}
     for name in ("plate, left", "plate, right", "left wall", "top wall"):
-        assert agrees(found[name], 4.0 / 0.9996**2, 0.03), name
+        assert agrees(measured[name], 4.0 / 0.9996**2, 0.03), name
     plate = next(force for force in result.mechanical.forces if force.name == "plate")
     for component in (plate.x, plate.y):
         assert component.standard_error < 0.05 * 20  # of the force on one face
@@ -114,9 +114,9 @@ def test_a_gate_counts_while_it_is_there():
     """Gas on the left alone: the gate has N T/A of that side while it is there, and nothing on its right."""
     gate = "wall=[{ from = [5, 0], to = [5, 10], opens_at = 200, name = 'gate' }]"
     log = run_with(gate, species(200, 0.002, ", region = [0, 0, 5, 10]"), "run.until=260")
-    found = walls(pressure(log, start=10.0))
-    assert agrees(found["gate, left"], 4.0 / (0.9996 * 0.9992), 0.03)
-    assert found["gate, right"].value == 0.0
+    result = walls(pressure(log, start=10.0))
+    assert agrees(result["gate, left"], 4.0 / (0.9996 * 0.9992), 0.03)
+    assert result["gate, right"].value == 0.0
 
 
 @pytest.mark.slow
@@ -125,9 +125,9 @@ def test_heat_flows_but_forces_balance():
     sides = "left = { thermal = 2 }, right = { thermal = 1 }, top = 'periodic', bottom = 'periodic'"
     log = run_with(f"box={{ size = [10, 10], {sides} }}", species(200, 0.05), "run.until=1500")
     result = pressure(log, start=50.0)
-    found = walls(result)
-    assert set(found) == {"left wall", "right wall"}
-    assert found["left wall"].standard_error < 0.02 * found["left wall"].value
+    measured = walls(result)
+    assert set(measured) == {"left wall", "right wall"}
+    assert measured["left wall"].standard_error < 0.02 * measured["left wall"].value
     assert abs(result.mechanical.forces[-1].x.deviation) < STANDARD_ERRORS
 
 
@@ -187,9 +187,9 @@ def test_maxwell_holds_at_all_heights(quantity):
 def test_a_cooling_gas_has_no_law_and_would_fail_one():
     """What would be tested: speeds of the whole cooling are not Maxwell's at any one temperature."""
     log = run_with(species(200, 0.1), "restitution.normal=0.9", "run.until=60")
-    found = histogram(log)
-    assert "loses energy" in found.no_law
-    speeds = found.distributions[0]
+    result = histogram(log)
+    assert "loses energy" in result.no_law
+    speeds = result.distributions[0]
     middle = (speeds.edges[1:] + speeds.edges[:-1]) / 2
     weight = speeds.density * np.diff(speeds.edges)
     kurtosis = (weight * middle**4).sum() / (weight * middle**2).sum() ** 2

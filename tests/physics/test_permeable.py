@@ -86,8 +86,8 @@ def osmotic_pressure(area, solvent, solute, radius):
     return right * z(right) - left * z(left), left * area[0] / solvent
 
 
-def of_wall(found, name):
-    return next(wall.pressure for wall in found.mechanical.walls if wall.name == name)
+def of_wall(result, name):
+    return next(wall.pressure for wall in result.mechanical.walls if wall.name == name)
 
 
 @pytest.fixture(scope="module")
@@ -100,12 +100,12 @@ def test_the_solute_presses_on_the_membrane_as_if_it_were_alone(osmosis):
 
     Centres reach 9.9 of the membrane, on whose whole length of 10 the pressure is measured.
     """
-    found = pressure(osmosis)
-    membrane = of_wall(found, "membrane, right")
+    result = pressure(osmosis)
+    membrane = of_wall(result, "membrane, right")
     n = 100 / 9.9**2
     assert abs(membrane.value - 0.99 * n * (1 + 2 * math.pi * 0.05**2 * n)) < 3 * membrane.standard_error
     assert membrane.standard_error < 0.05 * n
-    assert of_wall(found, "membrane, left").value == 0
+    assert of_wall(result, "membrane, left").value == 0
 
 
 def test_the_momentum_of_the_gas_balances_all_walls(osmosis):
@@ -118,19 +118,19 @@ def test_the_momentum_of_the_gas_balances_all_walls(osmosis):
             velocity[disc] = new
     change = gas.mass @ (gas.velocity - osmosis.state_at(osmosis.end_time).velocity)
     assert np.abs(given - change).max() < 1e-9
-    found = pressure(osmosis, start=0.0)
-    difference = of_wall(found, "right wall").value - of_wall(found, "left wall").value
-    duration = found.window.end - found.window.start
-    assert abs(difference - of_wall(found, "membrane, right").value) < 2 * np.abs(change[0]) / (10 * duration) + 1e-9
+    result = pressure(osmosis, start=0.0)
+    difference = of_wall(result, "right wall").value - of_wall(result, "left wall").value
+    duration = result.window.end - result.window.start
+    assert abs(difference - of_wall(result, "membrane, right").value) < 2 * np.abs(change[0]) / (10 * duration) + 1e-9
 
 
 def test_fractions_by_chamber(osmosis):
     """The solute stays on the right; what it leaves of the room there is that of the solvent."""
-    found = evolution(osmosis)
-    assert (found.beyond["solute"] == 1).all()
-    n = len(found.time)
+    result = evolution(osmosis)
+    assert (result.beyond["solute"] == 1).all()
+    n = len(result.time)
     _, left = osmotic_pressure((9.9 * 9.95, 9.9 * 9.95), 400, 100, 0.05)
-    independent = found.beyond["solvent"][:: n // 20]
+    independent = result.beyond["solvent"][:: n // 20]
     error = independent.std(ddof=1) / math.sqrt(len(independent))
     assert abs(independent.mean() - (1 - left)) < 3 * error
 

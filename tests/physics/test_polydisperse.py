@@ -27,9 +27,9 @@ def scene(phi, number=1000, spread=SPREAD, *, run, log=""):
 def test_pressure_is_that_of_the_mixture(phi):
     """Z of Santos, Yuste & López de Haro (1999) within three standard errors, which are below 0.3 %."""
     sums = "log = { events = false, pressure = true, snapshot_every = 2 }"
-    found = pressure(log_of(scene(phi, run="events = 600_000", log=sums)))
-    assert found.packing_fraction == pytest.approx(phi, rel=1e-6)
-    z = found.routes[-1].compressibility_factor
+    result = pressure(log_of(scene(phi, run="events = 600_000", log=sums)))
+    assert result.packing_fraction == pytest.approx(phi, rel=1e-6)
+    z = result.routes[-1].compressibility_factor
     assert z.standard_error < 0.003 * z.value
     assert abs(z.value - z.theory) < 3 * z.standard_error
     equal = float(hard_discs.compressibility_factor(phi, 1000))
@@ -39,22 +39,24 @@ def test_pressure_is_that_of_the_mixture(phi):
 def test_rates_and_distributions_are_those_of_the_mixture():
     """Rates and free paths within three standard errors, KS of speeds and free flights at 0.001."""
     log = log_of("polydisperse", "run.collisions_per_disc=150")
-    found = transport(log)
-    (rate,), (paths,), (contact,) = found.collision_rates, found.free_paths, found.contacts
-    for one in (rate.rate, paths.path, paths.time, paths.speed, contact.value):
-        assert one.standard_error < 0.01 * one.value
-        assert abs(one.value - one.theory) < 3 * one.standard_error + 0.002 * one.value  # contact values are so good
+    result = transport(log)
+    (rate,), (paths,), (contact,) = result.collision_rates, result.free_paths, result.contacts
+    for each in (rate.rate, paths.path, paths.time, paths.speed, contact.value):
+        assert each.standard_error < 0.01 * each.value
+        assert (
+            abs(each.value - each.theory) < 3 * each.standard_error + 0.002 * each.value
+        )  # contact values are so good
     for quantity in ("speed", "vx", "energy", "free-path", "free-time"):
-        (one,) = histogram(log, quantity=quantity).distributions
-        assert all(test.p_value > LEAST_P for test in one.tests), quantity
-    (g,) = found.pair_distributions
+        (each,) = histogram(log, quantity=quantity).distributions
+        assert all(test.p_value > LEAST_P for test in each.tests), quantity
+    (g,) = result.pair_distributions
     assert g.edges[0] == pytest.approx(2 * log.discs.radius.min())
     assert g.contact == pytest.approx(2 * log.discs.radius.mean())
 
 
 def test_a_distribution_of_no_width_is_a_gas_of_equal_discs():
     scenes = [scene(0.3, 100, spread, run="events = 20_000") for spread in (None, 0)]
-    one, other = (pressure(log_of(each)).as_dict() for each in scenes)
-    for found in (one, other):
-        found.pop("origin", None)
-    assert one == other
+    item, other = (pressure(log_of(each)).as_dict() for each in scenes)
+    for result in (item, other):
+        result.pop("origin", None)
+    assert item == other

@@ -46,11 +46,11 @@ def gas_at(number, phi, collisions, periodic="xy", seed=5, **more):
 @pytest.mark.parametrize("periodic", ["", "xy"], ids=["hard", "periodic"])
 @pytest.mark.parametrize("radius", [0.1, 0.22, 0.24, 0.26])
 def test_two_discs_pass(radius, periodic):
-    found = measured(few(radius, periodic))
-    checked = found.check()
+    result = measured(few(radius, periodic))
+    checked = result.check()
     assert checked.agrees is True
     assert [row.name for row in checked.compared] == ([PAIRS] if periodic else [WALLS, PAIRS])
-    z = found.routes[-1].compressibility_factor
+    z = result.routes[-1].compressibility_factor
     assert z.theory_error == 0  # exact
     assert z.standard_error < 0.02 * (z.value - 1)
 
@@ -58,8 +58,8 @@ def test_two_discs_pass(radius, periodic):
 @pytest.mark.parametrize("radius", [0.1, 0.22])
 def test_two_discs_in_a_channel_have_two_pressures(radius):
     """Along the walls and across them, both exact: see `two_discs`. Walls balance the one across alone."""
-    found = measured(few(radius, "x"))
-    z = {route.name: route.compressibility_factor for route in found.routes}
+    result = measured(few(radius, "x"))
+    z = {route.name: route.compressibility_factor for route in result.routes}
     assert {name.removeprefix(WALLS).removeprefix(PAIRS) for name in z if "virial" in name} == {"", ", x", ", y"}
     for name in (f"{WALLS}, y", f"{PAIRS}, x", f"{PAIRS}, y", PAIRS):
         assert z[name].theory_error == 0
@@ -68,10 +68,10 @@ def test_two_discs_in_a_channel_have_two_pressures(radius):
     assert (z[f"{PAIRS}, x"].value + z[f"{PAIRS}, y"].value) / 2 == pytest.approx(z[PAIRS].value, rel=1e-9)
     x, y = z[f"{PAIRS}, x"], z[f"{PAIRS}, y"]
     assert abs(x.theory - y.theory) > 6 * math.hypot(x.standard_error, y.standard_error)
-    ideal = 2 * found.temperature / found.area
-    assert found.tensor["xx"].value == pytest.approx(x.value * ideal)
-    assert found.check().agrees is True
-    assert len(found.check().compared) == 4
+    ideal = 2 * result.temperature / result.area
+    assert result.tensor["xx"].value == pytest.approx(x.value * ideal)
+    assert result.check().agrees is True
+    assert len(result.check().compared) == 4
 
 
 def test_shear_stress_of_a_channel_has_the_error_of_a_bounded_store():
@@ -84,18 +84,18 @@ def test_shear_stress_of_a_channel_has_the_error_of_a_bounded_store():
 
 def test_two_discs_without_momentum_have_no_theory():
     """They keep a centre that their reflections share: walls on the left and below differ for ever."""
-    found = measured(few(0.1, velocities=((1.0, 0.3), (-1.0, -0.3))))
-    assert found.check().agrees is None
-    assert "start without momentum" in found.no_theory
+    result = measured(few(0.1, velocities=((1.0, 0.3), (-1.0, -0.3))))
+    assert result.check().agrees is None
+    assert "start without momentum" in result.no_theory
     assert measured(few(0.1, "xy", velocities=((1.0, 0.3), (-1.0, -0.3)))).check().agrees is True
 
 
 @pytest.mark.parametrize("periodic", ["", "xy"], ids=["hard", "periodic"])
 @pytest.mark.parametrize("radius", [0.06, 0.1])
 def test_four_discs_pass(radius, periodic):
-    found = measured(gas(4, radius, (1, 1), "events = 100000", periodic=periodic))
-    assert found.check().agrees is True
-    z = found.routes[-1].compressibility_factor
+    result = measured(gas(4, radius, (1, 1), "events = 100000", periodic=periodic))
+    assert result.check().agrees is True
+    z = result.routes[-1].compressibility_factor
     assert 0 < z.theory_error < 0.04 * (z.value - 1)
     assert z.standard_error < 0.02 * (z.value - 1)
 
@@ -116,10 +116,10 @@ def test_four_discs_pass(radius, periodic):
 def test_two_per_cent_too_much_is_found(number, phi, collisions, monkeypatch):
     """The same run passes as it is, and fails with all pair impulses scaled by 1.02."""
     text = gas_at(number, phi, collisions, placement="lattice" if phi > 0.5 else "random")
-    found = measured(text)
-    z = found.routes[-1].compressibility_factor
+    result = measured(text)
+    z = result.routes[-1].compressibility_factor
     assert z.standard_error < LARGEST_ERROR * (z.value - 1)
-    assert found.check().agrees is True
+    assert result.check().agrees is True
     finish = Impacts.finish
 
     def scaled(self):
@@ -127,9 +127,9 @@ def test_two_per_cent_too_much_is_found(number, phi, collisions, monkeypatch):
         self.pair_virial *= 1.02
 
     monkeypatch.setattr(Impacts, "finish", scaled)
-    found = measured(text)
-    assert found.check().agrees is False
-    assert found.routes[-1].compressibility_factor.deviation > 4
+    result = measured(text)
+    assert result.check().agrees is False
+    assert result.routes[-1].compressibility_factor.deviation > 4
 
 
 NO_THEORY = {
@@ -171,6 +171,6 @@ def test_walls_in_short_windows(collisions, rms):
         for k in range(80):
             routes = pressure(log, start + k * width, start + (k + 1) * width).routes[:5]
             known += [route.compressibility_factor.deviation for route in routes]
-    known = np.array([one for one in known if one is not None])
+    known = np.array([each for each in known if each is not None])
     assert len(known) > 3 * 380
     assert np.sqrt((known**2).mean()) == pytest.approx(rms, rel=4 / math.sqrt(600))

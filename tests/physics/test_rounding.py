@@ -72,8 +72,10 @@ def trend(kind, n, radius, mass, seeds, collisions, blocks=20):
         for block in range(1, blocks + 1):
             simulation.run(Stop(events=block * collisions // blocks))
             sums.append(exact_sums(simulation))
-        one = sums[0][0] / n
-        changes += list(np.diff(sums, axis=0) / [one, math.sqrt(2 * one), math.sqrt(2 * one)] * blocks / collisions)
+        actual = sums[0][0] / n
+        changes += list(
+            np.diff(sums, axis=0) / [actual, math.sqrt(2 * actual), math.sqrt(2 * actual)] * blocks / collisions
+        )
     return np.mean(changes, axis=0), np.std(changes, axis=0, ddof=1) / math.sqrt(len(changes))
 
 

@@ -40,11 +40,11 @@ class Output:
         """Rows of the numbers whose names match, in order."""
         printed = called(self.words[0], self.path, *self.words[1:], "--csv").stdout
         lines = csv.DictReader(io.StringIO(printed))
-        found = [row for row in lines if fnmatchcase(row["quantity"], quantity) and row["value"]]
-        assert found, f"no {quantity} in `idealgas {' '.join(self.words)}`"
+        actual = [row for row in lines if fnmatchcase(row["quantity"], quantity) and row["value"]]
+        assert actual, f"no {quantity} in `idealgas {' '.join(self.words)}`"
         numbers = ("value", "standard_error", "theory", "theory_error", "deviation")
-        print(self.words, *found, sep="\n")
-        return [{name: float(row[name]) for name in numbers if row[name]} for row in found]
+        print(self.words, *actual, sep="\n")
+        return [{name: float(row[name]) for name in numbers if row[name]} for row in actual]
 
     def values(self, quantity: str) -> list[float]:
         """Their values."""

@@ -35,14 +35,14 @@ def shear_of(*overrides):
 @pytest.mark.usefixtures("uncompiled")
 def test_what_a_heat_bath_does_to_the_theory():
     """At x times the collision rate it takes a part of about x of the viscosity, and the rate a part of 2a²."""
-    found = shear_of("run.until=6")
-    a, phi = found.reduced_rate, 30 * math.pi / 4 / 8.9**2
+    result = shear_of("run.until=6")
+    a, phi = result.reduced_rate, 30 * math.pi / 4 / 8.9**2
     error = enskog_error("viscosity", phi) + a * 0.02 / 0.06 + 2 * a**2
-    assert found.viscosity.theory_error == pytest.approx(error * found.viscosity.theory)
-    found = shear_of("run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
-    assert found.viscosity.theory is None
-    assert found.pressure.theory is not None
-    (fast,) = (sentence for sentence in found.caveats if sentence.startswith("The shear rate"))
+    assert result.viscosity.theory_error == pytest.approx(error * result.viscosity.theory)
+    result = shear_of("run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
+    assert result.viscosity.theory is None
+    assert result.pressure.theory is not None
+    (fast,) = (sentence for sentence in result.caveats if sentence.startswith("The shear rate"))
     assert fast.endswith("the viscosity may be less than that of a slow flow.")
 
 
@@ -144,16 +144,16 @@ def test_sides_may_be_anywhere():
 def test_the_stress_heats_the_gas():
     """Energy relative to the flow grows by -rate A ∫ P_xy dt exactly, by flights and collisions, also through sides."""
     log = log_of(GOLDEN)
-    found = shear(log, start=0.0)
+    result = shear(log, start=0.0)
     width, height = log.box
     energy = []
     for time in (0.0, log.end_time):
         state = log.state_at(time)
-        vx = state.velocity[:, 0] - flow_at(state.position[:, 1], found.rate, height)
+        vx = state.velocity[:, 0] - flow_at(state.position[:, 1], result.rate, height)
         energy.append(float(log.discs.mass @ (vx**2 + state.velocity[:, 1] ** 2)) / 2)
-    work = found.rate**2 * width * height * found.viscosities.mean() * log.end_time
+    work = result.rate**2 * width * height * result.viscosities.mean() * log.end_time
     assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
-    assert found.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
+    assert result.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
     raised(
         r"no start between sheared sides from t = 1 \(allowed multiples of 3.21", continued_scene, log, 1.0, "run.h5"
     )
@@ -185,17 +185,17 @@ def test_the_viscosity_is_that_of_the_same_gas_at_rest(phi, rate):
     The flow is slow: 0.06 of the collision rate at first, and less as the gas becomes hotter.
     """
     at_rest = transport(fluid(phi, "'periodic'")).collective.coefficients["viscosity"].value
-    found = shear(fluid(phi, f"{{ shear = {rate} }}"))
-    flowing = found.viscosity.times(found.temperature.value**-0.5)
+    result = shear(fluid(phi, f"{{ shear = {rate} }}"))
+    flowing = result.viscosity.times(result.temperature.value**-0.5)
     error = math.hypot(at_rest.standard_error, flowing.standard_error)
     within("viscosity in units of √(mT)/σ, σ", abs(flowing.value - at_rest.value) / error, 3)
     assert flowing.standard_error < 0.05 * flowing.value
     assert error < 0.1 * at_rest.value
     assert abs(flowing.deviation) < 3  # from Enskog
-    assert abs(found.pressure.deviation) < 3
-    low, high = found.slope.interval(math.erf(3 / math.sqrt(2)))
+    assert abs(result.pressure.deviation) < 3
+    low, high = result.slope.interval(math.erf(3 / math.sqrt(2)))
     assert low < 1 < high
-    assert found.reduced_rate < 0.03
+    assert result.reduced_rate < 0.03
 
 
 @pytest.mark.slow
@@ -204,9 +204,9 @@ def test_normal_stress_of_a_dilute_granular_gas():
 
     Moments of Boltzmann's equation, for two dimensions: Santos, Garzó & Dufty, Phys. Rev. E 69, 061303 (2004).
     """
-    found = shear(fluid(0.01, "{ shear = 0.0148 }", "restitution.normal=0.9", "run.collisions_per_disc=300"))
+    result = shear(fluid(0.01, "{ shear = 0.0148 }", "restitution.normal=0.9", "run.collisions_per_disc=300"))
     decay, exchange = (1 - 0.9**2) / 2, 1.9 * 3.9 / 8
-    expected, stress = 2 * decay / (exchange + decay), found.normal_stress
-    assert found.window.state == "steady state"
+    expected, stress = 2 * decay / (exchange + decay), result.normal_stress
+    assert result.window.state == "steady state"
     assert stress.standard_error < 0.06 * expected
     within("normal stress of a granular gas, σ", abs(stress.value - expected) / stress.standard_error, 3)

@@ -84,8 +84,8 @@ def test_free_expansion():
 def test_effusion():
     """n⟨v⟩/π through the slit, both ways; a disc that passes has 3T/2: T of its way through and T/2 of that across."""
     log = log_of("effusion")
-    found = effusion(log)
-    assert abs(found.beyond[-1] - found.expected[-1]) < STANDARD_ERRORS * math.sqrt(found.expected[-1])
+    result = effusion(log)
+    assert abs(result.beyond[-1] - result.expected[-1]) < STANDARD_ERRORS * math.sqrt(result.expected[-1])
     times = np.arange(5.0, 150.0, 0.25)
     seen, carried = np.zeros(2000, bool), []
     for state in log.frames(times):
@@ -98,9 +98,9 @@ def test_effusion():
 def test_atmosphere():
     """The barometric law: heights by Kolmogorov and Smirnov, p > 0.001."""
     log = log_of("atmosphere", "run.until=800")
-    found = profile(log, bins=12, start=50)
-    assert found.axis == "y"
-    t = found.species[0].temperature[0].theory
+    result = profile(log, bins=12, start=50)
+    assert result.axis == "y"
+    t = result.species[0].temperature[0].theory
     heights = np.array([state.position[:, 1] for state in log.frames(np.arange(50.0, 800.0, 2.5))])
     spacing = 2 * math.ceil(inefficiency(heights))
     samples = heights[::spacing].ravel()
@@ -127,10 +127,10 @@ def test_brownian_motion():
 
 def test_gases_under_gravity_separate():
     """Each has its own barometric law: 20 strips, two species; P(|t| > 4) = 6e-5 each."""
-    found = profile(log_of("separation"))
-    light, heavy = found.species
+    result = profile(log_of("separation"))
+    light, heavy = result.species
     for density in (*light.density, *heavy.density):
-        if density.value * found.strip > 1:
+        if density.value * result.strip > 1:
             assert abs(density.deviation) < STANDARD_ERRORS
     assert light.density[10].standard_error < 0.03 * light.density[10].value
     assert heavy.density[0].value > 4 * heavy.density[-1].value

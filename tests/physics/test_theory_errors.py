@@ -32,14 +32,14 @@ def agree(values, expected, resolved, error=0.0):
 )
 def test_two_discs(radius, box, periodic):
     theory = two_discs(radius, box, periodic)
-    found = virials(radius, box, periodic, seeds=range(16), collisions=10_000)
-    agree(found.pairs, theory.pairs, 3e-3)
+    result = virials(radius, box, periodic, seeds=range(16), collisions=10_000)
+    agree(result.pairs, theory.pairs, 3e-3)
     assert (theory.walls is None) == (periodic == PERIODIC)
     if theory.walls is not None:
-        agree(found.walls, theory.walls, 5e-3)
+        agree(result.walls, theory.walls, 5e-3)
     for side in range(4):
         if theory.sides[side // 2] is not None:
-            agree(found.sides[:, side], theory.sides[side // 2], 5e-3)
+            agree(result.sides[:, side], theory.sides[side // 2], 5e-3)
 
 
 def compare(number, packing_fraction, box, periodic, *, seeds=16, collisions=20_000, resolved=0.01, warm_up=200):
@@ -49,7 +49,7 @@ def compare(number, packing_fraction, box, periodic, *, seeds=16, collisions=20_
     if theory.pairs is None:
         return False
     dense = packing_fraction > 0.55 and number >= 50
-    found = virials(
+    result = virials(
         np.full(number, radius),
         box,
         periodic,
@@ -58,16 +58,16 @@ def compare(number, packing_fraction, box, periodic, *, seeds=16, collisions=20_
         warm_up=warm_up,
         lattice=dense,
     )
-    agree(found.pairs, theory.pairs.value, resolved, theory.pairs.error)
+    agree(result.pairs, theory.pairs.value, resolved, theory.pairs.error)
     speed = math.sqrt(math.pi / 2 * 2) * finite_speed_factor(2 * number - sum(periodic))
-    rate = found.collisions[:, 0, 0] / number  # of one disc
+    rate = result.collisions[:, 0, 0] / number  # of one disc
     expected = float(theory.contacts[0, 0]) * speed
     agree(rate, expected, resolved * 3, expected * float(theory.rate_error[0, 0]))
     if theory.walls is not None:
-        agree(found.walls, theory.walls.value, resolved * 3, theory.walls.error)
+        agree(result.walls, theory.walls.value, resolved * 3, theory.walls.error)
     for axis, side in enumerate(theory.sides):
         if side is not None:
-            both = found.sides[:, 2 * axis : 2 * axis + 2].mean(axis=1)
+            both = result.sides[:, 2 * axis : 2 * axis + 2].mean(axis=1)
             agree(both, side.value, resolved * 3, side.error)
     return True
 
@@ -90,12 +90,12 @@ def test_mixtures(ratio, packing_fraction, periodic):
     n, small = 30, math.sqrt(packing_fraction / (math.pi * 30 * (1 + ratio**2)))
     radius = [small, ratio * small]
     theory = box_theory(radius, [n, n], (1.0, 1.0), periodic)
-    found = virials(np.repeat(radius, n), (1.0, 1.0), periodic, seeds=range(12), collisions=20_000, warm_up=200)
-    agree(found.pairs, theory.pairs.value, 5e-3, theory.pairs.error)
+    result = virials(np.repeat(radius, n), (1.0, 1.0), periodic, seeds=range(12), collisions=20_000, warm_up=200)
+    agree(result.pairs, theory.pairs.value, 5e-3, theory.pairs.error)
     speed = math.sqrt(math.pi) * finite_speed_factor(4 * n - sum(periodic))
     for i, j in ((0, 0), (0, 1), (1, 1)):
         expected = float(theory.contacts[i, j]) * speed * n
-        agree(found.collisions[:, i, j], expected, 0.03, expected * float(theory.rate_error[i, j]))
+        agree(result.collisions[:, i, j], expected, 0.03, expected * float(theory.rate_error[i, j]))
 
 
 @pytest.mark.long

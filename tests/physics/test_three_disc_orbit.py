@@ -28,19 +28,19 @@ def exact_events(box, radius, periods):
     low, high = (height - d) / 2, (height + d) / 2
     right = width - r - d - flight - drop / 2
     left = right - flight
-    found = [(flight / 2 + drop / 2, 0, -1, r, high)]  # after the left dance of the period before
+    actual = [(flight / 2 + drop / 2, 0, -1, r, high)]  # after the left dance of the period before
     for k in range(periods):
         t = flight / 2 + k * 2 * (drop + flight)
         for inner, outer, disc in ((right, right + d, 2), (left, left - d, 0)):
             side, at = (-2, width - r) if disc == 2 else (-1, r)
             first, second = sorted(((1, inner, low), (disc, outer, high)))
             for meeting in (t, t + drop):
-                found += [(meeting, first[0], second[0], *first[1:]), (meeting, second[0], first[0], *second[1:])]
-            found += [(t + drop / 2, 1, -3, inner, r), (t + drop / 2, disc, -4, outer, height - r)]
-            found.append((t + drop + flight + drop / 2, disc, side, at, high))
+                actual += [(meeting, first[0], second[0], *first[1:]), (meeting, second[0], first[0], *second[1:])]
+            actual += [(t + drop / 2, 1, -3, inner, r), (t + drop / 2, disc, -4, outer, height - r)]
+            actual.append((t + drop + flight + drop / 2, disc, side, at, high))
             t += drop + flight
     end = periods * 2 * (drop + flight)
-    return sorted(event for event in found if 0 < event[0] < end)
+    return sorted(event for event in actual if 0 < event[0] < end)
 
 
 @pytest.mark.parametrize(("box", "radius"), [(BOX, RADIUS), ((23.7, 18.1), 0.9), ((5.0, 2.3), 0.2)])
@@ -54,11 +54,11 @@ def test_the_exact_motion(box, radius):
         expected = exact_events(box, radius, 2)
         assert len(expected) == len(rows.time) == 28
         order = np.lexsort((rows.disc, np.round(rows.time, 9)))
-        found = sorted(expected, key=lambda event: (round(float(event[0]), 9), event[1]))
-        assert rows.disc[order].tolist() == [event[1] for event in found]
-        assert rows.partner[order].tolist() == [event[2] for event in found]
-        assert np.abs(rows.time[order] - [float(event[0]) for event in found]).max() < 4e-15 * rows.time[-1]
-        place = np.array([[float(event[3]), float(event[4])] for event in found])
+        result = sorted(expected, key=lambda event: (round(float(event[0]), 9), event[1]))
+        assert rows.disc[order].tolist() == [event[1] for event in result]
+        assert rows.partner[order].tolist() == [event[2] for event in result]
+        assert np.abs(rows.time[order] - [float(event[0]) for event in result]).max() < 4e-15 * rows.time[-1]
+        place = np.array([[float(event[3]), float(event[4])] for event in result])
         assert np.abs(rows.position[order] - place).max() < 4e-16 * max(box)
         at_end = [
             mpf(float(c.x[i, 0])) + mpf(float(c.x[i, 1])) + mpf(float(c.vx[i, 0])) * (mpf(str(2 * orbit.period)) - t)

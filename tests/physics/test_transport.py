@@ -28,8 +28,8 @@ def measure(number: int, phi: float, seed: int, collisions_per_disc: int) -> Tra
     return transport(log, start=100 * log.end_time / collisions_per_disc)
 
 
-def over_theory(found: list[Estimate]) -> Estimate:
-    return mean_of_replicates([one.times(1 / one.theory) for one in found])
+def over_theory(result: list[Estimate]) -> Estimate:
+    return mean_of_replicates([each.times(1 / each.theory) for each in result])
 
 
 FIXED = {"viscosity": 2.0, "thermal_conductivity": 6.0}
@@ -48,16 +48,16 @@ freedom, by D²/(D + 2)(D + 4).
     + [(phi, 250, range(1000, 1008), 0.08) for phi in (0.3, 0.4)],
 )
 def test_enskog(phi, number, seeds, within):
-    found = [measure(number, phi, seed, 20_000).collective for seed in seeds]
+    actual = [measure(number, phi, seed, 20_000).collective for seed in seeds]
     for name, part in FIXED.items():
-        ones = [one.coefficients[name] for one in found]
-        ratio = over_theory([one.value for one in ones])
+        ones = [each.coefficients[name] for each in actual]
+        ratio = over_theory([each.value for each in ones])
         if phi == 0.01:
             ratio = ratio.times(1 / (1 - part / number))
         print(f"φ = {phi}, N = {number}: {name} over Enskog's {ratio.value:.4f} ± {ratio.standard_error:.4f}")
         assert ratio.standard_error < RESOLVED
         assert abs(ratio.value - 1) < within
-        apart = mean_of_replicates([one.difference for one in ones])
+        apart = mean_of_replicates([each.difference for each in ones])
         assert abs(apart.value) < STANDARD_ERRORS * apart.standard_error
 
 
@@ -65,17 +65,17 @@ def test_enskog(phi, number, seeds, within):
 @pytest.mark.parametrize(("mass", "radius"), [(1.0, 0.2), (4.0, 0.2), (10.0, 0.4)])
 def test_two_species_in_each_other(mass, radius):
     """Two halves of 200 discs diffuse in each other as Enskog has it, at φ = 0.02 to 0.05; three standard errors."""
-    heavy, found = species("heavy", 100, radius, mass=mass), []
+    heavy, result = species("heavy", 100, radius, mass=mass), []
     for seed in range(1, 9):
         light = gas(100, 0.2, (35, 35), "collisions_per_disc = 10_000", periodic="xy", seed=seed, then=PLAIN)
         log = log_of(light + heavy)
-        found.append(transport(log).collective.coefficients["mutual_diffusion"])
-    ratio = over_theory([one.value for one in found])
+        result.append(transport(log).collective.coefficients["mutual_diffusion"])
+    ratio = over_theory([each.value for each in result])
     print(f"masses 1 : {mass:g}, radii 0.2 : {radius}: D₁₂ over Enskog's {ratio}")
     assert ratio.standard_error < 2 * RESOLVED
-    error = found[0].value.theory_error / found[0].value.theory
+    error = result[0].value.theory_error / result[0].value.theory
     assert abs(ratio.value - 1) < STANDARD_ERRORS * math.hypot(ratio.standard_error, error)
-    apart = mean_of_replicates([one.difference for one in found])
+    apart = mean_of_replicates([each.difference for each in result])
     assert abs(apart.value) < STANDARD_ERRORS * apart.standard_error
 
 
@@ -89,15 +89,15 @@ def test_a_heavy_disc_among_few_light_ones():
     heavy = species("heavy", 1, 0.5, mass=20)
     log = log_of(light.replace("[[species]]", f"{heavy}[[species]]"))
     edges = np.linspace(0, log.end_time, 13)
-    found = [transport(log, *window).diffusion[0] for window in pairwise(edges)]
+    actual = [transport(log, *window).diffusion[0] for window in pairwise(edges)]
     temperature, light = 2 * log.discs.kinetic_energy / 40, 20 / 1600
     reduced = 20 / 21
     chi = 1.0163  # (1 - 7φ/16)/(1 - φ)² at φ = .0103
     rate = 2 * light * chi * math.sqrt(math.pi * temperature / (2 * reduced))
     time = 0.5 / (2 * reduced / 20 * rate)
     for estimates, theory in (
-        ([one.velocity_correlation_time for one in found], time),
-        ([one.coefficient for one in found], temperature * 0.5 / 20 * time),
+        ([each.velocity_correlation_time for each in actual], time),
+        ([each.coefficient for each in actual], temperature * 0.5 / 20 * time),
     ):
         assert estimates[0].theory == pytest.approx(theory, rel=0.02)  # terms of 1/D
         assert estimates[0].theory_error < 0.05 * theory
@@ -120,10 +120,10 @@ def test_the_chain_agrees_with_itself():
         log = log_of(SOUND, f"scene.seed={seed}")
         waves.append(sound(log).waves[0])
         currents = transport(log, end=1500.0).collective.coefficients
-        found = {name: current.value.value for name, current in currents.items()}
+        actual = {name: current.value.value for name, current in currents.items()}
         gamma = waves[-1].exponent.theory
-        heat = found["thermal_conductivity"] / (density * gamma)
-        chain.append(((found["viscosity"] + found["bulk_viscosity"]) / density + (gamma - 1) * heat) / 2)
+        heat = actual["thermal_conductivity"] / (density * gamma)
+        chain.append(((actual["viscosity"] + actual["bulk_viscosity"]) / density + (gamma - 1) * heat) / 2)
     speed, damping = (mean_of_replicates([getattr(wave, name) for wave in waves]) for name in ("speed", "damping"))
     assert speed.standard_error < 0.005 * speed.value
     assert abs(speed.value / speed.theory - 1) < 0.02

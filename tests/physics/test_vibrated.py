@@ -23,9 +23,9 @@ def rate(log, name, entry, start):
 
 
 def test_a_steady_state_is_recognised(vibrated):
-    found = temperature(vibrated)
-    assert found.window.state == "steady state"
-    assert found.window.start < 100
+    result = temperature(vibrated)
+    assert result.window.state == "steady state"
+    assert result.window.start < 100
 
 
 def test_the_floor_gives_what_collisions_take(vibrated):

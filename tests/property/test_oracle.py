@@ -62,8 +62,8 @@ def assert_same_log(case: Case, events: int) -> None:
     stop = Stop(events=events)
     oracle = record(Simulation(gas, BruteForce()), stop)
     for filling, rows in ((None, 65_536), (0.1, 65_536), (3.0, 1_000), (1e9, 257)):
-        found = record(Simulation(gas, EventDriven(filling)), stop, rows)
-        assert same_rows(found, oracle), (filling, rows)
+        result = record(Simulation(gas, EventDriven(filling)), stop, rows)
+        assert same_rows(result, oracle), (filling, rows)
 
 
 @settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -98,8 +98,8 @@ def test_many_simultaneous_events():
     oracle = record(Simulation(gas, BruteForce()), stop)
     assert (np.diff(oracle.time) == 0).mean() > 0.9
     for filling in (0.1, 1.0, 1e9):
-        found = record(Simulation(gas, EventDriven(filling)), stop, 100)
-        assert same_rows(found, oracle)
+        result = record(Simulation(gas, EventDriven(filling)), stop, 100)
+        assert same_rows(result, oracle)
 
 
 @pytest.mark.parametrize("pull", [(0, -1e4), (1e4, 0), (-1e4, 3e3)], ids=["down", "right", "both"])
@@ -117,5 +117,5 @@ def test_the_same_log_of_discs_that_turn_round_between_periodic_sides(pull):
     for method in ("event_driven", "brute_force"):
         log = log_of(text, f"run.method={method}")
         logs.append(list(log.chunks()))
-    for one, other in zip(*logs, strict=True):
-        assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True) if a is not None)
+    for each, other in zip(*logs, strict=True):
+        assert all(np.array_equal(a, b) for a, b in zip(each, other, strict=True) if a is not None)

@@ -97,18 +97,18 @@ def result_of(form: Form, folder: Path) -> tuple[int, Any]:
     return 0, json.loads(done.stdout)
 
 
-def differences(found: Any, expected: Any, place: str = "") -> list[str]:
+def differences(result: Any, expected: Any, place: str = "") -> list[str]:
     """Where two results differ, without the keys in PASSING."""
-    if isinstance(found, dict) and isinstance(expected, dict) and found.keys() == expected.keys():
-        pairs = ((f"{place}.{key}", found[key], expected[key]) for key in found if key not in PASSING)
-    elif isinstance(found, list) and isinstance(expected, list) and len(found) == len(expected):
-        pairs = ((f"{place}[{i}]", one, other) for i, (one, other) in enumerate(zip(found, expected, strict=True)))
-    elif isinstance(found, float) and isinstance(expected, float):
-        same = math.isclose(found, expected, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
-        return [] if same else [f"{place}: {found!r} instead of {expected!r}"]
+    if isinstance(result, dict) and isinstance(expected, dict) and result.keys() == expected.keys():
+        pairs = ((f"{place}.{key}", result[key], expected[key]) for key in result if key not in PASSING)
+    elif isinstance(result, list) and isinstance(expected, list) and len(result) == len(expected):
+        pairs = ((f"{place}[{i}]", each, other) for i, (each, other) in enumerate(zip(result, expected, strict=True)))
+    elif isinstance(result, float) and isinstance(expected, float):
+        same = math.isclose(result, expected, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
+        return [] if same else [f"{place}: {result!r} instead of {expected!r}"]
     else:
-        return [] if found == expected else [f"{place}: {found!r} instead of {expected!r}"]
-    return [line for where, one, other in pairs for line in differences(one, other, where)]
+        return [] if result == expected else [f"{place}: {result!r} instead of {expected!r}"]
+    return [line for where, each, other in pairs for line in differences(each, other, where)]
 
 
 @pytest.fixture(scope="module", params=LOGS)
@@ -135,8 +135,8 @@ def test_every_command_gives_the_same_numbers(pair):
     _, old, new = pair
     wanted = [form for command in reading_commands() for form in forms(command) if "--json" in form]
     for form in (*wanted, ("export", NAME, "--format", "csv", "--events", "-o", "events.csv")):
-        found = [list(result_of(form, folder)) for folder in (old, new)]
-        assert differences(*found) == [], shlex.join(form)
+        actual = [list(result_of(form, folder)) for folder in (old, new)]
+        assert differences(*actual) == [], shlex.join(form)
 
 
 def test_states_at_any_time(pair):
@@ -145,8 +145,8 @@ def test_states_at_any_time(pair):
         assert log.discs.species_names == whole.discs.species_names
         assert log.walls == whole.walls
         times = np.linspace(0, log.end_time, 7) if log.has_positions else []
-        for one, other in zip(log.frames(times), whole.frames(times), strict=True):
-            assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True) if a is not None)
+        for each, other in zip(log.frames(times), whole.frames(times), strict=True):
+            assert all(np.array_equal(a, b) for a, b in zip(each, other, strict=True) if a is not None)
 
 
 def test_resumed_to_the_same_log(pair, tmp_path):
@@ -166,8 +166,8 @@ def test_resumed_to_the_same_log(pair, tmp_path):
 def test_a_difference_is_found():
     expected = {"a": [1.0, {"b": 2}], "c": "x", "seconds": 1.0}
     assert differences(expected | {"seconds": 2.0}, expected) == []
-    found = differences({"a": [1.0 + 1e-11, {"b": 3}], "c": "y", "seconds": 1.0}, expected)
-    assert found == [".a[0]: 1.00000000001 instead of 1.0", ".a[1].b: 3 instead of 2", ".c: 'y' instead of 'x'"]
+    result = differences({"a": [1.0 + 1e-11, {"b": 3}], "c": "y", "seconds": 1.0}, expected)
+    assert result == [".a[0]: 1.00000000001 instead of 1.0", ".a[1].b: 3 instead of 2", ".c: 'y' instead of 'x'"]
     assert len(differences({"a": [1.0], "c": "x"}, expected)) == 1
 
 

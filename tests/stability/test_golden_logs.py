@@ -48,16 +48,16 @@ def digests_of(scene: str, folder: Path, *overrides: str) -> dict[str, Any]:
         return {"trajectory": version, "rows": len(log), "columns": column_digests(log)}
 
 
-def complaint(scene: str, found: dict[str, Any], expected: dict[str, Any]) -> str:
+def complaint(scene: str, result: dict[str, Any], expected: dict[str, Any]) -> str:
     """What to tell of a log that is not the one on record; empty if it is."""
-    version, recorded = found["trajectory"], expected["trajectory"]
-    names = sorted(found["columns"].keys() | expected["columns"].keys())
-    changed = [name for name in names if found["columns"].get(name) != expected["columns"].get(name)]
-    if version >= recorded and not changed and found["rows"] == expected["rows"]:
+    version, recorded = result["trajectory"], expected["trajectory"]
+    names = sorted(result["columns"].keys() | expected["columns"].keys())
+    changed = [name for name in names if result["columns"].get(name) != expected["columns"].get(name)]
+    if version >= recorded and not changed and result["rows"] == expected["rows"]:
         return ""
     if version != recorded:
         return f"{scene}: trajectory version {version}, digests of version {recorded}: make new ones with {COMMAND}"
-    rows = f"{found['rows']} rows, {expected['rows']} on record"
+    rows = f"{result['rows']} rows, {expected['rows']} on record"
     rule = f"a changed digest needs a new trajectory version, and TRAJECTORY is still {version}"
     return f"{scene}: {', '.join(changed)}: not the column on record ({rows}); {rule}"
 
@@ -90,7 +90,7 @@ def test_brute_force_gives_the_same_log(tmp_path):
 
 
 def test_a_change_of_one_bit_is_told_by_scene_and_column(tmp_path, monkeypatch):
-    found = digests_of("explicit", tmp_path)
+    result = digests_of("explicit", tmp_path)
     expected = on_record()["explicit"]
     now = {"trajectory": expected["trajectory"]}
     with open_log(tmp_path / "explicit.h5") as log:
@@ -98,14 +98,14 @@ def test_a_change_of_one_bit_is_told_by_scene_and_column(tmp_path, monkeypatch):
         velocity = last.velocity.copy()
         velocity[-1, 1] = np.nextafter(velocity[-1, 1], np.inf)
         monkeypatch.setattr(log, "chunks", lambda _: [*others, last._replace(velocity=velocity)])
-        other = found | {"columns": column_digests(log)}
+        other = result | {"columns": column_digests(log)}
     said = complaint("explicit", other | now, expected)
     assert said.startswith("explicit: velocity: not the column on record")
     assert "needs a new trajectory version" in said
     later, before = ({"trajectory": expected["trajectory"] + step} for step in (1, -1))
-    assert complaint("explicit", found | now, expected) == complaint("explicit", found | later, expected) == ""
+    assert complaint("explicit", result | now, expected) == complaint("explicit", result | later, expected) == ""
     assert "make new ones" in complaint("explicit", other | later, expected)
-    assert "make new ones" in complaint("explicit", found | before, expected)
+    assert "make new ones" in complaint("explicit", result | before, expected)
 
 
 def write_digests() -> None:

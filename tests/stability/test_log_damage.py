@@ -71,17 +71,17 @@ def assert_found_or_harmless(path: Path, rows: int, dead: bool) -> bool:
 def test_damage_anywhere(whole, tmp_path):
     data, rows, dead = whole
     path = tmp_path / "run.h5"
-    found = 0
+    actual = 0
     for damaged in damages(data, 60):
         path.write_bytes(damaged)
-        found += assert_found_or_harmless(path, rows, dead)
+        actual += assert_found_or_harmless(path, rows, dead)
         if dead:
             try:
                 recover(path)
             except LogError:
                 continue
             assert_found_or_harmless(path, rows, dead)
-    assert found >= 30
+    assert actual >= 30
 
 
 def test_cut_anywhere_near_its_ends(whole, tmp_path):
@@ -94,8 +94,8 @@ def test_cut_anywhere_near_its_ends(whole, tmp_path):
         len(data) - 1,
     ]:
         path.write_bytes(data[:size])
-        found = assert_found_or_harmless(path, rows, dead)
-        assert found or (dead and size > 20_000)  # what was written last may not have been committed
+        result = assert_found_or_harmless(path, rows, dead)
+        assert result or (dead and size > 20_000)  # what was written last may not have been committed
 
 
 def test_nothing_is_left_open(whole, tmp_path):

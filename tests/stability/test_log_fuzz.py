@@ -59,8 +59,8 @@ def faults(case: int, path, wanted: Sequence[Form]) -> list[str]:
     with edited(path / NAME, name) as editor:
         effects = draw(case, editor)
     done = "; ".join(effect.what for effect in effects)
-    found = [(form, fault(form, effects)) for form in wanted]
-    return [f"case {case} ({name}; {done}): {' '.join(form)}: {problem}" for form, problem in found if problem]
+    actual = [(form, fault(form, effects)) for form in wanted]
+    return [f"case {case} ({name}; {done}): {' '.join(form)}: {problem}" for form, problem in actual if problem]
 
 
 @pytest.mark.slow

@@ -44,12 +44,12 @@ class Row(NamedTuple):
 
 def gas(log: Log) -> Numbers:
     """Pressure by walls or pairs, collision rate and free path."""
-    found = idealgas.analyse(log, "pressure")
-    for route in found.routes:
+    result = idealgas.analyse(log, "pressure")
+    for route in result.routes:
         if route.name in ("all walls", "pairs, virial"):
             yield f"PA/NT by {route.name}", route.compressibility_factor
-    (free,) = found.free_paths
-    yield from (("collisions of a disc per time", found.collision_rates[0].rate), ("mean free path", free.path))
+    (free,) = result.free_paths
+    yield from (("collisions of a disc per time", result.collision_rates[0].rate), ("mean free path", free.path))
 
 
 def periodic(log: Log) -> Numbers:
@@ -80,10 +80,10 @@ def lorentz(log: Log) -> Numbers:
 
 def atmosphere(log: Log) -> Numbers:
     """Density and temperature of the lowest strips."""
-    found = idealgas.analyse(log, "profile")
-    (air,) = found.species
+    result = idealgas.analyse(log, "profile")
+    (air,) = result.species
     for k in range(4):
-        place = f"from y = {found.edges[k]:.4g} to {found.edges[k + 1]:.4g}"
+        place = f"from y = {result.edges[k]:.4g} to {result.edges[k + 1]:.4g}"
         yield from ((f"density {place}", air.density[k]), (f"temperature {place}", air.temperature[k]))
 
 
@@ -102,15 +102,15 @@ def bath(log: Log) -> Numbers:
 
 def shear(log: Log) -> Numbers:
     """Viscosity, pressure and temperature."""
-    found = idealgas.analyse(log, "shear")
-    yield from (("viscosity", found.viscosity), ("pressure", found.pressure), ("temperature", found.temperature))
+    result = idealgas.analyse(log, "shear")
+    yield from (("viscosity", result.viscosity), ("pressure", result.pressure), ("temperature", result.temperature))
 
 
 def escape(log: Log) -> Numbers:
     """Rate of escape."""
-    found = idealgas.analyse(log, "escape")
-    assert found.per_path is not None
-    yield "escapes per path", found.per_path
+    result = idealgas.analyse(log, "escape")
+    assert result.per_path is not None
+    yield "escapes per path", result.per_path
 
 
 REFERENCES: dict[str, tuple[str, Callable[[Log], Numbers]]] = {
@@ -135,13 +135,13 @@ def rows_of(scene: str, folder: Path) -> list[tuple[Row, Estimate]]:
     purpose, numbers = REFERENCES[scene]
     with open_log(path) as log:
         same = str(len(log)), digest(log)
-        return [(Row(scene, purpose, name, *_texts(one), *same), one) for name, one in numbers(log)]
+        return [(Row(scene, purpose, name, *_texts(each), *same), each) for name, each in numbers(log)]
 
 
-def _texts(found: Estimate) -> tuple[str, str, str, str]:
+def _texts(result: Estimate) -> tuple[str, str, str, str]:
     """Value, error, theory and its error to six digits, which last bits of sums do not change."""
-    theory = ("", "") if found.theory is None else (f"{found.theory:.6g}", f"{found.theory_error:.2g}")
-    return f"{found.value:.6g}", f"{found.standard_error:.2g}", *theory
+    theory = ("", "") if result.theory is None else (f"{result.theory:.6g}", f"{result.theory_error:.2g}")
+    return f"{result.value:.6g}", f"{result.standard_error:.2g}", *theory
 
 
 def on_record() -> list[Row]:
@@ -159,11 +159,11 @@ def test_all_are_on_record():
 @pytest.mark.parametrize("scene", REFERENCES)
 def test_a_reference_log(scene, tmp_path):
     """The log and its numbers are those on record, it has 5 to 40 MB, and its numbers agree with theory."""
-    found = rows_of(scene, tmp_path)
-    assert [row for row, _ in found] == [row for row in on_record() if row.scene == scene]
+    result = rows_of(scene, tmp_path)
+    assert [row for row, _ in result] == [row for row in on_record() if row.scene == scene]
     assert 5e6 < (tmp_path / f"{scene}.h5").stat().st_size < 4e7
-    for row, one in found:
-        assert one.deviation is None or abs(one.deviation) < STANDARD_ERRORS, row
+    for row, each in result:
+        assert each.deviation is None or abs(each.deviation) < STANDARD_ERRORS, row
 
 
 def write_table() -> None:

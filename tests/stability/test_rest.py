@@ -39,8 +39,8 @@ def test_five_discs_at_rest_make_few_events(overrides, tmp_path):
 @pytest.mark.slow
 def test_a_disc_at_rest_bounces_as_the_theory_says(wall, tmp_path):
     """In flights of e t to t, t the contact duration, to a height of g t²/8 at most; the energy is then constant."""
-    one = ["species.gas.count=1", f"restitution.wall={wall}", "run.until=200"]
-    scene, summary = run(tmp_path / "run.h5", *one, "box.left=periodic", "box.right=periodic")
+    actual = ["species.gas.count=1", f"restitution.wall={wall}", "run.until=200"]
+    scene, summary = run(tmp_path / "run.h5", *actual, "box.left=periodic", "box.right=periodic")
     t, rest = scene.restitution.contact_duration, scene.resting_disc
     with open_log(tmp_path / "run.h5") as log:
         (rows,) = log.chunks()

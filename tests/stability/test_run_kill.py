@@ -53,13 +53,13 @@ def command(kind: str, *more: str) -> list[str]:
 def undisturbed(tmp_path_factory):
     """Log and duration of the run of a kind, by one thread."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    one = "run.threads=1"
+    actual = "run.threads=1"
 
     @cache
     def of(kind: str) -> tuple[Path, float]:
-        idealgas(*command(kind, one), "-o", folder / f"{kind}-first.h5")  # compiles
+        idealgas(*command(kind, actual), "-o", folder / f"{kind}-first.h5")  # compiles
         started = time.monotonic()
-        result = idealgas(*command(kind, one), "-o", folder / f"{kind}.h5")
+        result = idealgas(*command(kind, actual), "-o", folder / f"{kind}.h5")
         assert result.returncode == 0, result.stderr
         return folder / f"{kind}.h5", time.monotonic() - started
 

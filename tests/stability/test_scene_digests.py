@@ -46,14 +46,14 @@ def test_a_difference_gives_exit_code_1(tmp_path, monkeypatch):
 
 
 def test_storage_does_not_matter_and_one_disc_does(tmp_path):
-    found = []
+    actual = []
     quickstart = ROOT / "configs" / "quickstart.toml"
     for changes in ((), ('log.compression="none"', "run.threads=2"), ("scene.seed=99",)):
-        path = tmp_path / f"{len(found)}.h5"
+        path = tmp_path / f"{len(actual)}.h5"
         with logged(load_scene(quickstart, [f"run.events={EVENTS}", *changes]), path) as log:
-            found.append(digest(log))
-        assert output_of("digest", path) == found[-1] + "\n"
-    assert found[0] == found[1] == on_record()["quickstart"] != found[2]
+            actual.append(digest(log))
+        assert output_of("digest", path) == actual[-1] + "\n"
+    assert actual[0] == actual[1] == on_record()["quickstart"] != actual[2]
 
 
 def write_table() -> None:

@@ -42,24 +42,24 @@ def thin_slabs(monkeypatch):
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_scene_has_the_log_of_one_thread(name, thin_slabs, tmp_path):
-    one = tmp_path / "one.h5"
-    simulate(scene_of(name, f"run.events={EVENTS}", "run.threads=1"), one)
+    actual = tmp_path / "one.h5"
+    simulate(scene_of(name, f"run.events={EVENTS}", "run.threads=1"), actual)
     for number in THREADS:
         several = tmp_path / f"{number}.h5"
         done = simulate(scene_of(name, f"run.events={EVENTS}", f"run.threads={number}"), several)
         print(name, number, done.threads, done.shared_slices, done.aborted_slices)
         assert 2 <= done.threads <= number
         assert done.shared_slices > done.aborted_slices
-        assert differences(one, several) == []
+        assert differences(actual, several) == []
 
 
 def test_many_discs_have_the_log_of_one_thread(tmp_path):
     """10⁵ discs, cells and slices as they are for everybody."""
-    one = tmp_path / "one.h5"
-    simulate(bench_scene(100_000, 0.1, 400_000, True, 1), one)
+    actual = tmp_path / "one.h5"
+    simulate(bench_scene(100_000, 0.1, 400_000, True, 1), actual)
     for number in THREADS:
         several = tmp_path / f"{number}.h5"
         done = simulate(bench_scene(100_000, 0.1, 400_000, True, number), several)
         print(number, done.threads, done.shared_slices, done.aborted_slices)
         assert done.threads == number
-        assert differences(one, several) == []
+        assert differences(actual, several) == []

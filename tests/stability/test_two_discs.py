@@ -65,13 +65,13 @@ def test_grazing_pairs(exponent, side, method):
         gas = gas_of((16, 16), discs, [along + common, common], radius)
         a, b = ((*gas.position[k], *gas.velocity[k], 0.0, radius[k]) for k in (0, 1))
         D, time, condition, largest = exact_contact(a, b)
-        found = meeting(gas, method)
+        result = meeting(gas, method)
         if abs(D) > FEW * U * largest / reach:
-            assert (found is None) == (time is None)
+            assert (result is None) == (time is None)
         else:
             undecided += 1
-        if time is not None and found is not None:
-            max_errors = max(max_errors, float(abs(found - time) / (U * (largest * condition + time))))
+        if time is not None and result is not None:
+            max_errors = max(max_errors, float(abs(result - time) / (U * (largest * condition + time))))
     within("grazing pairs: contact time, in u times condition", max_errors, FEW)
     assert undecided == 0 or exponent >= 12
 
@@ -90,10 +90,10 @@ def test_nearly_equal_velocities(exponent, method):
         gas = gas_of((16, 16), [(8, 8), (8, 8) + 2.5 * along], [common + relative, common], 1.0)
         a, b = ((*gas.position[k], *gas.velocity[k], 0.0, 1.0) for k in (0, 1))
         _, time, condition, largest = exact_contact(a, b)
-        found = meeting(gas, method)
-        assert (found is None) == (time is None)
+        result = meeting(gas, method)
+        assert (result is None) == (time is None)
         if time is not None:
-            max_errors = max(max_errors, float(abs(found - time) / (U * (largest * condition + time))))
+            max_errors = max(max_errors, float(abs(result - time) / (U * (largest * condition + time))))
     within("nearly equal velocities: contact time, in u times condition", max_errors, FEW)
 
 

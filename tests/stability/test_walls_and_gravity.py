@@ -144,8 +144,8 @@ def test_a_million_bounces():
     lowest, now, drift = math.inf, 0.0, 0.0
     for rows in batches(simulation, Stop(events=1_000_000)):
         if len(rows.time):
-            found = 0.5 * (rows.velocity**2).sum(axis=1) + rows.position[:, 1]
-            drift = max(drift, np.abs(found / energy - 1).max())
+            actual = 0.5 * (rows.velocity**2).sum(axis=1) + rows.position[:, 1]
+            drift = max(drift, np.abs(actual / energy - 1).max())
             assert rows.time[0] >= now
             lowest, now = min(lowest, rows.position[:, 1].min()), rows.time[-1]
     within("a million bounces: energy, relative", drift, 1e-10)

@@ -65,18 +65,18 @@ def measure(case: Case, run: str, seeds: range, path: Path) -> Found:
         simulate(parse_scene(text), path, force=True)
         with open_log(path) as log:
             try:
-                taken = [one for measured in case.measured for one in estimates(log, measured)]
-                taken += [(name, one, False) for name, one in case.besides(log)]
+                taken = [each for measured in case.measured for each in estimates(log, measured)]
+                taken += [(name, each, False) for name, each in case.besides(log)]
                 window = read_window(log, []) if case.steady else None
                 share = window.duration / (log.end_time - log.start_time) if window else None
                 said = float(bool(window and (window_caveats(window) or case.caveats(log))))
                 energy = energy_of(log)
             except NotApplicableError:
                 taken, share, said = [], 0.0, 1.0
-        for name, one, exact in taken:
-            truth = one.theory if exact and one.theory is not None else math.nan
+        for name, each, exact in taken:
+            truth = each.theory if exact and each.theory is not None else math.nan
             truth = energy if case.energies_differ else truth
-            found.setdefault(name, []).append((one.value, one.standard_error, one.independent_samples, truth))
+            found.setdefault(name, []).append((each.value, each.standard_error, each.independent_samples, truth))
         if share is not None:
             found.setdefault(KEPT, []).append((share, said, math.nan, math.nan))
     return {name: np.array(rows) for name, rows in found.items()}
@@ -88,9 +88,9 @@ def energy_of(log: Log) -> float:
     return float(gas.mass @ ((gas.velocity**2).sum(axis=1) / 2 - gas.position @ np.array(log.gravity)))
 
 
-def row_of(case: str, run: str, name: str, found: np.ndarray) -> Row:
+def row_of(case: str, run: str, name: str, result: np.ndarray) -> Row:
     """Row of the table from values, errors, samples and theory (runs, 4)."""
-    value, error, samples, theory = found.T
+    value, error, samples, theory = result.T
     n = len(value)
     if CASES[case].energies_differ:
         truth, scale = np.polyval(np.polyfit(theory, value, 2), theory), math.sqrt(n / (n - 3))
@@ -113,8 +113,8 @@ def collect(folder: Path, seeds: int, seconds: float = math.inf, only: str = "")
             stored = folder / f"{title}-{run.replace(' ', '')}-{first}.npz"
             if not stored.exists() and time.monotonic() < end:
                 with tempfile.TemporaryDirectory(dir=memory) as place:
-                    found = measure(CASES[title], run, range(first, first + PART), Path(place) / "run.h5")
-                np.savez(stored, **found)
+                    result = measure(CASES[title], run, range(first, first + PART), Path(place) / "run.h5")
+                np.savez(stored, **result)
             if stored.exists():
                 with np.load(stored) as file:
                     parts.append(dict(file))
@@ -126,16 +126,18 @@ def collect(folder: Path, seeds: int, seconds: float = math.inf, only: str = "")
 def rows_of(collected: dict[tuple[str, str], Found]) -> list[Row]:
     """Rows of the table."""
     return [
-        row_of(title, run, name, rows)._replace(caveats=float(found[KEPT][:, 1].mean()) if KEPT in found else math.nan)
-        for (title, run), found in collected.items()
-        for name, rows in found.items()
+        row_of(title, run, name, rows)._replace(
+            caveats=float(result[KEPT][:, 1].mean()) if KEPT in result else math.nan
+        )
+        for (title, run), result in collected.items()
+        for name, rows in result.items()
         if name != KEPT
     ]
 
 
 def kept(collected: dict[tuple[str, str], Found]) -> np.ndarray:
     """Shares of all logs of steady gases that are used."""
-    return np.concatenate([found[KEPT][:, 0] for found in collected.values() if KEPT in found] or [np.zeros(0)])
+    return np.concatenate([result[KEPT][:, 0] for result in collected.values() if KEPT in result] or [np.zeros(0)])
 
 
 def table(rows: list[Row]) -> str:

@@ -57,9 +57,9 @@ def estimates(log: Log, measured: Of) -> Iterator[tuple[str, Estimate, bool]]:
 
 def sheared(log: Log) -> Iterable[tuple[str, Estimate]]:
     """Viscosity and pressure at the temperature T of a sheared gas, whose errors have none of that of T."""
-    found = shear(log)
-    t = found.temperature.value
-    return ("η/√T", found.viscosity.times(t**-0.5)), ("P/T", found.pressure.times(1 / t))
+    result = shear(log)
+    t = result.temperature.value
+    return ("η/√T", result.viscosity.times(t**-0.5)), ("P/T", result.pressure.times(1 / t))
 
 
 TEMPERATURES = of("temperature", "species.*.both")

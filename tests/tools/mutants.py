@@ -74,12 +74,12 @@ def stages(mutant: Mutant, root: Path, wide: bool) -> Iterator[list[str]]:
     unit = Path("tests/cli" if package == "cli" else "tests/unit").joinpath(*reversed(above))
     near = [*mutant.tests, f"{unit}/test_{name}.py", f"{unit}/{name}"]
     near += [str(path.relative_to(root)) for path in sorted(root.glob(f"tests/*/**/test_{name}.py"))]
-    found = [path for path in dict.fromkeys(near) if (root / path).exists()]
-    if found:
-        yield found
+    actual = [path for path in dict.fromkeys(near) if (root / path).exists()]
+    if actual:
+        yield actual
     while not (root / unit).exists():
         unit = unit.parent
-    if wide and unit.name not in ("unit", "cli") and str(unit) not in found:
+    if wide and unit.name not in ("unit", "cli") and str(unit) not in actual:
         yield [str(unit)]
 
 

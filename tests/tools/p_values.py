@@ -43,8 +43,8 @@ def p_values(scene: str, quantities: Iterable[str], seeds: range, path: Path) ->
         simulate(parse_scene(f"[scene]\nseed = {seed}\n{scene}{RUN}"), path, force=True)
         with open_log(path) as log:
             for quantity in quantities:
-                for one in histogram(log, quantity).distributions:
-                    found.setdefault((one.name, quantity), []).append(one.tests[-1].p_value)
+                for distribution in histogram(log, quantity).distributions:
+                    found.setdefault((distribution.name, quantity), []).append(distribution.tests[-1].p_value)
     return {name: np.array(values) for name, values in found.items()}
 
 
@@ -52,10 +52,10 @@ def rows_of(gas: str, seeds: range, quantities: Iterable[str] = QUANTITIES) -> l
     """Rows of the table for one gas."""
     memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
     with tempfile.TemporaryDirectory(dir=memory) as folder:
-        found = p_values(GASES[gas], quantities, seeds, Path(folder) / "run.h5")
+        result = p_values(GASES[gas], quantities, seeds, Path(folder) / "run.h5")
     return [
         (gas, *name, len(p), float(p.mean()), float((p < 0.05).mean()), float(stats.kstest(p, "uniform").pvalue))
-        for name, p in found.items()
+        for name, p in result.items()
     ]
 
 

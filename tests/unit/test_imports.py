@@ -69,12 +69,12 @@ COMPUTES = {"fractions", "idealgas", "math", "operator", "typing", "collections"
 
 def modules() -> dict[str, Path]:
     """Every module by its installed name."""
-    found = {}
+    result = {}
     for folder, package in (("idealgas", "idealgas"), ("cli", "idealgas_cli")):
         for path in sorted((ROOT / folder).rglob("*.py")):
             parts = (package, *path.relative_to(ROOT / folder).with_suffix("").parts)
-            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
-    return found
+            result[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return result
 
 
 MODULES = modules()
@@ -84,17 +84,17 @@ def imports(name: str) -> set[str]:
     """Names that a module imports, anywhere in it, for types as well; of the package its modules only."""
     path = MODULES[name]
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    found = set()
+    result = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            result |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
             module = ".".join([*above, *([node.module] if node.module else [])])
             for alias in node.names:
                 inner = f"{module}.{alias.name}"
-                found.add(inner if inner in MODULES else module)
-    return found - {name}
+                result.add(inner if inner in MODULES else module)
+    return result - {name}
 
 
 GRAPH = {name: {other for other in imports(name) if other in MODULES} for name in MODULES}

@@ -28,8 +28,8 @@ ENDLESS = ("watch",)
 def reading_commands() -> tuple[str, ...]:
     """Names of the commands whose argument is a log."""
     context = click.Context(main)
-    found = {name: main.get_command(context, name) for name in main.list_commands(context)}
-    return tuple(name for name, command in found.items() if command and _reads(command) and name not in ENDLESS)
+    actual = {name: main.get_command(context, name) for name in main.list_commands(context)}
+    return tuple(name for name, command in actual.items() if command and _reads(command) and name not in ENDLESS)
 
 
 def forms(name: str) -> tuple[Form, ...]:

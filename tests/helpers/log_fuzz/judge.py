@@ -73,7 +73,7 @@ def _disorder(done: Result) -> str:
         return "".join(traceback.format_exception(done.exception)[-3:])
     if done.exit_code not in (0, 2):
         return f"exit code {done.exit_code}: {done.stderr[:300]!r}"
-    if found := CONTROL.search(done.stdout + done.stderr):
-        return f"control character {found[0]!r}"
+    if result := CONTROL.search(done.stdout + done.stderr):
+        return f"control character {result[0]!r}"
     lines = NOTICES.sub("", done.stderr)
     return f"not one line: {lines[:300]!r}" if done.exit_code == 2 and lines.count("\n") != 1 else ""

@@ -84,8 +84,8 @@ def test_pairs_that_fly_through_each_other_are_told_from_those_that_meet_others(
     """0-1 is found, 2-3 flown through, 4-5 met others before, 6-7 not yet due, and 8-9 is no pair of first meetings."""
     never = math.inf
     truth = (np.array([1, 1, 2, 2, 3, 3, never, never, 1, 2.0]), np.array([1, 0, 3, 2, 5, 4, -1, -1, 9, 0]))
-    found = (np.array([1.1, 1.1, 9, never, 2, 8, 1, 1, 1, 2.0]), np.array([1, 0, 7, -1, 0, 9, 7, 6, 9, 0]))
-    assert flown_through(truth, found, 0.2) == (2, 1)
+    actual = (np.array([1.1, 1.1, 9, never, 2, 8, 1, 1, 1, 2.0]), np.array([1, 0, 7, -1, 0, 9, 7, 6, 9, 0]))
+    assert flown_through(truth, actual, 0.2) == (2, 1)
 
 
 def test_steps_miss_less_the_shorter_they_are(start):
@@ -149,9 +149,9 @@ STEPS = 0.04 / 2 ** np.arange(8)
 def rates(random, common=0.0):
     """Rates with the bias -1.4 dt - 78 dt² that 1 000 discs at φ = 0.05 have, known to 0.12 %; event-driven first."""
     dt = np.append(0.0, STEPS)
-    found = 1000 * (1 - 1.4 * dt - 78 * dt**2) + 1.2 * random.normal(size=9)
-    found[0] += common
-    return dt, [Estimate(float(value), 1.2, 64) for value in found]
+    actual = 1000 * (1 - 1.4 * dt - 78 * dt**2) + 1.2 * random.normal(size=9)
+    actual[0] += common
+    return dt, [Estimate(float(value), 1.2, 64) for value in actual]
 
 
 def test_biases_of_the_rate_against_their_common_limit():
@@ -206,9 +206,9 @@ def test_sentences_say_what_the_numbers_say_and_nothing_of_what_was_not_seen():
 
 
 def test_ratios_and_their_errors():
-    found = relative(Estimate(11.0, 0.3, 1), Estimate(10.0, 0.4, 1))
-    assert found.value == pytest.approx(0.1)
-    assert found.standard_error == pytest.approx(1.1 * math.hypot(0.3 / 11, 0.04))
+    result = relative(Estimate(11.0, 0.3, 1), Estimate(10.0, 0.4, 1))
+    assert result.value == pytest.approx(0.1)
+    assert result.standard_error == pytest.approx(1.1 * math.hypot(0.3 / 11, 0.04))
     assert from_theory(Estimate(1.1, 0.2, 1, 2.0)).value == pytest.approx(-0.45)
     assert from_theory(Estimate(1.1, 0.2, 1, math.nan)) is None
     assert from_theory(Estimate(1.1, 0.2, 1)) is None

@@ -49,28 +49,28 @@ def test_curved_walls(name, area, perimeter):
     log = log_of(name, "run.events=40")
     reach = reach_of(log, 1e-6)
     assert (reach.area, reach.perimeter) == (pytest.approx(area, rel=1e-8), pytest.approx(perimeter, rel=1e-8))
-    found = analyse(log, "billiard", start=0.0)
-    assert found.path.theory == pytest.approx(math.pi * area / perimeter, rel=1e-8)
-    assert UNMIXED in found.caveats
+    result = analyse(log, "billiard", start=0.0)
+    assert result.path.theory == pytest.approx(math.pi * area / perimeter, rel=1e-8)
+    assert UNMIXED in result.caveats
 
 
 def test_the_mean_of_all_paths():
     """In a box without anything in it: the path of a disc that flies along x is its width less two radii."""
     log = log_of("sinai", "wall=", "disc.0.velocity=[1, 0]", "run.until=95")
-    found = analyse(log, "billiard", start=0.0)
-    assert found.hits == 10
-    assert found.path.value == pytest.approx(9.5)
-    assert found.path.theory == pytest.approx(math.pi * 9.5 / 4)
-    time = found.window.edges[1:]
+    result = analyse(log, "billiard", start=0.0)
+    assert result.hits == 10
+    assert result.path.value == pytest.approx(9.5)
+    assert result.path.theory == pytest.approx(math.pi * 9.5 / 4)
+    time = result.window.edges[1:]
     hits = np.floor((time + log.discs.position[0, 0] - 0.25) / 9.5)
-    assert found.series == pytest.approx(time / np.maximum(hits, 1))
+    assert result.series == pytest.approx(time / np.maximum(hits, 1))
     discs = ", ".join(f"{{ position = [{x}, {x}], velocity = [1, 0], radius = 0.25 }}" for x in (2, 8))
-    found = analyse(log_of("sinai", "wall=", f"disc=[{discs}]", "run.until=20"), "billiard", start=0.0)
-    assert found.path.theory_error == pytest.approx(math.pi * 9.5 / 4 * 2 * (2 * math.pi / 16 / 100))
+    result = analyse(log_of("sinai", "wall=", f"disc=[{discs}]", "run.until=20"), "billiard", start=0.0)
+    assert result.path.theory_error == pytest.approx(math.pi * 9.5 / 4 * 2 * (2 * math.pi / 16 / 100))
 
 
 def test_where_theory_is_silent():
     log = log_of("mixing", "run.until=2")
-    found = analyse(log, "billiard", start=0.0)
-    assert (found.path.theory, found.reason) == (None, "a wall opens, or lets discs pass")
-    assert found.check().agrees is None
+    result = analyse(log, "billiard", start=0.0)
+    assert (result.path.theory, result.reason) == (None, "a wall opens, or lets discs pass")
+    assert result.check().agrees is None

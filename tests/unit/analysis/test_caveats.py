@@ -53,10 +53,10 @@ def test_runs_are_grouped_by_state_in_order_of_density():
 
 def test_a_sentence_is_in_tables_json_and_the_report():
     log = made(TWO)
-    found = combined("pressure", log)
-    sentence = only(found, "do not reach all states")
-    assert found.tables()[0].notes[0] == f"caveat: {sentence}"
-    assert sentence in json.loads(json.dumps(found.as_dict()))["caveats"]
+    result = combined("pressure", log)
+    sentence = only(result, "do not reach all states")
+    assert result.tables()[0].notes[0] == f"caveat: {sentence}"
+    assert sentence in json.loads(json.dumps(result.as_dict()))["caveats"]
     shown = [section.tables for section in make_sections(log) if section.title == "Pressure"]
     assert shown[0][0].notes[0] == f"caveat: {sentence}"
     fine = combined("pressure", made())
@@ -78,8 +78,8 @@ def test_discs_that_order_may_keep_an_arrangement():
     """At φ = 0.72 72 discs keep one orientation for 30 000 collisions each: Z is 0.15 % off, four standard errors."""
     for radius, said in ((0.44, 0), (0.45, 1)):
         discs = f"species=[{{name='gas', count=72, radius={radius}, temperature=1, placement='lattice'}}]"
-        found = analysed("pressure", PERIODIC, discs)
-        assert sum("single arrangement" in sentence for sentence in found.caveats) == said
+        result = analysed("pressure", PERIODIC, discs)
+        assert sum("single arrangement" in sentence for sentence in result.caveats) == said
 
 
 # ── motion of the gas as a whole ──
@@ -97,9 +97,9 @@ def test_common_motion_is_no_temperature():
     assert said["common_motion"] == pytest.approx(velocity.mean(axis=0))
     assert seen.ks_distance < 0.5
     assert "moves as a whole" in seen.caveats[0]
-    found = registry.analyse(log, "temperature")
-    only(found, "moves as a whole")
-    assert found.species[-1].both.value == pytest.approx(thermal, rel=1e-9)
+    result = registry.analyse(log, "temperature")
+    only(result, "moves as a whole")
+    assert result.species[-1].both.value == pytest.approx(thermal, rel=1e-9)
     still = made(PERIODIC)
     assert status(still).caveats == ()
     assert info(still)["gas"]["common_motion"] == [0, 0]
@@ -148,12 +148,12 @@ def test_one_log_in_one_picture_twice_is_no_average():
 def test_a_sweep_counts_once():
     """Points of a sweep know their runs from their scenes."""
     analysis, log = registry.find("heat-capacity"), made()
-    found = analysis.analyse(log)
+    result = analysis.analyse(log)
     origin = caveats.origin_of(log.scene, "sweep, point 0")
-    point = analysis.restored(found.as_dict(), origin)
-    assert (point.caveats, point.energy) == ((), found.energy)
-    raised(r"sweep, point 0: the same run as ", analysis.combined, [found, point])
-    stored = analysis.restored(found.as_dict() | {"caveats": ["a sentence."]}, origin)
+    point = analysis.restored(result.as_dict(), origin)
+    assert (point.caveats, point.energy) == ((), result.energy)
+    raised(r"sweep, point 0: the same run as ", analysis.combined, [result, point])
+    stored = analysis.restored(result.as_dict() | {"caveats": ["a sentence."]}, origin)
     assert stored.caveats == ("a sentence.",)
 
 
@@ -162,11 +162,11 @@ def test_a_sweep_counts_once():
 
 def test_heat_capacities_of_different_gases_are_kept_apart():
     logs = [made(f"species.gas.temperature={t}", f"species.gas.count={n}") for n, t in ((40, 1), (40, 3), (60, 2))]
-    found = combined("heat-capacity", *logs)
-    sentence = only(found, "Different gases (closed box) are analysed separately")
+    result = combined("heat-capacity", *logs)
+    sentence = only(result, "Different gases (closed box) are analysed separately")
     gases = ["N = 40 in 8 × 8, equal discs, reflecting box", "N = 60 in 8 × 8, equal discs, reflecting box"]
     assert all(gas in sentence for gas in gases)
-    assert [(r.name, r.gas) for r in found.routes] == [("dE/dT", gases[0]), ("E/T", gases[0]), ("E/T", gases[1])]
+    assert [(r.name, r.gas) for r in result.routes] == [("dE/dT", gases[0]), ("E/T", gases[0]), ("E/T", gases[1])]
     apart = combined("heat-capacity", logs[0], logs[2])
     assert [r.name for r in apart.routes] == ["E/T", "E/T"]
     assert apart.refused["dE/dT"] == "it requires logs of one gas at several energies"
@@ -177,12 +177,12 @@ def test_heat_capacities_of_different_gases_are_kept_apart():
 
 def test_the_equation_of_state_says_which_gases():
     walls, periodic = made("species.gas.radius=0.2"), made(PERIODIC, "species.gas.radius=0.2")
-    found = combined("pressure", walls, periodic)
+    result = combined("pressure", walls, periodic)
     assert "equal discs, periodic sides; equal discs, reflecting box" in only(
-        found, "different gases, each in a separate row"
+        result, "different gases, each in a separate row"
     )
-    assert len(found.states) == 2
-    heads = found.tables()[0].heads
+    assert len(result.states) == 2
+    heads = result.tables()[0].heads
     assert heads[:3] == ("gas", "φ", "N")
     alike = combined("pressure", walls, made("species.gas.radius=0.2", "scene.seed=9"))
     assert alike.caveats == ()
@@ -213,13 +213,13 @@ def test_effusion_of_different_gases_under_one_name():
 def test_effusion_takes_a_slit_narrower_than_a_mean_free_path():
     """With 400 discs of diameter 0.1 on 32 units of area, λ = 1/(2√2 · 0.1 · 12.5 χ), about a seventh of the slit."""
     wide = made(*SLIT, "species.gas.count=400", "species.gas.radius=0.05", "run.until=4")
-    found = combined("effusion", wide)
-    only(found, "mean free paths wide: discs stream out together")
-    (run,) = found.groups[str(wide.path)]
+    result = combined("effusion", wide)
+    only(result, "mean free paths wide: discs stream out together")
+    (run,) = result.groups[str(wide.path)]
     assert run.expected is None
     assert (run.speed.theory, run.speed.deviation) == (None, None)
     assert run.speed.value > 0
-    assert found.figure().axes
+    assert result.figure().axes
     assert registry.find("effusion").restored(run.as_dict(), run.origin).expected is None
     (narrow,) = combined("effusion", made(*SLIT)).groups.values()
     assert narrow[0].expected is not None
@@ -232,10 +232,10 @@ def test_effusion_takes_a_slit_narrower_than_a_mean_free_path():
 def test_fluctuations_take_samples():
     bath = ("box={size=[8, 8], left={thermal=1}, right={thermal=1}}", "run.collisions_per_disc=", "log.events=false")
     short = made(*bath, "run.until=200", "log.snapshot_every=10")
-    found = combined("heat-capacity", short)
-    assert found.routes == ()
-    only(found, "No heat capacity from Var(E)/T²: ")
-    assert found.figure().axes
+    result = combined("heat-capacity", short)
+    assert result.routes == ()
+    only(result, "No heat capacity from Var(E)/T²: ")
+    assert result.figure().axes
     long = combined("heat-capacity", made(*bath, "run.until=4000", "log.snapshot_every=10"))
     assert [route.name for route in long.routes] == ["Var(E)/T²"]
     assert long.caveats == ()

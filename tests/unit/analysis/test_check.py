@@ -39,8 +39,8 @@ def test_the_chance_of_a_false_alarm_does_not_depend_on_the_rows(freedom):
 def test_quantiles_of_one_and_two_degrees_of_freedom():
     """Student's quantile is tan(π(q - 1/2)) for one, and (2q - 1)/√(2q(1 - q)) for two degrees of freedom."""
     q = 1 - FALSE_ALARM / 2
-    one, two = (Comparison("", "", Estimate(1.0, 0.1, samples, 1.0)) for samples in (2.0, 3.0))
-    assert one.allowed == pytest.approx(0.1 * math.tan(math.pi * (q - 0.5)))
+    result, two = (Comparison("", "", Estimate(1.0, 0.1, samples, 1.0)) for samples in (2.0, 3.0))
+    assert result.allowed == pytest.approx(0.1 * math.tan(math.pi * (q - 0.5)))
     assert two.allowed == pytest.approx(0.1 * (2 * q - 1) / math.sqrt(2 * q * (1 - q)))
     known = Comparison("", "", Estimate(1.0, 0.1, math.inf, 1.0, 0.2))
     assert known.allowed == pytest.approx(3.2905 * math.hypot(0.1, 0.2), rel=1e-4)  # of a normal distribution
@@ -122,10 +122,10 @@ def test_rows_are_counted():
     ],
 )  # fmt: skip
 def test_agreement_is_that_of_checks_in_words(found, said):
-    rows = [(str(k), one) for k, one in enumerate(found)]
+    rows = [(str(k), each) for k, each in enumerate(found)]
     assert agreement(rows, "the law", "why") == said
-    if all(isinstance(one, Estimate) and one.theory for one in found):
-        checked = check_theory((name, None, one) for name, one in rows).agrees
+    if all(isinstance(each, Estimate) and each.theory for each in found):
+        checked = check_theory((name, None, each) for name, each in rows).agrees
         assert checked is (False if "differ" in said else None if said[:2] in ("to", "no") else True)
 
 

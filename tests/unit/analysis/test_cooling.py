@@ -19,56 +19,56 @@ GAS = gas(300, 0.1, (14, 14), "collisions_per_disc = 70", periodic="xy", seed=1,
 
 def test_a_uniform_gas_cools_as_theory_says(make):
     """Within 4 standard errors, and resolved to 3 %."""
-    found = cooling(make())
-    assert found.caveats == ()
-    for estimate, resolution in ((found.loss, 0.03), (found.haff, 0.06), (found.fourth, 2.0)):
+    result = cooling(make())
+    assert result.caveats == ()
+    for estimate, resolution in ((result.loss, 0.03), (result.haff, 0.06), (result.fourth, 2.0)):
         agrees(estimate, resolution)
-    assert found.temperature_ratio is None
-    assert found.spin is None
-    assert found.collisions[-1] == pytest.approx(70, rel=1e-3)
-    assert np.diff(found.collisions).std() < 0.5 * np.diff(found.collisions).mean()  # as many between any two times
-    assert found.collisions[found.time.searchsorted(found.start)] >= 20
-    assert np.abs(np.log(found.temperature / found.law)).max() < 0.2  # e⁻³·⁴ is left
-    last = found.last_temperature
-    assert (last.value, last.theory) == (found.temperature[-1], found.law[-1])
+    assert result.temperature_ratio is None
+    assert result.spin is None
+    assert result.collisions[-1] == pytest.approx(70, rel=1e-3)
+    assert np.diff(result.collisions).std() < 0.5 * np.diff(result.collisions).mean()  # as many between any two times
+    assert result.collisions[result.time.searchsorted(result.start)] >= 20
+    assert np.abs(np.log(result.temperature / result.law)).max() < 0.2  # e⁻³·⁴ is left
+    last = result.last_temperature
+    assert (last.value, last.theory) == (result.temperature[-1], result.law[-1])
     assert last.standard_error == pytest.approx(last.value / math.sqrt(300))
-    assert "Haff's time: all 3 agree with the theory of a uniform gas (largest deviation" in found.summary()
-    assert json.loads(json.dumps(found.as_dict(), allow_nan=False)) == found.as_dict()
+    assert "Haff's time: all 3 agree with the theory of a uniform gas (largest deviation" in result.summary()
+    assert json.loads(json.dumps(result.as_dict(), allow_nan=False)) == result.as_dict()
 
 
 @pytest.mark.slow
 def test_spins_come_to_a_ratio_of_their_own(make):
     longer = "run.collisions_per_disc=140"
     log = make("rotation={ inertia = 0.5, roughness = 0.5 }", "species.0.spin_temperature=0.2", longer)
-    found = cooling(log)
-    assert abs(found.temperature_ratio.deviation) < 4
-    assert found.temperature_ratio.standard_error < 0.04
-    assert found.fourth.theory is None
-    assert found.spin[0] == pytest.approx(0.2)
-    middle = len(found.time) // 8
-    assert found.spin[middle] / found.temperature[middle] > 0.4
-    assert abs(math.log(found.spin_law[-1] / found.spin[-1])) < 0.5
-    assert len(found.plot().axes) == 4
+    result = cooling(log)
+    assert abs(result.temperature_ratio.deviation) < 4
+    assert result.temperature_ratio.standard_error < 0.04
+    assert result.fourth.theory is None
+    assert result.spin[0] == pytest.approx(0.2)
+    middle = len(result.time) // 8
+    assert result.spin[middle] / result.temperature[middle] > 0.4
+    assert abs(math.log(result.spin_law[-1] / result.spin[-1])) < 0.5
+    assert len(result.plot().axes) == 4
 
 
 def test_clusters_are_said(make):
     log = make("restitution.normal=0.5", "species.0.count=1200", "species.0.radius=0.12", "run.collisions_per_disc=60")
-    found = cooling(log)
-    untested, clusters, flow = found.caveats
+    result = cooling(log)
+    untested, clusters, flow = result.caveats
     assert "Theory is not available below e" in untested
     assert clusters.startswith("Clusters form: numbers of discs in cells scatter ")
     assert flow.startswith("Discs move together: ")
-    assert found.last_scatter.value > 3 * found.first_scatter.value
-    assert found.law is None
+    assert result.last_scatter.value > 3 * result.first_scatter.value
+    assert result.law is None
 
 
 def test_a_gas_that_cools_more_slowly_than_by_theory_differs_from_it(make):
     """By its temperature at the end, where too few samples tell of its loss and of Haff's time."""
-    found = cooling(make())
-    few = {name: replace(getattr(found, name), independent_samples=2.0) for name in ("loss", "haff")}
-    last = found.last_temperature
+    result = cooling(make())
+    few = {name: replace(getattr(result, name), independent_samples=2.0) for name in ("loss", "haff")}
+    last = result.last_temperature
     hot = replace(
-        found, **few, last_temperature=replace(last, theory=last.value / 10, theory_error=last.theory_error / 10)
+        result, **few, last_temperature=replace(last, theory=last.value / 10, theory_error=last.theory_error / 10)
     )
     assert "1 of 3 differs from the theory of a uniform gas (largest deviation +" in hot.summary()
     assert hot.summary().endswith("σ, T at the end).")

@@ -39,29 +39,29 @@ def test_one_disc_passes(turned):
     if turned:  # the same from right to left, where the chamber with more discs is on the right
         for a, b in (("[8, ", "[12, "), ("[3, ", "[17, "), ("[14, ", "[6, "), ("velocity = [1,", "velocity = [-1,")):
             text = text.replace(a, b)
-    found = measured(text)
+    result = measured(text)
     mean_speed = math.sqrt(math.pi / 2) * math.sqrt(3) * 2 / math.gamma(3.5)
     time = np.linspace(1, 9, INSTANTS)
     passed = time > 5
     there = (3.0 - passed) / mean_speed / (7.8 * 9.8)
     back = (1.0 + passed) / mean_speed / (11.8 * 9.8)
     drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
-    assert found.time == pytest.approx(time)
-    assert found.beyond.tolist() == (1 + passed).tolist()
-    assert found.speed.value == pytest.approx(1 / (1.8 * drive), rel=1e-12)
+    assert result.time == pytest.approx(time)
+    assert result.beyond.tolist() == (1 + passed).tolist()
+    assert result.speed.value == pytest.approx(1 / (1.8 * drive), rel=1e-12)
     expected = mean_speed / math.pi
-    assert found.speed.theory == pytest.approx(expected, rel=1e-12)
-    assert found.speed.standard_error == pytest.approx(math.sqrt(expected * 1.8 * both) / (1.8 * drive), rel=1e-12)
-    assert (found.density, found.temperature) == (pytest.approx(3 / (7.8 * 9.8)), pytest.approx(1.0))
+    assert result.speed.theory == pytest.approx(expected, rel=1e-12)
+    assert result.speed.standard_error == pytest.approx(math.sqrt(expected * 1.8 * both) / (1.8 * drive), rel=1e-12)
+    assert (result.density, result.temperature) == (pytest.approx(3 / (7.8 * 9.8)), pytest.approx(1.0))
     density = 2 / (7.8 * 9.8)
     phi = math.pi * 0.01 * density
     paths = 1.8 * 2 * math.sqrt(2) * 0.2 * density * (1 - 7 * phi / 16) / (1 - phi) ** 2
     error = expected * (0.0125 + 0.245 * paths + 3.2 * phi)
-    assert found.speed.theory_error == pytest.approx(error, rel=1e-12)
-    assert found.expected[0] == pytest.approx(1.0)
-    slope = np.diff(found.expected[:2])[0] / np.diff(time[:2])[0]
+    assert result.speed.theory_error == pytest.approx(error, rel=1e-12)
+    assert result.expected[0] == pytest.approx(1.0)
+    slope = np.diff(result.expected[:2])[0] / np.diff(time[:2])[0]
     assert slope == pytest.approx(expected * 1.8 * (2 / (7.8 * 9.8) - 1 / (11.8 * 9.8)), rel=1e-3)  # at equal T
-    assert found.caveats == ()
+    assert result.caveats == ()
 
 
 def test_windows_are_those_of_the_open_gate():

@@ -27,51 +27,51 @@ def measured(text, **window):
 
 def test_two_discs_that_leave_and_one_that_does_not():
     """At 1 and 2 to the hole at x = 9 - R from x = 2: at t = 6.9 and 3.45; the third flies below the hole, 12 long."""
-    found = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1) + DISC.format(5, 1, 1, 0.1))
-    assert (found.discs, found.escaped) == (3, 2)
-    assert found.per_path.value == pytest.approx(2 / (6.9 + 6.9 + 12), rel=1e-12)
-    assert found.per_path.standard_error == pytest.approx(found.per_path.value / math.sqrt(2), rel=1e-12)
-    assert found.mean_time.value == pytest.approx((6.9 + 3.45 + 12) / 2, rel=1e-12)
-    assert found.mean_time.standard_error == pytest.approx(found.mean_time.value / math.sqrt(2), rel=1e-12)
-    assert found.left.tolist() == [3 - (t >= 3.45) - (t >= 6.9) for t in found.time.tolist()]
-    assert found.mean_time.theory is None  # for discs of one speed only
-    assert found.caveats == (BILLIARD,)
+    result = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1) + DISC.format(5, 1, 1, 0.1))
+    assert (result.discs, result.escaped) == (3, 2)
+    assert result.per_path.value == pytest.approx(2 / (6.9 + 6.9 + 12), rel=1e-12)
+    assert result.per_path.standard_error == pytest.approx(result.per_path.value / math.sqrt(2), rel=1e-12)
+    assert result.mean_time.value == pytest.approx((6.9 + 3.45 + 12) / 2, rel=1e-12)
+    assert result.mean_time.standard_error == pytest.approx(result.mean_time.value / math.sqrt(2), rel=1e-12)
+    assert result.left.tolist() == [3 - (t >= 3.45) - (t >= 6.9) for t in result.time.tolist()]
+    assert result.mean_time.theory is None  # for discs of one speed only
+    assert result.caveats == (BILLIARD,)
     area = 9.8 * 7.8 - 4 * 0.2 - math.pi * 0.01  # of the centres
     length = 8 + 2 * math.pi * 0.1  # both faces of the hole and its round ends
-    assert found.per_path.theory == pytest.approx(length / (math.pi * area), rel=1e-6)
+    assert result.per_path.theory == pytest.approx(length / (math.pi * area), rel=1e-6)
     around = 2 * (9.8 + 7.8) + length
     density = (6.9 + 3.45 + 12) / 12 / 80  # mean in time
     free = hard_discs.mean_free_path(0.2, density, density * math.pi * 0.01)
     error = length / around + 2 * 3 * math.pi * 0.01 / 80 + 0.245 * length / free
-    assert found.per_path.theory_error == pytest.approx(error * found.per_path.theory, rel=1e-6)
-    assert found.expected[0] == 3
-    rates = found.per_path.theory * np.array([1.0, 2.0, 1.0])
-    assert found.expected == pytest.approx(np.exp(-np.multiply.outer(found.time, rates)).sum(axis=1), rel=1e-12)
+    assert result.per_path.theory_error == pytest.approx(error * result.per_path.theory, rel=1e-6)
+    assert result.expected[0] == 3
+    rates = result.per_path.theory * np.array([1.0, 2.0, 1.0])
+    assert result.expected == pytest.approx(np.exp(-np.multiply.outer(result.time, rates)).sum(axis=1), rel=1e-12)
 
 
 def test_a_hole_of_many_mean_free_paths_has_no_theory():
     discs = "".join(DISC.format(x, y, 1, 0.1) for x in np.arange(0.5, 8.6, 0.5) for y in np.arange(0.5, 7.6, 0.5))
-    found = measured(HOLE.replace("until = 12", "until = 0.5") + discs)
-    assert found.per_path.theory is None
-    (sentence,) = found.caveats
+    result = measured(HOLE.replace("until = 12", "until = 0.5") + discs)
+    assert result.per_path.theory is None
+    (sentence,) = result.caveats
     assert sentence.startswith("Theory is not available: the holes are ")
     assert sentence.endswith(" mean free paths long, not small.")
 
 
 def test_a_window_counts_what_happens_in_it():
-    found = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1), start=4.0)
-    assert (found.discs, found.escaped, found.left[0], found.left[-1]) == (1, 1, 1, 0)
-    assert found.mean_time.value == pytest.approx(2.9, rel=1e-12)
-    theory = 1 / found.per_path.theory
-    assert found.mean_time.theory == pytest.approx(theory, rel=1e-12)  # at the speed 1
+    result = measured(HOLE + DISC.format(2, 3, 1, 0.1) + DISC.format(2, 5, 2, 0.1), start=4.0)
+    assert (result.discs, result.escaped, result.left[0], result.left[-1]) == (1, 1, 1, 0)
+    assert result.mean_time.value == pytest.approx(2.9, rel=1e-12)
+    theory = 1 / result.per_path.theory
+    assert result.mean_time.theory == pytest.approx(theory, rel=1e-12)  # at the speed 1
 
 
 def test_discs_that_meet_are_no_billiard():
     """Two that exchange their velocities at x = 4 ± R, t = 1.8: 2 collisions of discs for one escape, at 6.9."""
     text = HOLE + DISC.format(2, 4, 1, 0.1) + DISC.format(6, 4, -1, 0.1)
-    found = measured(text.replace("until = 12", "until = 7.5"))
-    assert found.escaped == 1
-    assert found.caveats == (
+    result = measured(text.replace("until = 12", "until = 7.5"))
+    assert result.escaped == 1
+    assert result.caveats == (
         "Theory of the number left is not available: discs neither keep their speeds nor come to equilibrium before "
         "they leave.",
     )

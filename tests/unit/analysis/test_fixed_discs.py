@@ -26,16 +26,16 @@ run.collisions_per_disc = 300
 def test_light_discs_among_fixed_ones(make, sides):
     """Elastic scatterers conserve the energy of the light discs, E/N = 1; four standard errors."""
     log = make(*sides)
-    found = temperature(log)
-    names = [entry.species for entry in found.species]
+    result = temperature(log)
+    names = [entry.species for entry in result.species]
     assert names == ["fixed", "huge", "light", "all discs"]
-    assert found.window.detected
-    light = found.species[2]
+    assert result.window.detected
+    light = result.species[2]
     for estimate in (light.x, light.y):
         assert estimate.theory == pytest.approx(1, rel=1e-9)
         assert estimate.standard_error < 0.1
         assert abs(estimate.deviation) < 4
-    for entry in found.species[:2]:
+    for entry in result.species[:2]:
         assert entry.both.theory is None
         assert entry.both.value < 1e-9
     assert math.isfinite(pressure(log).collision_rates[0].rate.value)

@@ -22,16 +22,16 @@ WITHOUT = {
 
 @pytest.mark.parametrize("override", WITHOUT)
 def test_no_law_and_why(override, make):
-    found = histogram(make(override))
-    assert found.no_law == WITHOUT[override]
-    (gas,) = found.distributions
+    result = histogram(make(override))
+    assert result.no_law == WITHOUT[override]
+    (gas,) = result.distributions
     assert gas.tests == ()
     assert gas.mean.theory is None
     assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
-    assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["no_law"] == found.no_law
-    (table,) = found.plain_tables()
-    assert f"Theory gives no distribution: {found.no_law}." in table.notes
-    assert found.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
+    assert json.loads(json.dumps(result.as_dict(), allow_nan=False))["no_law"] == result.no_law
+    (table,) = result.plain_tables()
+    assert f"Theory gives no distribution: {result.no_law}." in table.notes
+    assert result.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
 
 
 def test_without_a_stationary_state_the_window_is_the_whole_log(make):
@@ -40,9 +40,9 @@ def test_without_a_stationary_state_the_window_is_the_whole_log(make):
     assert histogram(cooling, start=20.0).window.start == 20.0
     assert histogram(cooling, "waiting-time").no_law
     conduction = make("box={ size = [8, 6], left = { thermal = 1 }, right = { thermal = 2 } }")
-    found = histogram(conduction, "waiting-time")  # it is stationary, if not in equilibrium
-    assert found.window.detected
-    assert found.no_law is None
+    result = histogram(conduction, "waiting-time")  # it is stationary, if not in equilibrium
+    assert result.window.detected
+    assert result.no_law is None
 
 
 @pytest.mark.parametrize(
@@ -72,10 +72,10 @@ def test_discs_that_start_at_rest_fall(make):
 
 
 def test_free_flights_in_a_gas_that_is_not_uniform(make):
-    found = histogram(make("gravity.acceleration=[0, -0.3]"), "free-time")
-    assert found.no_law == "the gas is not uniform (gravity)"
-    assert found.distributions[0].tests == ()
-    assert 0.5 < found.distributions[0].mean.value < 10
+    result = histogram(make("gravity.acceleration=[0, -0.3]"), "free-time")
+    assert result.no_law == "the gas is not uniform (gravity)"
+    assert result.distributions[0].tests == ()
+    assert 0.5 < result.distributions[0].mean.value < 10
     raised(
         "too few collisions of discs", histogram, make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path"
     )
@@ -96,15 +96,15 @@ def test_mean_free_path_without_positions(make):
 
 
 def test_a_single_disc_has_no_law(make):
-    found = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
-    assert found.no_law == "a single disc cannot share its energy"
+    result = histogram(make("gravity.acceleration=[0, -0.3]", "species.count=1"))
+    assert result.no_law == "a single disc cannot share its energy"
 
 
 def test_figure_of_values_outside_all_bins(make):
     """The range follows from samples of the energy, between which a gas may be far hotter."""
-    found = histogram(make())
-    (gas,) = found.distributions
-    beyond = replace(found, distributions=(replace(gas, density=np.zeros_like(gas.density)),))
+    result = histogram(make())
+    (gas,) = result.distributions
+    beyond = replace(result, distributions=(replace(gas, density=np.zeros_like(gas.density)),))
     assert beyond.plot().axes[0].get_xlim() == (gas.edges[0], gas.edges[-1])
 
 
@@ -119,8 +119,8 @@ def test_numbers_of_collisions_have_a_theory_for_equal_discs(make):
     two = [
         f"{{ name = '{name}', count = 20, radius = {r}, temperature = 1.5 }}" for name, r in (("a", 0.1), ("b", 0.2))
     ]
-    found = histogram(make(f"species=[{', '.join(two)}]"), "collisions")
-    assert found.no_law == "it is known only for equal discs"
-    for each in found.distributions:
+    result = histogram(make(f"species=[{', '.join(two)}]"), "collisions")
+    assert result.no_law == "it is known only for equal discs"
+    for each in result.distributions:
         assert (each.tests, each.mean.theory) == ((), None)
         assert each.cumulants["variance_over_mean"].theory is None

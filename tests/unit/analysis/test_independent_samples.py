@@ -67,8 +67,8 @@ def test_only_more_than_the_error_of_a_law_is_rejected():
 
     def p_value(rate, error):
         law = {"exponential": WaitingTimeLaw(rate)}
-        found = distribution_of("gas", np.arange(3.0), counts, Estimate(1, 0, 1), samples, None, law, error)
-        return found.tests[0].p_value
+        result = distribution_of("gas", np.arange(3.0), counts, Estimate(1, 0, 1), samples, None, law, error)
+        return result.tests[0].p_value
 
     assert p_value(1.0, 0.0) > LEAST_P
     assert p_value(1.02, 0.01) > 0.5

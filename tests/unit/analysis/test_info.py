@@ -14,8 +14,8 @@ pytestmark = pytest.mark.interpreted
 
 
 def test_numbers_of_two_discs(lanes):
-    found = info(lanes)
-    gas, run = found["gas"], found["run"]
+    result = info(lanes)
+    gas, run = result["gas"], result["run"]
     assert (gas["box"], gas["number"], gas["common_motion"]) == ([10.0, 8.0], 2, [0.0, 0.0])
     assert gas["packing_fraction"] == pytest.approx(math.pi * (0.25 + 0.0625) / 80, rel=1e-14)
     assert (gas["kinetic_energy"], gas["temperature"]) == (3.75, 1.875)
@@ -26,9 +26,9 @@ def test_numbers_of_two_discs(lanes):
     assert (run["start_time"], run["end_time"], run["event_rows"]) == (0.0, 180.0, len(lanes))
     assert run["event_columns"] == ["time", "disc", "partner", "kind", "position", "velocity"]
     assert run["walls"] == ["left", "right", "bottom", "top", "wall 4"]
-    assert (found["file"]["bytes"], found["file"]["state"]) == (lanes.path.stat().st_size, "complete")
-    assert (found["scene"]["seed"], found["scene"]["method"], "v_ref" in run) == (0, "event_driven", False)
-    assert json.loads(json.dumps(found, allow_nan=False))
+    assert (result["file"]["bytes"], result["file"]["state"]) == (lanes.path.stat().st_size, "complete")
+    assert (result["scene"]["seed"], result["scene"]["method"], "v_ref" in run) == (0, "event_driven", False)
+    assert json.loads(json.dumps(result, allow_nan=False))
 
 
 @pytest.mark.usefixtures("uncompiled")

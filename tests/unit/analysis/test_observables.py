@@ -44,8 +44,8 @@ def test_windows_without_events_are_refused(log):
 def test_effects_are_not_ignored(log, monkeypatch):
     monkeypatch.setattr(Scene, "active_effects", (ActiveEffect("magnets", (), Properties(uniform=False)),))
     raised("requires a gas without magnets", transport, log)
-    found = pressure(log)
-    assert (found.routes, found.no_theory) == ((), "no equation of state holds under magnets")
+    result = pressure(log)
+    assert (result.routes, result.no_theory) == ((), "no equation of state holds under magnets")
     assert histogram(log, "free-time").no_law == "the gas is not uniform (magnets)"
 
 
@@ -70,13 +70,13 @@ def test_check_fails_when_theory_is_off(log):
 
 def test_histograms_are_densities(log):
     for quantity in QUANTITIES:
-        (found,) = histogram(log, quantity).distributions
-        share = found.density * np.diff(found.edges)
+        (result,) = histogram(log, quantity).distributions
+        share = result.density * np.diff(result.edges)
         assert 0.99 < share.sum() <= 1 + 1e-12, quantity
-        middle = (found.edges[1:] + found.edges[:-1]) / 2
-        assert share @ middle == pytest.approx(found.mean.value, rel=0.02, abs=0.01), quantity
-        assert all(0 <= test.p_value <= 1 for test in found.tests), quantity
-        assert found.samples > 100, quantity
+        middle = (result.edges[1:] + result.edges[:-1]) / 2
+        assert share @ middle == pytest.approx(result.mean.value, rel=0.02, abs=0.01), quantity
+        assert all(0 <= test.p_value <= 1 for test in result.tests), quantity
+        assert result.samples > 100, quantity
 
 
 def test_heat_capacity_of_one_log(log):
@@ -90,7 +90,7 @@ def test_heat_capacity_of_one_log(log):
 def test_heat_capacity_of_two_logs_has_their_slope(log, make):
     cold, hot = logs = [heat_capacity(log), heat_capacity(make("species.0.speed=2.0", "scene.seed=6"))]
     slope = (hot.energy.value - cold.energy.value) / (hot.temperature.value - cold.temperature.value)
-    found = {route.name: route.value for route in HeatCapacityAnalysis.combine(logs).routes}
-    assert found["dE/dT"].value == pytest.approx(slope, rel=1e-10)
+    actual = {route.name: route.value for route in HeatCapacityAnalysis.combine(logs).routes}
+    assert actual["dE/dT"].value == pytest.approx(slope, rel=1e-10)
     error = slope * np.hypot(cold.temperature.standard_error, hot.temperature.standard_error) / 1.5 * slope
-    assert found["dE/dT"].standard_error == pytest.approx(error, rel=1e-10)
+    assert actual["dE/dT"].standard_error == pytest.approx(error, rel=1e-10)

@@ -19,33 +19,33 @@ WALLS = tuple(f"box.{side}=reflecting" for side in SIDES)
 
 def test_pairs_and_discs_are_counted_by_hand(make):
     log = make()
-    found = order(log, start=0.1, end=0.4)
-    assert found.frames == FRAMES
+    result = order(log, start=0.1, end=0.4)
+    assert result.frames == FRAMES
     states = list(log.frames(np.linspace(0.1, 0.4, FRAMES)))
     local = [bond_order(state.position, log.box, log.periodic) for state in states]
-    assert found.local.value == pytest.approx(np.mean([np.abs(one.value) for one in local]))
-    assert found.whole.value == pytest.approx(np.mean([abs(one.value.mean()) for one in local]))
-    assert found.square.value == pytest.approx(60 * np.mean([abs(one.value.mean()) ** 2 for one in local]))
-    assert found.hexagons.value == pytest.approx(np.mean([one.neighbours == 6 for one in local]))
-    half = (found.distance[1] - found.distance[0]) / 2
+    assert result.local.value == pytest.approx(np.mean([np.abs(each.value) for each in local]))
+    assert result.whole.value == pytest.approx(np.mean([abs(each.value.mean()) for each in local]))
+    assert result.square.value == pytest.approx(60 * np.mean([abs(each.value.mean()) ** 2 for each in local]))
+    assert result.hexagons.value == pytest.approx(np.mean([each.neighbours == 6 for each in local]))
+    half = (result.distance[1] - result.distance[0]) / 2
     for k in (0, 5, -1):
         products = []
-        for state, one in zip(states, local, strict=True):
+        for state, each in zip(states, local, strict=True):
             apart = state.position[:, None] - state.position
             apart -= np.array(log.box) * np.round(apart / log.box)
-            near = np.abs(np.hypot(*np.moveaxis(apart, 2, 0)) - found.distance[k]) < half
-            products += (one.value[:, None].conj() * one.value).real[near & ~np.eye(60, dtype=bool)].tolist()
-        assert found.correlation[k] == pytest.approx(np.mean(products), abs=1e-12)
-    assert found.distance[-1] + half == pytest.approx(0.5)  # half of the shorter side
-    assert json.dumps(found.as_dict(), allow_nan=False)
+            near = np.abs(np.hypot(*np.moveaxis(apart, 2, 0)) - result.distance[k]) < half
+            products += (each.value[:, None].conj() * each.value).real[near & ~np.eye(60, dtype=bool)].tolist()
+        assert result.correlation[k] == pytest.approx(np.mean(products), abs=1e-12)
+    assert result.distance[-1] + half == pytest.approx(0.5)  # half of the shorter side
+    assert json.dumps(result.as_dict(), allow_nan=False)
 
 
 def test_the_structure_factor_is_the_sum_over_discs():
     position, box = np.random.default_rng(1).random((30, 2)) * (2, 1), (2.0, 1.0)
     waves = WaveVectors(box, 30)
-    found = waves.structure_factor(position)
+    result = waves.structure_factor(position)
     vectors = np.stack(np.meshgrid(waves.kx, waves.ky, indexing="ij"), axis=-1)[waves.used]
-    assert found == pytest.approx(np.abs(np.exp(1j * vectors @ position.T).sum(axis=1)) ** 2 / 30, rel=1e-9)
+    assert result == pytest.approx(np.abs(np.exp(1j * vectors @ position.T).sum(axis=1)) ** 2 / 30, rel=1e-9)
     assert not (vectors == 0).all(axis=1).any()
     opposite = {tuple(np.round(v, 9)) for v in -vectors} & {tuple(np.round(v, 9)) for v in vectors}
     assert not opposite
@@ -56,21 +56,21 @@ def test_a_lattice_at_rest_has_full_positional_order():
     sites, box = np.column_stack((column + row % 2 / 2, row * math.sqrt(3) / 2)), (8, 3 * math.sqrt(3))
     waves = WaveVectors(box, 48)
     lattice = waves.structure_factor(sites)
-    found = waves.structure(np.array([lattice, 0.25 * lattice] * 2), 48)
-    assert found.positional.value == pytest.approx(0.25)  # of every second frame; the others choose the wave vector
-    found = waves.structure(np.array([lattice] * 4), 48)
-    assert found.positional.value == pytest.approx(1.0)
-    angle = math.degrees(math.atan2(found.peak[1], found.peak[0])) % 60  # rows along x have peaks at 30° and so on
+    result = waves.structure(np.array([lattice, 0.25 * lattice] * 2), 48)
+    assert result.positional.value == pytest.approx(0.25)  # of every second frame; the others choose the wave vector
+    result = waves.structure(np.array([lattice] * 4), 48)
+    assert result.positional.value == pytest.approx(1.0)
+    angle = math.degrees(math.atan2(result.peak[1], result.peak[0])) % 60  # rows along x have peaks at 30° and so on
     assert angle == pytest.approx(30.0)
 
 
 def test_long_waves_know_the_compressibility(make):
     """Smallest wave numbers beside theory, within 4 standard errors; S has hardly left its limit there."""
-    found = order(make("species.gas.count=400", "species.gas.radius=0.0169", "run.collisions_per_disc=150"))
-    limit = found.compressibility
+    result = order(make("species.gas.count=400", "species.gas.radius=0.0169", "run.collisions_per_disc=150"))
+    limit = result.compressibility
     assert 0.2 < limit < 0.3  # φ = 0.3
-    assert abs(found.structure.value[0] - limit) < 4 * found.structure.error[0] + 0.03 * limit
-    assert found.structure.error[0] < 0.25 * limit
+    assert abs(result.structure.value[0] - limit) < 4 * result.structure.error[0] + 0.03 * limit
+    assert result.structure.error[0] < 0.25 * limit
 
 
 def test_a_fluid_has_no_order_of_all_discs(make):
@@ -83,19 +83,19 @@ def test_a_fluid_has_no_order_of_all_discs(make):
 
 
 def test_walls_have_neighbours_but_no_structure_factor(make):
-    found = order(make(*WALLS))
-    assert found.structure is None
-    assert found.compressibility is None
-    assert 0.3 < found.local.value < 0.7
+    result = order(make(*WALLS))
+    assert result.structure is None
+    assert result.compressibility is None
+    assert 0.3 < result.local.value < 0.7
 
 
 def test_instants_of_a_log_without_events_are_its_checkpoints(make):
     log = make("log.events=false", "log.pressure=true", "run.collisions_per_disc=2000", "log.snapshot_every=0.1")
-    found = order(log, start=1.0)
-    assert found.frames >= FEWEST_FRAMES
-    assert set(found.time) <= set(log.checkpoints.times)
-    state = log.state_at(found.time[3])
-    assert found.series[3] == np.abs(bond_order(state.position, log.box, log.periodic).value.mean())
+    result = order(log, start=1.0)
+    assert result.frames >= FEWEST_FRAMES
+    assert set(result.time) <= set(log.checkpoints.times)
+    state = log.state_at(result.time[3])
+    assert result.series[3] == np.abs(bond_order(state.position, log.box, log.periodic).value.mean())
     raised(
         "only 0 checkpoints",
         order,

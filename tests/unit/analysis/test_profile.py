@@ -27,31 +27,31 @@ EQUAL = "species=[{ name = 'gas', count = 300, radius = 0.1, temperature = 2 }]"
 
 def test_strips_are_counted_by_hand(make):
     log = make("rotation={ inertia = 0.4 }")
-    found = profile(log, "y", bins=4, start=1.0, end=3.0)
-    assert found.edges == pytest.approx([0.1, 2.05, 4.0, 5.95, 7.9])
-    gas, frames = log.discs, list(log.frames(np.linspace(1.0, 3.0, found.frames)))
-    for s, entry in enumerate(found.species):
+    result = profile(log, "y", bins=4, start=1.0, end=3.0)
+    assert result.edges == pytest.approx([0.1, 2.05, 4.0, 5.95, 7.9])
+    gas, frames = log.discs, list(log.frames(np.linspace(1.0, 3.0, result.frames)))
+    for s, entry in enumerate(result.species):
         for k in range(4):
             counts, motion, spin = 0, 0.0, 0.0
             for state in frames:
                 y = state.position[:, 1]
-                inside = (gas.species == s) & (y >= found.edges[k]) & (y < found.edges[k + 1])
+                inside = (gas.species == s) & (y >= result.edges[k]) & (y < result.edges[k + 1])
                 counts += inside.sum()
                 motion += (gas.mass * (state.velocity**2).sum(axis=1) / 2)[inside].sum()
                 spin += (0.4 * gas.mass * gas.radius**2 * state.angular_velocity**2)[inside].sum()
             assert entry.density[k].value == pytest.approx(counts / len(frames) / (1.95 * 12))
             assert entry.temperature[k].value == pytest.approx(motion / counts)
             assert entry.spin[k].value == pytest.approx(spin / counts)
-    assert json.dumps(found.as_dict(), allow_nan=False)
+    assert json.dumps(result.as_dict(), allow_nan=False)
 
 
 def test_the_gradient_is_the_slope_of_a_line_through_the_temperatures(make):
     log = make(*HOT_AND_COLD, EQUAL)
-    found = profile(log, "y", bins=8, start=5.0)
-    for entry in found.species:
+    result = profile(log, "y", bins=8, start=5.0)
+    for entry in result.species:
         values = [[e.value for e in column] for column in (entry.temperature, entry.density)]
         weights = np.sqrt(values[1])  # polyfit squares them
-        assert entry.gradient.value == pytest.approx(np.polyfit(found.middles, values[0], 1, w=weights)[0])
+        assert entry.gradient.value == pytest.approx(np.polyfit(result.middles, values[0], 1, w=weights)[0])
         assert entry.gradient.theory < 0
         assert entry.gradient.value < -3 * entry.gradient.standard_error
     for entry in profile(make(), "y", bins=8, start=10.0).species:
@@ -88,17 +88,17 @@ def test_all_strips_together_tell_a_slope_that_no_strip_shows():
 
 
 def test_the_strips_of_a_right_gas_agree_together(make):
-    found = profile(make("run.collisions_per_disc=900"), "y", bins=8, start=10.0)
-    for entry in found.species:
+    result = profile(make("run.collisions_per_disc=900"), "y", bins=8, start=10.0)
+    for entry in result.species:
         assert 1e-4 < entry.density_test.p_value <= 1
         assert 1e-4 < entry.temperature_test.p_value <= 1
-    assert "In strips: all 36 agree with theory, uniform (" in found.summary()
+    assert "In strips: all 36 agree with theory, uniform (" in result.summary()
 
 
 def test_laws_of_dilute_gases_are_not_tested_in_all_strips_together(make):
-    found = profile(make(*HOT_AND_COLD, EQUAL), "y", bins=8, start=10.0)
-    assert found.law.startswith("T^(3/2)")
-    assert all(entry.density_test is entry.temperature_test is None for entry in found.species)
+    result = profile(make(*HOT_AND_COLD, EQUAL), "y", bins=8, start=10.0)
+    assert result.law.startswith("T^(3/2)")
+    assert all(entry.density_test is entry.temperature_test is None for entry in result.species)
 
 
 def test_a_column_falls_off_with_height(make):
@@ -147,11 +147,11 @@ def test_all_commands_have_one_temperature_of_a_column(make):
     gas = log.discs
     lowest = float(gas.mass @ (gas.position[:, 1] - gas.radius))
     t = (gas.kinetic_energy + 9 * lowest) / (2 * len(gas))
-    found = temperature(log, start=0.0)
+    result = temperature(log, start=0.0)
     assert evolution(log).law.temperature == pytest.approx(t, rel=1e-6)
     assert profile(log, start=0.0).law == f"barometric at fixed energy, T = {t:.6g} on average over the discs"
-    assert found.law == f"T = {t:.6g} (of a dilute column at fixed energy)"
-    for entry in found.species:
+    assert result.law == f"T = {t:.6g} (of a dilute column at fixed energy)"
+    for entry in result.species:
         for estimate in (entry.x, entry.y, entry.both):
             assert estimate.theory == pytest.approx(t, rel=1e-6)
             assert 0 < estimate.theory_error < 0.02 * t
@@ -164,10 +164,10 @@ def test_all_commands_have_one_temperature_of_a_column(make):
 def test_sheared_sides_have_one_heat(make):
     """How their energy is divided between them is a convention; the sum is the work of the shear."""
     log = make(*PERIODIC[:2], "box.bottom={ shear = 0.3 }", "box.top={ shear = 0.3 }")
-    found = profile(log, bins=3, start=0.0)
+    result = profile(log, bins=3, start=0.0)
     time, given = log.observables["wall_energy"]
-    assert found.heat.keys() == {"bottom and top"}
-    assert found.heat["bottom and top"].value == pytest.approx((given[-1] - given[0])[2:].sum() / (time[-1] - time[0]))
+    assert result.heat.keys() == {"bottom and top"}
+    assert result.heat["bottom and top"].value == pytest.approx((given[-1] - given[0])[2:].sum() / (time[-1] - time[0]))
 
 
 def test_between_two_thermal_sides(make):
@@ -181,18 +181,18 @@ def test_between_two_thermal_sides(make):
     assert t[[0, 19, -1]] ** 1.5 == pytest.approx(low + (high - low) * np.array([1.5, 20.5, 39.5]) / 41, rel=2e-3)
     pressure = n * t * compressibility_factor(n * np.pi * 0.1**2)
     assert pressure == pytest.approx(pressure[0], rel=2e-5)  # means over strips; their curvature is 1e-5
-    found = profile(log, bins=3, start=0.0)
-    assert set(found.heat) == {"bottom", "top"}
+    result = profile(log, bins=3, start=0.0)
+    assert set(result.heat) == {"bottom", "top"}
     time, given = log.observables["wall_energy"]
     gain = (given[-1] - given[0]) / (time[-1] - time[0])
-    assert [found.heat[name].value for name in ("bottom", "top")] == pytest.approx(gain[2:])
-    flow = found.heat_flow
+    assert [result.heat[name].value for name in ("bottom", "top")] == pytest.approx(gain[2:])
+    flow = result.heat_flow
     assert flow.value == pytest.approx((gain[2] - gain[3]) / 2)
     dilute = 1.029 * 2 / 0.2 / np.sqrt(np.pi)  # λ₀/√T
     fall = 12 * 2 / 3 * (low - high) / 8
     assert 1.0 < flow.theory / (dilute * fall) < 1.3  # Enskog's factor at φ = 0.098
     assert 0.02 < flow.theory_error / flow.theory < 0.2
-    assert "Heat flows along y at the rate " in found.summary()
+    assert "Heat flows along y at the rate " in result.summary()
     assert profile(log, bins=3, start=0.0, along="x").heat_flow is None
 
 
@@ -205,9 +205,14 @@ def test_a_dense_gas_between_two_thermal_sides_has_one_pressure(make):
     log = make(*HOT_AND_COLD, dense, "run.collisions_per_disc=900")
     gas = profile(log, bins=8).species[0]
     inner = gas.density[1:-1]  # layers at the sides are in the error of the outermost
-    theory, cold = np.array([one.theory for one in inner]), 1 / np.array([one.theory for one in gas.temperature[1:-1]])
-    allowed = np.array([math.hypot(4 * one.standard_error, one.theory_error) for one in inner])
-    off = [np.abs(np.array([one.value for one in inner]) - law) for law in (theory, cold * theory.mean() / cold.mean())]
+    theory, cold = (
+        np.array([each.theory for each in inner]),
+        1 / np.array([each.theory for each in gas.temperature[1:-1]]),
+    )
+    allowed = np.array([math.hypot(4 * each.standard_error, each.theory_error) for each in inner])
+    off = [
+        np.abs(np.array([each.value for each in inner]) - law) for law in (theory, cold * theory.mean() / cold.mean())
+    ]
     assert (off[0] < allowed).all()
     assert np.count_nonzero(off[1] > allowed) >= 3
 
@@ -232,9 +237,9 @@ def test_layers_at_the_cold_side_are_larger(make):
     ],
 )
 def test_scenes_without_a_theory_are_measured_too(make, override, law):
-    found = profile(make(override), start=2.0)
-    assert found.law == law
-    assert all((e.theory is None) == (law is None) for e in found.species[0].density)
+    result = profile(make(override), start=2.0)
+    assert result.law == law
+    assert all((e.theory is None) == (law is None) for e in result.species[0].density)
 
 
 def test_samples_of_one_instant_have_no_heat(make, monkeypatch):
@@ -251,9 +256,9 @@ def test_samples_of_one_instant_have_no_heat(make, monkeypatch):
 
 def test_a_small_jump_is_the_gradient_times_so_many_mean_free_paths():
     """The other way round it is the same."""
-    found = conduct(1.0, 1.01, 1000.0, 1.0, 1.0)
+    result = conduct(1.0, 1.01, 1000.0, 1.0, 1.0)
     jump = JUMP * mean_free_path(1.0, 1.0, 0.0) * 0.01 / 1000
-    assert (found.low - 1.0, 1.01 - found.high) == pytest.approx((jump, jump), rel=0.01)
+    assert (result.low - 1.0, 1.01 - result.high) == pytest.approx((jump, jump), rel=0.01)
     there, back = conduct(1.0, 2.0, 20.0, 1.0, 0.1), conduct(2.0, 1.0, 20.0, 1.0, 0.1)
     assert (there.low, there.high, there.error) == pytest.approx((back.high, back.low, back.error))
 
@@ -270,8 +275,8 @@ def test_layers_at_walls_are_part_of_the_error(make):
     """At φ = 0.4 strips at walls are denser by about a tenth (six errors), and theory has an error of that size."""
     log = make("species=[{ name = 'gas', count = 136, radius = 0.3, temperature = 1 }]", "run.collisions_per_disc=400")
     density = profile(log, "x", bins=10).species[0].density
-    assert all(one.value > 1.05 * one.theory for one in (density[0], density[-1]))
-    assert all(abs(one.deviation) < 4 for one in density)
+    assert all(each.value > 1.05 * each.theory for each in (density[0], density[-1]))
+    assert all(abs(each.deviation) < 4 for each in density)
 
 
 COLUMN = gas(
@@ -286,9 +291,9 @@ def test_a_column_of_four_discs(sides):
 
     It falls by more than a third among them.
     """
-    found = profile(log_of(COLUMN, *sides), bins=8)
-    (gas,) = found.species
-    assert found.law.startswith("barometric at fixed energy")
+    result = profile(log_of(COLUMN, *sides), bins=8)
+    (gas,) = result.species
+    assert result.law.startswith("barometric at fixed energy")
     warm = [warmth for warmth in gas.temperature if warmth.standard_error < 0.1 * warmth.value]
     assert warm[-1].theory < 0.65 * warm[0].theory
     for estimate in (*gas.density[: len(warm)], *warm):

@@ -154,16 +154,16 @@ def test_laws_of_many_discs_take_many():
     assert many.distributions[0].mean.theory == pytest.approx(analysed("transport", PERIODIC).free_paths[0].path.theory)
     two = analysed("histogram", TWO, PERIODIC)
     assert two.no_law == "2 degrees of freedom are too few for a law"
-    one = made("species.gas.count=1", "run.collisions_per_disc=", "run.until=50")
-    assert registry.analyse(one, "histogram", quantity="vx").no_law == "2 degrees of freedom are too few for a law"
-    found = registry.analyse(one, "temperature")
+    result = made("species.gas.count=1", "run.collisions_per_disc=", "run.until=50")
+    assert registry.analyse(result, "histogram", quantity="vx").no_law == "2 degrees of freedom are too few for a law"
+    found = registry.analyse(result, "temperature")
     only(found, "A single disc does not share its energy evenly")
     assert (found.species[0].x.theory, found.species[0].both.theory) == (None, 1.0)
     spinning = analysed(
         "temperature", "species.gas.count=1", SPIN.replace("=0}", "=1}"), "run.collisions_per_disc=", "run.until=50"
     )
     assert spinning.species[0].both.theory is None
-    assert registry.analyse(one, "transport").figure().axes
+    assert registry.analyse(result, "transport").figure().axes
 
 
 def test_a_slit_takes_a_thin_gas():

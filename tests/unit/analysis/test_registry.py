@@ -85,8 +85,8 @@ def test_what_analyses_say_of_themselves_takes_nothing_heavy():
 def test_analyses_by_name(make):
     log = make()
     steps = []
-    found = registry.analyse(log, "temperature", 1.0, 3.0, lambda done, total: steps.append((done, total)))
-    assert (found.window.start, found.window.end) == (1.0, 3.0)
+    result = registry.analyse(log, "temperature", 1.0, 3.0, lambda done, total: steps.append((done, total)))
+    assert (result.window.start, result.window.end) == (1.0, 3.0)
     assert steps
     by_key, by_name = (registry.analyse(log, name) for name in ("heat-capacity", "heat_capacity"))
     assert by_key == by_name
@@ -189,12 +189,12 @@ def test_what_a_notebook_shows_is_plain_text():
     assert "<td>&lt;b&gt; &amp; \\u001b</td>" in html_table(Table("t", ("",), [("<b> & \x1b",)]))
 
 
-def _numbers(found):
-    if isinstance(found, dict | list):
-        for part in found.values() if isinstance(found, dict) else found:
+def _numbers(result):
+    if isinstance(result, dict | list):
+        for part in result.values() if isinstance(result, dict) else result:
             yield from _numbers(part)
-    elif isinstance(found, int | float):
-        yield float(found)
+    elif isinstance(result, int | float):
+        yield float(result)
 
 
 def test_a_report_shows_every_section_or_says_why_not(make):
@@ -221,9 +221,14 @@ def test_people_see_some_rows_and_digits():
 
 
 def test_csv_has_a_row_for_each_number_with_all_digits():
-    one = Estimate(1 / 3, float("nan"), 5.0).as_dict()
-    found = {"routes": [{"route": "a, b", "z": one}], "left wall": 2, "series": [[0.1, None], [0.3, 0.4]], "none": None}
-    assert as_csv(found, "p").splitlines() == [
+    result = Estimate(1 / 3, float("nan"), 5.0).as_dict()
+    actual = {
+        "routes": [{"route": "a, b", "z": result}],
+        "left wall": 2,
+        "series": [[0.1, None], [0.3, 0.4]],
+        "none": None,
+    }
+    assert as_csv(actual, "p").splitlines() == [
         "quantity,group,index,value,standard_error,independent_samples,theory,theory_error,deviation",
         f'p.routes.a_b.z,"a, b",,{1 / 3!r},,5.0,,0.0,',
         "p.left_wall,left wall,,2.0,,,,,",
@@ -235,9 +240,9 @@ def test_csv_has_a_row_for_each_number_with_all_digits():
 
 @pytest.mark.parametrize(("overrides", "ideal"), [((), 1.0), (("gravity.acceleration=[0, -0.1]",), None)])
 def test_the_figure_of_the_pressure_has_the_ideal_gas(make, overrides, ideal):
-    found = idealgas.pressure(make(*overrides))
-    (ax,) = found.plot().axes
+    result = idealgas.pressure(make(*overrides))
+    (ax,) = result.plot().axes
     (line,) = (line for line in ax.get_lines() if str(line.get_label()).startswith("ideal gas"))
     place = line.get_xdata()[0]
-    assert place == (ideal or found.number * found.temperature / found.area)
+    assert place == (ideal or result.number * result.temperature / result.area)
     assert ax.get_xlim()[0] < place < ax.get_xlim()[1]

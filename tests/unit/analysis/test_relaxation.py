@@ -41,8 +41,8 @@ def test_entropy_of_equal_energies_and_of_the_law():
     """Equal energies fill one of 32 cells; of samples of the law the mean is 0 within its error √(31/2)/N per gas."""
     assert relative_entropy(np.ones(3200)) == pytest.approx(math.log(32) - 31 / 6400)
     random = np.random.default_rng(3)
-    found = [relative_entropy(random.exponential(size=2000)) for _ in range(200)]
-    assert abs(np.mean(found)) < STANDARD_ERRORS * math.sqrt(31 / 2) / 2000 / math.sqrt(200)
+    actual = [relative_entropy(random.exponential(size=2000)) for _ in range(200)]
+    assert abs(np.mean(actual)) < STANDARD_ERRORS * math.sqrt(31 / 2) / 2000 / math.sqrt(200)
 
 
 def test_entropy_of_a_gas_that_is_too_hot():
@@ -83,22 +83,22 @@ def test_reduced_energies_of_both_species_have_mean_one():
     """In the mean over the discs, whatever their masses, about the velocity of the centre of mass."""
     log = log_of(GAS + species("heavy", 20, 0.1, mass=10, speed=1.0))
     state = log.state_at(log.end_time)
-    found = reduced_energy(log, state.velocity, ensemble(log))
+    result = reduced_energy(log, state.velocity, ensemble(log))
     assert speed_distributions(log, 1.0, end=1.0).expected.sum() == pytest.approx(100)
-    assert found.mean() == pytest.approx(1)
+    assert result.mean() == pytest.approx(1)
     energy = log.discs.mass * (state.velocity**2).sum(axis=1) / 2
-    assert found == pytest.approx(energy / energy.mean())
+    assert result == pytest.approx(energy / energy.mean())
 
 
 def test_collisions_are_counted_for_both_discs(log):
     (rows,) = log.chunks(("time", "partner"))
     time = np.array([0.0, rows.time[99], rows.time[-1]])
-    found = collisions_per_disc(log, time)
-    assert found[0] == 0
-    assert found[1] * 80 == (rows.partner[rows.time <= time[1]] >= 0).sum()
-    assert found[2] * 80 == (rows.partner >= 0).sum() == 4800
+    result = collisions_per_disc(log, time)
+    assert result[0] == 0
+    assert result[1] * 80 == (rows.partner[rows.time <= time[1]] >= 0).sum()
+    assert result[2] * 80 == (rows.partner >= 0).sum() == 4800
     late = collisions_per_disc(log, time[1:])
-    assert late[1] == found[2] - found[1]
+    assert late[1] == result[2] - result[1]
 
 
 def test_forty_collisions_a_disc_are_looked_at(log):
@@ -111,54 +111,54 @@ def test_forty_collisions_a_disc_are_looked_at(log):
 
 
 def test_what_was_seen_of_equal_speeds(log):
-    found = relaxation(log)
-    late = log.state_at(found.time[40]).velocity
-    assert found.kurtosis[0] == pytest.approx(1, abs=1e-12)
-    assert found.distance[0] == pytest.approx(1 - math.exp(-1), abs=1e-12)
+    result = relaxation(log)
+    late = log.state_at(result.time[40]).velocity
+    assert result.kurtosis[0] == pytest.approx(1, abs=1e-12)
+    assert result.distance[0] == pytest.approx(1 - math.exp(-1), abs=1e-12)
     square = (late**2).sum(axis=1)
-    assert found.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
-    assert found.equilibrium_kurtosis == pytest.approx(2 * 160 / 162, rel=1e-15)
-    assert found.collisions[-1] == pytest.approx(40, abs=2 / 80)
-    k = int(np.flatnonzero(found.time == found.indistinguishable_after["time"])[0])
-    assert found.collisions[k] == found.indistinguishable_after["collisions_per_disc"]
-    assert found.distance[k] < found.critical_distance <= found.distance[:k].min()
-    assert found.in_collisions.value / found.in_time.value == pytest.approx(
-        found.collisions[-1] / found.time[-1], rel=0.1
+    assert result.kurtosis[40] == pytest.approx((square**2).mean() / square.mean() ** 2)
+    assert result.equilibrium_kurtosis == pytest.approx(2 * 160 / 162, rel=1e-15)
+    assert result.collisions[-1] == pytest.approx(40, abs=2 / 80)
+    k = int(np.flatnonzero(result.time == result.indistinguishable_after["time"])[0])
+    assert result.collisions[k] == result.indistinguishable_after["collisions_per_disc"]
+    assert result.distance[k] < result.critical_distance <= result.distance[:k].min()
+    assert result.in_collisions.value / result.in_time.value == pytest.approx(
+        result.collisions[-1] / result.time[-1], rel=0.1
     )
-    axes = found.analysis.combine([found, found]).figure().axes
+    axes = result.analysis.combine([result, result]).figure().axes
     assert all("(" in axis.get_xlabel() and "(" in axis.get_ylabel() for axis in axes)
 
 
 def test_of_a_gas_in_equilibrium_no_relaxation_is_seen(make):
-    found = relaxation(make("species.gas.speed=", "species.gas.temperature=1.0"))
-    assert found.in_time is None
-    assert found.indistinguishable_after is not None
-    assert found.as_dict()["relaxation_time"] is None
+    result = relaxation(make("species.gas.speed=", "species.gas.temperature=1.0"))
+    assert result.in_time is None
+    assert result.indistinguishable_after is not None
+    assert result.as_dict()["relaxation_time"] is None
 
 
 def test_development_counts_every_disc_at_every_instant(log):
-    found, whole = speed_distributions(log, 1.0, end=5.0), speed_distributions(log, 0.5).counts
+    result, whole = speed_distributions(log, 1.0, end=5.0), speed_distributions(log, 0.5).counts
     at_two = np.hypot(*log.state_at(2.0).velocity.T)
-    assert found.time.tolist() == [0, 1, 2, 3, 4, 5]
-    assert found.counts.shape == (6, 9)
+    assert result.time.tolist() == [0, 1, 2, 3, 4, 5]
+    assert result.counts.shape == (6, 9)
     assert (whole.sum(axis=1) == 80).all()
     assert whole[:, -1].any()  # also far beyond the last edge
-    assert found.counts[0].tolist() == [0, 0, 0, 80, 0, 0, 0, 0, 0]
-    assert found.rms == pytest.approx(2)
-    assert found.counts[2].tolist() == np.histogram(at_two, [*found.edges, np.inf])[0].tolist()
-    assert found.expected.sum() == pytest.approx(80)
-    assert found.expected[-1] == pytest.approx(80 * math.exp(-(2.4**2)))
-    assert found.trials is None
+    assert result.counts[0].tolist() == [0, 0, 0, 80, 0, 0, 0, 0, 0]
+    assert result.rms == pytest.approx(2)
+    assert result.counts[2].tolist() == np.histogram(at_two, [*result.edges, np.inf])[0].tolist()
+    assert result.expected.sum() == pytest.approx(80)
+    assert result.expected[-1] == pytest.approx(80 * math.exp(-(2.4**2)))
+    assert result.trials is None
     raised("instants are too many for a table", speed_distributions, log, 1e-9)
 
 
 def test_development_by_trials(make):
     log = make("run.collisions_per_disc=", "run.trials=2500", "run.method=monte_carlo")
-    found, made = speed_distributions(log, 1000), acceptance(log)
+    result, made = speed_distributions(log, 1000), acceptance(log)
     (rows,) = log.chunks(("time", "trial"))
-    assert found.trials.tolist() == [0, 1000, 2000]
-    assert found.collisions[1] * 80 == (rows.trial <= 1000).sum()
-    assert found.time[1] == rows.time[rows.trial <= 1000][-1]
+    assert result.trials.tolist() == [0, 1000, 2000]
+    assert result.collisions[1] * 80 == (rows.trial <= 1000).sum()
+    assert result.time[1] == rows.time[rows.trial <= 1000][-1]
     assert (made.number, made.collisions, made.published) == (2500, len(rows.time) // 2, None)
 
 

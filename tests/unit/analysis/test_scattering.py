@@ -35,7 +35,7 @@ def test_sums_against_states(make, monkeypatch, starts, step):
     monkeypatch.setattr("idealgas.analysis.scattering.sums.MOST_PLACES", most)
     series = read(log, window, k, step, lags)
     edges = np.linspace(0, 2, 31)
-    *_, one = segments(log, k, lags, series, edges)
+    *_, result = segments(log, k, lags, series, edges)
     apart = int((window.duration / step - lags + 2) / 32)
     assert (series.starts, series.places.shape[2]) == (starts if starts < 64 else apart, 15)
     assert (np.diff(series.at) == 1).all() == (starts == 64)
@@ -52,12 +52,12 @@ def test_sums_against_states(make, monkeypatch, starts, step):
             found[name] += np.mean([(total[later] * total[t].conj()).real for later, t in pairs]) / 60
         own = wave[:, ::2]
         found["own"] += np.mean([(own[later] * own[t].conj()).real.mean() for later, t in pairs]) / 2
-    got = one.density[lag], one.longitudinal[lag], one.transverse[lag], one.self_part[lag]
+    got = result.density[lag], result.longitudinal[lag], result.transverse[lag], result.self_part[lag]
     assert got == pytest.approx(tuple(found.values()))
     apart = [unwrapped[t + 16, ::2] - unwrapped[t, ::2] for t in range(series.starts)]
     distance = np.hypot(*np.moveaxis(apart, 2, 0)).ravel()
-    assert one.moments[4] == pytest.approx(((distance**2).mean(), (distance**4).mean()))
-    assert one.distances == pytest.approx(np.histogram(distance, edges)[0] / len(distance))
+    assert result.moments[4] == pytest.approx(((distance**2).mean(), (distance**4).mean()))
+    assert result.distances == pytest.approx(np.histogram(distance, edges)[0] / len(distance))
 
 
 @pytest.fixture(scope="module")
@@ -68,19 +68,19 @@ def found(log):
 def test_exact_values_and_continuity(found):
     """Currents at t = 0 and F_s after a short time by theory, k = 4; -d²F/dt² = k² C_L and α₂(0) = -2/(D + 2)."""
     assert found.thermal_speed == pytest.approx(math.sqrt(TEMPERATURE / 2))
-    assert [round(one.k * 9 / (2 * math.pi)) for one in found.waves] == [1, 2, 4, 9]
-    for one in found.waves:
-        square = TEMPERATURE / 2 * (1 - one.structure.value / 30)
-        assert (one.longitudinal_square.theory, one.transverse_square.theory) == pytest.approx((square, square))
-        for estimate in (one.longitudinal_square, one.transverse_square, one.early):
+    assert [round(wave.k * 9 / (2 * math.pi)) for wave in found.waves] == [1, 2, 4, 9]
+    for wave in found.waves:
+        square = TEMPERATURE / 2 * (1 - wave.structure.value / 30)
+        assert (wave.longitudinal_square.theory, wave.transverse_square.theory) == pytest.approx((square, square))
+        for estimate in (wave.longitudinal_square, wave.transverse_square, wave.early):
             assert estimate.theory is None or abs(estimate.deviation) < 4
-        step, current = one.time[1], one.k**2 * one.longitudinal.value
+        step, current = wave.time[1], wave.k**2 * wave.longitudinal.value
         slope = np.append(0.0, np.cumsum(step * (current[1:] + current[:-1]) / 2))
         fall = np.append(0.0, np.cumsum(step * (slope[1:] + slope[:-1]) / 2))
-        noise = 4 * np.hypot(one.density.error, one.density.error[0])
-        assert (np.abs(one.density.value[0] - one.density.value - fall) < noise + 0.01)[:16].all()
-        assert one.self_part.value[0] == pytest.approx(1, rel=1e-12)
-    assert any(one.early.theory is not None for one in found.waves)
+        noise = 4 * np.hypot(wave.density.error, wave.density.error[0])
+        assert (np.abs(wave.density.value[0] - wave.density.value - fall) < noise + 0.01)[:16].all()
+        assert wave.self_part.value[0] == pytest.approx(1, rel=1e-12)
+    assert any(wave.early.theory is not None for wave in found.waves)
     assert abs(found.non_gaussian.value[0] + 2 / 60) < 4 * found.non_gaussian.error[0] + 0.01
 
 
@@ -94,17 +94,17 @@ def test_displacements_are_normal_but_for_their_non_gaussian_parameter(found):
     The expansion in Laguerre polynomials L₂(x) = 1 - 2x + x²/2: Rahman, Phys. Rev. 136, A405 (1964), here in 2-D; its
     next terms are below 0.1 of the density. k = 5 as 30 bins of 4 times are compared.
     """
-    assert [one.time for one in found.van_hove] == [wave.time[16] for wave in found.waves]
-    for one in found.van_hove:
-        width = one.distance[1] - one.distance[0]
-        share = 2 * math.pi * one.distance * width * one.density.value
+    assert [each.time for each in found.van_hove] == [wave.time[16] for wave in found.waves]
+    for each in found.van_hove:
+        width = each.distance[1] - each.distance[0]
+        share = 2 * math.pi * each.distance * width * each.density.value
         assert share.sum() == pytest.approx(1, abs=0.005)
-        x = one.distance**2 / one.square
-        where = np.argmin(np.abs(found.time - one.time))
-        assert found.time[where] == pytest.approx(one.time, rel=0.3)
-        expected = one.gaussian * (1 + found.non_gaussian.value[where] * (1 - 2 * x + x**2 / 2))
+        x = each.distance**2 / each.square
+        where = np.argmin(np.abs(found.time - each.time))
+        assert found.time[where] == pytest.approx(each.time, rel=0.3)
+        expected = each.gaussian * (1 + found.non_gaussian.value[where] * (1 - 2 * x + x**2 / 2))
         near = x < 4
-        assert (np.abs(one.density.value - expected) < 5 * one.density.error + 0.1 * one.gaussian)[near].all()
+        assert (np.abs(each.density.value - expected) < 5 * each.density.error + 0.1 * each.gaussian)[near].all()
 
 
 @pytest.mark.parametrize("drift", [(0.0, 0.0), (3.0, -0.5)])
@@ -122,8 +122,8 @@ def test_other_discs_against_states(log, drift, monkeypatch):
     times, starts = [0.0, 0.3, 2.0], np.linspace(5, 18, 4)
     found = distinct_parts(moving, window, times)
     places = {at: moving.state_at(at).position for start in starts for at in start + np.array(times)}
-    for time, one in zip(times, found, strict=True):
-        edges = np.append(one.distance - 0.025, one.distance[-1] + 0.025)
+    for time, each in zip(times, found, strict=True):
+        edges = np.append(each.distance - 0.025, each.distance[-1] + 0.025)
         assert edges == pytest.approx(np.arange(len(edges)) / 20, abs=1e-12)
         assert edges[-1] <= 4.5 < edges[-1] + 0.05
         parts = []
@@ -133,13 +133,13 @@ def test_other_discs_against_states(log, drift, monkeypatch):
             distance = np.hypot(*np.moveaxis(apart, 2, 0))[~np.eye(30, dtype=bool)]
             parts.append(np.histogram(distance, edges)[0] / (30 * math.pi * np.diff(edges**2)))
         first, second = np.mean(parts[:2], axis=0), np.mean(parts[2:], axis=0)
-        assert one.density.value == pytest.approx((first + second) / 2)
-        assert one.density.error == pytest.approx(abs(first - second) / 2)
+        assert each.density.value == pytest.approx((first + second) / 2)
+        assert each.density.error == pytest.approx(abs(first - second) / 2)
 
 
 def test_other_discs_from_pairs_to_chance(log, found):
     """G_d is ρ g(r) at t = 0, with instants of its own, and (N - 1)/A long after; k = 5 as 300 bins are compared."""
-    assert [one.time for one in found.distinct] == [0.0, *(own.time for own in found.van_hove)]
+    assert [each.time for each in found.distinct] == [0.0, *(own.time for own in found.van_hove)]
     start, (pairs,) = found.distinct[0], idealgas.transport(log).pair_distributions
     assert (start.density.value[:20] == 0).all()
     n = min(len(pairs.value), len(start.distance) - 20)
@@ -170,6 +170,6 @@ def test_structure_is_that_of_order(log, found):
 
 def test_spectrum_has_the_structure_as_its_integral(found):
     """∫ S(k, ω) dω/2π = S(k): sum over the frequencies of the transform, exactly but for those left out."""
-    for one in found.waves:
-        integral = (2 * one.spectrum.value[1:].sum() + one.spectrum.value[0]) * one.frequency[1] / (2 * math.pi)
-        assert integral == pytest.approx(one.structure.value, rel=0.03)
+    for wave in found.waves:
+        integral = (2 * wave.spectrum.value[1:].sum() + wave.spectrum.value[0]) * wave.frequency[1] / (2 * math.pi)
+        assert integral == pytest.approx(wave.structure.value, rel=0.03)

@@ -30,25 +30,25 @@ def test_two_discs_that_the_flow_leaves_behind():
     Their common motion along x, ¼, lasts and is no heat.
     """
     log = log_of(SCENE)
-    found = shear(log, start=9.0, end=33.0)
+    result = shear(log, start=9.0, end=33.0)
     assert log.summary["disc_collisions"] == 0
-    edges = found.window.edges
+    edges = result.window.edges
     width = edges[1] - edges[0]
     xx, yy = np.diff(edges**3 / 2) / width, 6.0
     xy = 3 * np.diff(-(edges**2) / 2) / width
     temperatures, viscosities = (xx + yy) / 4, -xy / 32 / 0.5
-    assert found.temperatures == pytest.approx(temperatures, rel=1e-10)
-    assert found.viscosities == pytest.approx(viscosities, rel=1e-10)
+    assert result.temperatures == pytest.approx(temperatures, rel=1e-10)
+    assert result.viscosities == pytest.approx(viscosities, rel=1e-10)
     t = temperatures.mean()
-    assert found.temperature.value == pytest.approx(t, rel=1e-10)
+    assert result.temperature.value == pytest.approx(t, rel=1e-10)
     reduced = (viscosities / np.sqrt(temperatures)).mean()
-    assert found.viscosity.value == pytest.approx(reduced * math.sqrt(t), rel=1e-10)
-    assert found.pressure.value == pytest.approx(2 * t / 32, rel=1e-10)  # P A = N T
-    assert found.normal_stress.value == pytest.approx((xx - yy).mean() / (2 * t), rel=1e-9)
-    assert (found.rate, found.reduced_rate, found.window.first) == (0.5, math.inf, 0)
-    assert found.y == pytest.approx(np.arange(0.1, 4, 0.2))
-    assert found.viscosity.theory is None
-    assert [sentence.split(" of ")[0] for sentence in found.caveats] == [
+    assert result.viscosity.value == pytest.approx(reduced * math.sqrt(t), rel=1e-10)
+    assert result.pressure.value == pytest.approx(2 * t / 32, rel=1e-10)  # P A = N T
+    assert result.normal_stress.value == pytest.approx((xx - yy).mean() / (2 * t), rel=1e-9)
+    assert (result.rate, result.reduced_rate, result.window.first) == (0.5, math.inf, 0)
+    assert result.y == pytest.approx(np.arange(0.1, 4, 0.2))
+    assert result.viscosity.theory is None
+    assert [sentence.split(" of ")[0] for sentence in result.caveats] == [
         f"The temperature changes from {temperatures[:8].mean():.4g} to {temperatures[-8:].mean():.4g} in the window, "
         "as shear heats the gas: the viscosity is that at the mean temperature, as it is proportional to √T.",
         "The shear rate is inf",
@@ -81,18 +81,18 @@ def test_a_common_motion_changes_nothing_else(motion):
 def test_slope_and_profile_of_a_flow_that_moves_with_the_gas():
     """The two discs, on their way up at ¾ in addition: at height h from the middle v - w t/2 = c + h/2."""
     log = log_of(SCENE.replace("0.25, 1]", "0.5, 1.75]").replace("0.25, -1]", "0, -0.25]"))
-    found = shear(log, start=9.0, end=33.0)
+    result = shear(log, start=9.0, end=33.0)
 
     def motion(time):
         h = np.remainder(np.multiply.outer([1.75, -0.25], time) + 2, 4) - 2
         return h, 0.25 * np.array([[1], [-1]]) + np.multiply.outer([-0.5, 0.5], time)
 
     h, c = motion(np.linspace(9, 33, 2_000_001)[:-1] + 6e-6)
-    assert found.slope.value == pytest.approx(1 + (h * c).mean() / (0.5 * (h**2).mean()), abs=1e-5)
+    assert result.slope.value == pytest.approx(1 + (h * c).mean() / (0.5 * (h**2).mean()), abs=1e-5)
     h, c = motion(np.linspace(9, 33, 200))
     strip = ((h + 2) * 5).astype(int).ravel()
     expected = np.bincount(strip, (c + h / 2).ravel(), 20) / np.bincount(strip, minlength=20)
-    assert found.velocity == pytest.approx(expected, abs=1e-12)
+    assert result.velocity == pytest.approx(expected, abs=1e-12)
 
 
 CROSSING = """

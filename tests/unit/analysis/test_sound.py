@@ -34,8 +34,8 @@ def test_long_waves_are_heat_and_sound():
 def test_a_fit_finds_the_fluid():
     guess = Decay(0.3, 0.2, Fluid(2.2, 3.5, 1.5, 1.7))
     thermal = 0.25 * FLUID.speed**2 / FLUID.exponent
-    found = fit(TIME, Decay(0.25, 0.2, FLUID).at(TIME), guess, thermal)
-    assert (found.size, *found.fluid) == pytest.approx((0.25, *FLUID), rel=1e-6)
+    result = fit(TIME, Decay(0.25, 0.2, FLUID).at(TIME), guess, thermal)
+    assert (result.size, *result.fluid) == pytest.approx((0.25, *FLUID), rel=1e-6)
 
 
 @pytest.mark.parametrize("phi", [1e-9, 1e-4])
@@ -48,12 +48,12 @@ def test_sound_of_a_dilute_gas_is_adiabatic(phi):
 def test_correlations_are_averages_over_the_starts_of_each_part():
     draw = np.random.default_rng(1)
     waves = draw.normal(size=(2, 50)) + 1j * draw.normal(size=(2, 50))
-    found = correlations(waves, lags=8, segments=5)
+    result = correlations(waves, lags=8, segments=5)
     edges = [0, 8, 17, 25, 34, 43]
     for part, (first, last) in enumerate(pairwise(edges)):
         for lag in range(8):
             slow = [(waves[a, t + lag] * waves[a, t].conjugate()).real for a in range(2) for t in range(first, last)]
-            assert found[part, lag] == pytest.approx(np.mean(slow))
+            assert result[part, lag] == pytest.approx(np.mean(slow))
 
 
 GAS = gas(20, 0.5, (10, 8), "collisions_per_disc = 300", periodic="xy")
@@ -65,7 +65,7 @@ def test_amplitudes_are_sums_over_discs_and_errors_those_of_a_jackknife(log, mon
     places = np.array([state.position for state in log.frames(times)])
     expected = np.exp(-2j * np.pi * places / log.box).sum(axis=1).T
     assert _amplitudes(log, times, (0, 1), None) == pytest.approx(expected, abs=1e-9)
-    linear = lambda lag, found, guess, thermal: Decay(1.0, guess.k, Fluid(*found[:4]))  # noqa: E731
+    linear = lambda lag, result, guess, thermal: Decay(1.0, guess.k, Fluid(*result[:4]))  # noqa: E731
     monkeypatch.setattr("idealgas.analysis.sound.fit", linear)
     draw = np.random.default_rng(1).normal(size=(2, 1, 200))
     wave = _wave(log, (0,), (Decay(1.0, 1.0, FLUID), None), np.arange(4.0), draw[0] + 1j * draw[1])
@@ -76,10 +76,10 @@ def test_amplitudes_are_sums_over_discs_and_errors_those_of_a_jackknife(log, mon
 
 def test_a_wave_in_a_small_box_is_said_to_be_no_wave_of_a_fluid(make):
     log = make("box.bottom=reflecting", "box.top=reflecting", "run.collisions_per_disc=1000")
-    found = sound(log, start=0.0)
-    (wave,) = found.waves
+    result = sound(log, start=0.0)
+    (wave,) = result.waves
     assert (wave.axes, wave.wavelength) == ("x", 10.0)
-    assert any("mean free paths or diameters long" in sentence for sentence in found.caveats)
+    assert any("mean free paths or diameters long" in sentence for sentence in result.caveats)
 
 
 def test_a_speed_that_is_hardly_known_is_said_to_be(log, monkeypatch):

@@ -19,20 +19,20 @@ def test_two_discs_between_walls_in_closed_form(radius, box):
     q = a**2 * b**2 - math.pi * sigma**2 * a * b + 4 / 3 * sigma**3 * (a + b) - sigma**4 / 2
     along = (2 * a * b**2 - math.pi * sigma**2 * b + 4 / 3 * sigma**3) / q
     across = (2 * a**2 * b - math.pi * sigma**2 * a + 4 / 3 * sigma**3) / q
-    found = two_discs((radius, radius), box)
-    assert found.sides == pytest.approx((box[0] * along / 2, box[1] * across / 2), rel=1e-12)
-    assert found.walls == pytest.approx((a * along + b * across) / 4, rel=1e-12)
-    assert found.pairs == pytest.approx(found.walls, rel=1e-12)
+    result = two_discs((radius, radius), box)
+    assert result.sides == pytest.approx((box[0] * along / 2, box[1] * across / 2), rel=1e-12)
+    assert result.walls == pytest.approx((a * along + b * across) / 4, rel=1e-12)
+    assert result.pairs == pytest.approx(result.walls, rel=1e-12)
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.1, 0.25])
 def test_two_discs_in_a_periodic_box_in_closed_form(radius):
     """Q = A(A - πσ²), σ ≤ L/2: Z = 1 + ½πσ²/(A - πσ²)."""
     excluded = math.pi * (2 * radius) ** 2
-    found = two_discs((radius, radius), (1.0, 1.3), (True, True))
-    assert found.pairs == pytest.approx(1 + excluded / 2 / (1.3 - excluded), rel=1e-12)
-    assert found.walls is None
-    assert found.sides == (None, None)
+    result = two_discs((radius, radius), (1.0, 1.3), (True, True))
+    assert result.pairs == pytest.approx(1 + excluded / 2 / (1.3 - excluded), rel=1e-12)
+    assert result.walls is None
+    assert result.sides == (None, None)
 
 
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
@@ -47,16 +47,16 @@ def test_two_discs_by_counting(radius, periodic):
     distance, sigma = np.hypot(*between.T), sum(radius)
     far, near = (distance > sigma * 0.99).sum(), (distance > sigma * 1.01).sum()
     slope = (far - near) / 0.02 / (distance > sigma).sum()
-    found = two_discs(radius, (1.0, 1.2), periodic)
-    assert found.pairs - 1 == pytest.approx(slope / 4, rel=0.02)  # 4 s.e., and the width of the shell
+    result = two_discs(radius, (1.0, 1.2), periodic)
+    assert result.pairs - 1 == pytest.approx(slope / 4, rel=0.02)  # 4 s.e., and the width of the shell
 
 
 def test_two_unlike_discs_share_the_pressure_of_all_walls():
     """Clausius: both virials are one; unlike discs reach unlike lengths, so only forces tell of single walls."""
-    narrow, found, wide = (two_discs((0.3, 0.1), (1.0 + step, 1.3)) for step in (-1e-5, 0.0, 1e-5))
-    assert found.walls == pytest.approx(found.pairs, rel=1e-12)
-    assert found.sides[0] > found.pairs
-    assert narrow.sides[0] > found.sides[0] > wide.sides[0]
+    narrow, result, wide = (two_discs((0.3, 0.1), (1.0 + step, 1.3)) for step in (-1e-5, 0.0, 1e-5))
+    assert result.walls == pytest.approx(result.pairs, rel=1e-12)
+    assert result.sides[0] > result.pairs
+    assert narrow.sides[0] > result.sides[0] > wide.sides[0]
 
 
 def test_two_discs_that_do_not_fit():
@@ -98,17 +98,17 @@ def test_pressures_along_both_axes_have_the_mean_of_the_pairs():
 def test_theory_of_a_crystal():
     """Free volume, too low by 0.4 + 0.8 (φcp/φ - 1)."""
     close = math.pi / math.sqrt(12)
-    found = crystal(0.8)
-    assert found.value == pytest.approx(1 / (1 - math.sqrt(0.8 / close)), rel=1e-14)
-    assert found.error == pytest.approx(0.4 + 0.8 * (close / 0.8 - 1), rel=1e-14)
+    result = crystal(0.8)
+    assert result.value == pytest.approx(1 / (1 - math.sqrt(0.8 / close)), rel=1e-14)
+    assert result.error == pytest.approx(0.4 + 0.8 * (close / 0.8 - 1), rel=1e-14)
 
 
 def test_names_of_species_change_nothing():
     """Equal discs given as two species: the same Z, and all their collisions together."""
-    one = box_theory([0.02], [100], (1.0, 1.0))
+    result = box_theory([0.02], [100], (1.0, 1.0))
     two = box_theory([0.02, 0.02], [30, 70], (1.0, 1.0))
-    assert two.pairs.value == pytest.approx(one.pairs.value, rel=1e-12)
-    assert two.contacts == pytest.approx(np.array([[29, 70], [30, 69]]) / 99 * one.contacts, rel=1e-12)  # not itself
+    assert two.pairs.value == pytest.approx(result.pairs.value, rel=1e-12)
+    assert two.contacts == pytest.approx(np.array([[29, 70], [30, 69]]) / 99 * result.contacts, rel=1e-12)  # not itself
     pair = box_theory([0.2, 0.2], [1, 1], (1.0, 1.0))
     assert pair.contacts == pytest.approx(np.array([[0, 1], [1, 0]]) * box_theory([0.2], [2], (1.0, 1.0)).contacts)
 

@@ -41,25 +41,25 @@ def test_thermostat_collisions_hit_no_wall(log):
 
 
 def test_the_pressure_is_that_of_the_bath(log):
-    found = pressure(log)
-    assert found.temperature == 2
-    assert found.check().agrees
+    result = pressure(log)
+    assert result.temperature == 2
+    assert result.check().agrees
 
 
 def test_the_energy_that_thermostat_collisions_give_is_on_the_account(log):
-    found = evolution(log)
-    assert np.abs(found.balance).max() < 1e-12
-    assert found.given.keys() == {"the heat bath"}
+    result = evolution(log)
+    assert np.abs(result.balance).max() < 1e-12
+    assert result.given.keys() == {"the heat bath"}
     mass, before, given = log.discs.mass, log.discs.velocity.copy(), 0.0
     for rows in log.chunks():
         for disc, kind, velocity in zip(rows.disc, rows.kind, rows.velocity, strict=True):
             if kind == Kind.THERMOSTAT:
                 given += mass[disc] / 2 * (velocity @ velocity - before[disc] @ before[disc])
             before[disc] = velocity
-    assert found.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
-    assert found.law.temperature[0] == 2
-    assert any("energy from the heat bath" in table.heads for table in found.plain_tables())
-    assert found.plot().axes
+    assert result.given["the heat bath"][-1] == pytest.approx(given, rel=1e-10)
+    assert result.law.temperature[0] == 2
+    assert any("energy from the heat bath" in table.heads for table in result.plain_tables())
+    assert result.plot().axes
 
 
 @pytest.mark.slow

@@ -43,14 +43,14 @@ def test_room_of_two_discs():
 @pytest.mark.parametrize(("number", "radius"), [(1, 0.5), (2, 0.4), (3, 0.2), (5, 0.1)])
 def test_free_energy_against_random_configurations(number, radius):
     """Fraction of 200 000 random configurations without overlap, k = 4."""
-    found = configurations_of(discs(number, radius))
+    result = configurations_of(discs(number, radius))
     places = np.random.default_rng(1).random((200_000, number, 2)) * (4 - 2 * radius, 3 - 2 * radius)
     i, j = np.triu_indices(number, 1)
     share = (((places[:, i] - places[:, j]) ** 2).sum(axis=2) > 4 * radius**2).all(axis=1).mean()
     random = math.log(share) + number * math.log((4 - 2 * radius) * (3 - 2 * radius))
     error = math.sqrt((1 - share) / share / 200_000)
-    assert (found.error > 0) == (number > 2)
-    assert abs(found.value - random) <= 4 * error + found.error
+    assert (result.error > 0) == (number > 2)
+    assert abs(result.value - random) <= 4 * error + result.error
 
 
 def test_species_of_one_radius_are_equal_discs():
@@ -77,13 +77,13 @@ def strokes(draw, number, spread=1.0, free=0.7, temperature=2.0):
 
 def test_errors_of_free_energy_crossing_and_slope():
     """Rms of 400 deviations scatters by 1/√800 = 3.5 %; k = 3."""
-    draw, found = np.random.default_rng(3), []
+    draw, result = np.random.default_rng(3), []
     for _ in range(400):
         both = strokes(draw, 200)
         (crossing,) = crossings([both[0], replace(both[1], work=both[1].work[:80])], 2.0)  # not halfway
-        found.append([one.deviation for one in (both[0].free_energy, crossing.free_energy, crossing.slope)])
-    assert np.sqrt(np.square(found).mean(axis=0)) == pytest.approx(1, abs=0.1)
-    assert np.abs(np.mean(found, axis=0)).max() < 0.2  # bias in standard errors, of 1/√400 = 0.05 by chance
+        result.append([each.deviation for each in (both[0].free_energy, crossing.free_energy, crossing.slope)])
+    assert np.sqrt(np.square(result).mean(axis=0)) == pytest.approx(1, abs=0.1)
+    assert np.abs(np.mean(result, axis=0)).max() < 0.2  # bias in standard errors, of 1/√400 = 0.05 by chance
 
 
 def test_strokes_that_do_not_overlap_or_are_few():
@@ -107,34 +107,34 @@ def log():
 
 def test_strokes_of_a_log(log):
     """Ten strokes inwards and outwards; their works are those of all hits of the piston, from the events."""
-    found = idealgas.work(log)
-    assert [(one.ends, one.protocol, len(one.work)) for one in found.processes] == [
+    result = idealgas.work(log)
+    assert [(each.ends, each.protocol, len(each.work)) for each in result.processes] == [
         ((5.0, 4.0), ((2.0, -0.5),), 10),
         ((4.0, 5.0), ((2.0, 0.5),), 10),
     ]
-    (crossing,) = found.crossings
+    (crossing,) = result.crossings
     assert crossing.name == "from 5 to 4 in 2"
     (rows,) = log.chunks()
     hits = rows.kind == Kind.PISTON
-    for one, first, speed in zip(found.processes, (20, 42), (-0.5, 0.5), strict=True):
-        for work, begin in zip(one.work, first + 44 * np.arange(10), strict=True):
+    for each, first, speed in zip(result.processes, (20, 42), (-0.5, 0.5), strict=True):
+        for work, begin in zip(each.work, first + 44 * np.arange(10), strict=True):
             now = hits & (rows.time > begin) & (rows.time < begin + 2)
             after = rows.velocity[now, 0]
             assert work == pytest.approx(((after**2 - (2 * speed - after) ** 2) / 2).sum(), abs=1e-12)
-    for one in found.processes:
-        assert one.kinetic_energy.standard_error == pytest.approx(math.sqrt(2 / 10))  # variance N T²
-        assert abs(one.kinetic_energy.value - 2) < 4 * math.sqrt(2 / 10)
-        assert any(one.name in caveat for caveat in find("work").combined([found]).caveats)
+    for each in result.processes:
+        assert each.kinetic_energy.standard_error == pytest.approx(math.sqrt(2 / 10))  # variance N T²
+        assert abs(each.kinetic_energy.value - 2) < 4 * math.sqrt(2 / 10)
+        assert any(each.name in caveat for caveat in find("work").combined([result]).caveats)
 
 
 def test_results_of_a_sweep_are_those_of_its_logs(log):
     analysis = find("work")
-    found = analysis.analyse(log)
-    again = analysis.restored(found.as_dict(), found.origin)
-    assert again.as_dict() == found.as_dict()
-    both = analysis.combine([found, again])
-    assert [len(one.work) for one in both.processes] == [20, 20]
-    assert both.processes[0].free_energy.theory == found.processes[0].free_energy.theory
+    result = analysis.analyse(log)
+    again = analysis.restored(result.as_dict(), result.origin)
+    assert again.as_dict() == result.as_dict()
+    both = analysis.combine([result, again])
+    assert [len(each.work) for each in both.processes] == [20, 20]
+    assert both.processes[0].free_energy.theory == result.processes[0].free_energy.theory
 
 
 def test_theory_of_the_shipped_scene(log):
@@ -143,7 +143,7 @@ def test_theory_of_the_shipped_scene(log):
     def room(a, b):
         return a**2 * b**2 - math.pi * a * b + 4 / 3 * (a + b) - 0.5
 
-    inwards, outwards = (one.free_energy for one in idealgas.work(log).processes)
+    inwards, outwards = (each.free_energy for each in idealgas.work(log).processes)
     assert inwards.theory == pytest.approx(math.log(room(4, 3) / room(3, 3)), rel=1e-12)
     assert outwards.theory == -inwards.theory
 
@@ -155,12 +155,12 @@ def test_ten_thousand_strokes(tmp_path):
     for seed in range(1000):
         simulate(load_scene(SCENE, [f"scene.seed={seed}", "log.events=false"]), tmp_path / "run.h5", force=True)
         results.append(analysis.analyse(tmp_path / "run.h5"))
-    found = analysis.combined(results)
-    (crossing,) = found.crossings
-    estimates = [one.free_energy for one in (*found.processes, crossing)] + [crossing.slope]
-    estimates += [one.kinetic_energy for one in found.processes]
-    print([(one.value, one.standard_error, one.theory, one.deviation) for one in estimates])
-    assert max(abs(one.deviation) for one in estimates) < 3
+    result = analysis.combined(results)
+    (crossing,) = result.crossings
+    estimates = [each.free_energy for each in (*result.processes, crossing)] + [crossing.slope]
+    estimates += [each.kinetic_energy for each in result.processes]
+    print([(each.value, each.standard_error, each.theory, each.deviation) for each in estimates])
+    assert max(abs(each.deviation) for each in estimates) < 3
     assert all(
-        one.mean_work.value > one.free_energy.theory + 10 * one.mean_work.standard_error for one in found.processes
+        each.mean_work.value > each.free_energy.theory + 10 * each.mean_work.standard_error for each in result.processes
     )

@@ -30,15 +30,15 @@ def test_there_are_rows_for_each_number_of_threads(monkeypatch):
         "simulate",
         lambda scene, path, force: SimpleNamespace(disc_collisions=1, seconds=1.0, threads=min(scene.run.threads, 3)),
     )
-    found = bench.bench([50], [0.1], repeats=1, threads=[1, 2, 7])
-    assert [(row.threads, row.log) for row in found.rows] == [(k, log) for k in (1, 2, 3) for log in (False, True)]
+    result = bench.bench([50], [0.1], repeats=1, threads=[1, 2, 7])
+    assert [(row.threads, row.log) for row in result.rows] == [(k, log) for k in (1, 2, 3) for log in (False, True)]
 
 
 def test_every_row_is_measured():
     seen = []
-    found = bench.bench([10], [0.1, 0.3], collisions=20, repeats=1, on_row=seen.append)
-    assert [(row.N, row.phi, row.log) for row in found.rows] == [
+    result = bench.bench([10], [0.1, 0.3], collisions=20, repeats=1, on_row=seen.append)
+    assert [(row.N, row.phi, row.log) for row in result.rows] == [
         (10, 0.1, False), (10, 0.1, True), (10, 0.3, False), (10, 0.3, True)
     ]  # fmt: skip
-    assert found.rows == seen
+    assert result.rows == seen
     assert all(0 < row.slowest <= row.collisions_per_s <= row.fastest for row in seen)

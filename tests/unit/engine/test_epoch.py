@@ -39,26 +39,26 @@ def test_a_power_of_two_that_scales_with_speed_whatever_the_order_of_the_discs()
         assert math.frexp(length_for(gas(speed=speed)))[0] == 0.5
     assert length_for(gas(speed=4.0)) == length_for(gas()) / 4
     assert [length_for(gas(n, speed=0.0)) for n in (1, 100)] == [math.inf, math.inf]
-    one = gas()
+    result = gas()
     for seed in range(20):
-        order = np.random.default_rng(seed).permutation(len(one))
-        assert length_for(replace(one, velocity=one.velocity[order])) == length_for(one)
+        order = np.random.default_rng(seed).permutation(len(result))
+        assert length_for(replace(result, velocity=result.velocity[order])) == length_for(result)
 
 
 def test_close_to_a_power_of_two_the_exact_sum_of_the_speeds_decides():
     """Sums whose rounding depends on the order of the discs would put some of these lengths on the other side."""
-    one = gas()
-    speeds = np.sqrt(one.velocity[:, 0] ** 2 + one.velocity[:, 1] ** 2)
-    events, mean = EVENTS_PER_DISC * len(one), math.fsum(speeds.tolist()) / len(one)
+    result = gas()
+    speeds = np.sqrt(result.velocity[:, 0] ** 2 + result.velocity[:, 1] ** 2)
+    events, mean = EVENTS_PER_DISC * len(result), math.fsum(speeds.tolist()) / len(result)
     encounters = events / mean / 2.0**10
     wrong = 0
     for ulps in range(-4, 5):
         close = encounters + ulps * math.ulp(encounters)
         exact = 2.0 ** math.floor(math.log2(events / (mean * close)))
         for seed in range(50):
-            order = np.random.default_rng(seed).permutation(len(one))
-            assert epoch_length(replace(one, velocity=one.velocity[order]), close) == exact
-            rounded = float(speeds[order].sum()) / len(one)
+            order = np.random.default_rng(seed).permutation(len(result))
+            assert epoch_length(replace(result, velocity=result.velocity[order]), close) == exact
+            rounded = float(speeds[order].sum()) / len(result)
             wrong += 2.0 ** math.floor(math.log2(events / (rounded * close))) != exact
     assert wrong >= 10
 
@@ -93,10 +93,10 @@ def test_a_disc_does_not_go_round_the_box_too_often(monkeypatch):
 
 def in_a_channel(velocity, periodic=(False, False)):
     """Length of an epoch of one disc with room for a millionth of its diameter across."""
-    one = replace(
+    result = replace(
         gas(1), box=(50.0, 1.0 + 1e-6), position=np.array([[25.0, 0.5 + 5e-7]]), velocity=np.array([velocity])
     )
-    return epoch_length(one, encounters_per_length(one, periodic), periodic=periodic)
+    return epoch_length(result, encounters_per_length(result, periodic), periodic=periodic)
 
 
 def test_in_a_narrow_room_only_motion_across_it_counts():

@@ -75,8 +75,8 @@ def test_stops_where_it_should():
 
 
 def test_seeds_differ_and_epochs_do_too():
-    one, two = (record(simulation(seed=seed), Stop(events=5)).time.tolist() for seed in (1, 2))
-    assert one != two
+    result, two = (record(simulation(seed=seed), Stop(events=5)).time.tolist() for seed in (1, 2))
+    assert result != two
     method, other = MonteCarlo(1, 20.0), MonteCarlo(1, 20.0)
     first = record(Simulation(some_gas(), method), Stop(events=5))
     second = record(Simulation(some_gas(), other, time=8.0, epoch=1), Stop(events=5))

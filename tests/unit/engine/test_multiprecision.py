@@ -80,19 +80,19 @@ def mp_motion(gas, events):
     r, m = ([mpf(v) for v in values.tolist()] for values in (gas.radius, gas.mass))
     clock = mpf(0)
     for _ in range(events):
-        found = []
+        actual = []
         for i in range(n):
             for place, speed, length, side in ((x, vx, gas.box[0], 0), (y, vy, gas.box[1], 2)):
                 if speed[i]:
                     target = mpf(length) - r[i] if speed[i] > 0 else r[i]
-                    found.append(((target - place[i]) / speed[i], i, -1 - side))
+                    actual.append(((target - place[i]) / speed[i], i, -1 - side))
             for j in range(i + 1, n):
                 ax, ay, bx, by = x[i] - x[j], y[i] - y[j], vx[i] - vx[j], vy[i] - vy[j]
                 b, c = ax * bx + ay * by, ax**2 + ay**2 - (r[i] + r[j]) ** 2
                 d = b**2 - (bx**2 + by**2) * c
                 if b < 0 and d >= 0:
-                    found.append(((-b - mpmath.sqrt(d)) / (bx**2 + by**2), i, j))
-        delay, i, j = min(found)
+                    actual.append(((-b - mpmath.sqrt(d)) / (bx**2 + by**2), i, j))
+        delay, i, j = min(actual)
         assert delay > 0
         for k in range(n):
             x[k] += vx[k] * delay
@@ -119,7 +119,7 @@ def errors(columns: Columns, truth):
     """Largest differences of positions and velocities, over the box and the largest speed."""
     *motion, clock = truth
     x, y, vx, vy, t = (exact(column) for column in columns[:5])
-    found = (
+    actual = (
         [a + v * (clock - s) for a, v, s in zip(x, vx, t, strict=True)],
         [a + v * (clock - s) for a, v, s in zip(y, vy, t, strict=True)],
         vx,
@@ -129,7 +129,7 @@ def errors(columns: Columns, truth):
     scales = (mpf(float(exact(columns.box)[0])),) * 2 + (fastest,) * 2
     return max(
         abs(a - b) / scale
-        for ours, true, scale in zip(found, motion, scales, strict=True)
+        for ours, true, scale in zip(actual, motion, scales, strict=True)
         for a, b in zip(ours, true, strict=True)
     )
 

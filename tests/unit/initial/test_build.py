@@ -69,12 +69,12 @@ def test_at_rest(motion):
 
 
 def test_seeds_and_streams():
-    one, same = gas_of(A, B), gas_of(A, B)
+    result, same = gas_of(A, B), gas_of(A, B)
     other = gas_of(A, B, overrides=["scene.seed=1"])
-    assert (one.position == same.position).all()
-    assert (one.velocity == same.velocity).all()
-    assert not (one.position == other.position).any()
-    assert not (one.velocity == other.velocity).any()
+    assert (result.position == same.position).all()
+    assert (result.velocity == same.velocity).all()
+    assert not (result.position == other.position).any()
+    assert not (result.velocity == other.velocity).any()
     alone, behind = gas_of(A), gas_of(B, A, disc(5, 5))
     assert (behind.velocity[behind.species == 2] == alone.velocity).all()
     first = {rng(seed, use).random() for seed in (0, 1) for use in ("placement", "velocities a", "velocities b")}

@@ -248,10 +248,10 @@ def place(tmp_path):
 def test_base_of_the_cache(place, variables, expected):
     """XDG Base Directory Specification: relative ones are invalid. `expanduser` leaves "~" of a user without a home."""
     for _ in range(2):
-        found = cache_folder_with(place, **{name: value.format(place) for name, value in variables.items()})
-        assert found.parent == place / expected
-        assert found.stat().st_mode & 0o777 == 0o700
-        assert "idealgas" not in expected or found.parent.stat().st_mode & 0o777 == 0o700
+        result = cache_folder_with(place, **{name: value.format(place) for name, value in variables.items()})
+        assert result.parent == place / expected
+        assert result.stat().st_mode & 0o777 == 0o700
+        assert "idealgas" not in expected or result.parent.stat().st_mode & 0o777 == 0o700
     assert {path.name for path in place.iterdir()} == {"tmp", expected.partition("/")[0]}
 
 
@@ -279,8 +279,8 @@ def test_a_cache_that_others_can_write_is_not_read(place, what):
         own.rename(place / "elsewhere")
         own.symlink_to(place / "elsewhere")
     (own / "planted").touch()
-    found = cache_folder_with(place, **cached)
-    assert found.parent == place / "tmp" / f"idealgas-{os.geteuid()}"
+    result = cache_folder_with(place, **cached)
+    assert result.parent == place / "tmp" / f"idealgas-{os.geteuid()}"
     if "owner" in what and what != "owner":
         shutil.rmtree(own)
         cache_folder_with(place, **cached)

@@ -139,20 +139,20 @@ def test_damage_that_hdf5_finds_as_it_closes(path):
 def test_damage_is_no_failure_to_write(path):
     """Damage that is found only once the log is opened for appending, as it was sound when it was read."""
     with open_log(path) as log:
-        rows, data, found = log.commit.rows, path.read_bytes(), 0
+        rows, data, result = log.commit.rows, path.read_bytes(), 0
     for place in range(0, 20_000, 97):
         path.write_bytes(data[:place] + bytes([data[place] ^ 255]) + data[place + 1 :])
         try:
             open_after(path, rows)[0].close()
         except DamageError:
-            found += 1
-    assert found >= 20
+            result += 1
+    assert result >= 20
 
 
 def test_a_block_half_written(path):
     """The second half of a block of an index is that of before, as after a power failure."""
     data = path.read_bytes()
-    blocks = [found.start() for found in re.finditer(b"EA[HI][DB]|FA[HD][DB]|OHDR", data)]
+    blocks = [result.start() for result in re.finditer(b"EA[HI][DB]|FA[HD][DB]|OHDR", data)]
     lines = []
     for place in blocks:
         path.write_bytes(data[: place + 16] + bytes(8) + data[place + 24 :])

@@ -84,9 +84,9 @@ def test_discs(log):
         assert np.array_equal(part["mass"], log.discs.mass)
         assert np.array_equal(part[["x", "y"]], state.position)
         assert np.array_equal(part[["vx", "vy"]], state.velocity)
-    one = log.to_pandas("discs", disc=3, times=times)
-    assert np.array_equal(one["vx"], frame[frame["disc"] == 3]["vx"])
-    assert len(one) == len(times)
+    result = log.to_pandas("discs", disc=3, times=times)
+    assert np.array_equal(result["vx"], frame[frame["disc"] == 3]["vx"])
+    assert len(result) == len(times)
 
 
 def test_observables(log):

@@ -51,7 +51,7 @@ def log(request, tmp_path_factory):
 def expected(log, edges):
     """Flights from edge to edge as dictionaries: those that events end in order, with their pieces, then the others."""
     gravity, box = np.array(log.gravity), np.array(log.box)
-    state, found = log.state_at(edges[0]), []
+    state, result = log.state_at(edges[0]), []
     records = [(edges[0], *(None if c is None else c[disc] for c in state[1:])) for disc in range(len(log.discs))]
 
     def at(disc, time):
@@ -77,7 +77,7 @@ def expected(log, edges):
             kind, partner, after, spin = (
                 event if last and event else (NO_EVENT, NOBODY, at(disc, stop)[1], at(disc, stop)[3])
             )
-            found.append(
+            result.append(
                 {
                     "disc": disc,
                     "species": log.discs.species[disc],
@@ -111,13 +111,13 @@ def expected(log, edges):
             records[disc] = get("time"), place, get("velocity"), get("image"), get("angular_velocity")
     for disc in range(len(log.discs)):
         fly(disc, edges[-1], None)
-    return found
+    return result
 
 
-def check(log, edges, found):
+def check(log, edges, result):
     flights = expected(log, edges)
-    assert len(found.disc) == len(flights)
-    for name, values in found._asdict().items():
+    assert len(result.disc) == len(flights)
+    for name, values in result._asdict().items():
         if values is None:
             assert flights[0][name] is None or np.isnan(flights[0][name]).all(), name
             continue
@@ -140,11 +140,11 @@ def test_flights_and_their_pieces(log, part):
 
 
 def test_by_default_flights_fill_the_log_and_an_event_at_an_edge_ends_the_block_before(log):
-    found = Flights.joined(log.flights())
-    assert (found.kind != NO_EVENT).sum() == len(log)
-    assert (found.block == 0).all()
-    assert np.bincount(found.disc, found.end - found.start) == pytest.approx(np.full(9, log.end_time))
-    assert found.end[-9:].tolist() == [log.end_time] * 9
+    result = Flights.joined(log.flights())
+    assert (result.kind != NO_EVENT).sum() == len(log)
+    assert (result.block == 0).all()
+    assert np.bincount(result.disc, result.end - result.start) == pytest.approx(np.full(9, log.end_time))
+    assert result.end[-9:].tolist() == [log.end_time] * 9
     (times,) = log.chunks(("time",))
     edges = np.array([*times.time[[50, 100, 150]], log.end_time])
     check(log, edges, Flights.joined(log.flights(edges)))
@@ -152,13 +152,13 @@ def test_by_default_flights_fill_the_log_and_an_event_at_an_edge_ends_the_block_
 
 def test_states_at_edges_are_those_of_the_log(log):
     edges = np.linspace(0, log.end_time, 8)
-    found = Flights.joined(log.flights(edges))
+    result = Flights.joined(log.flights(edges))
     for block, state in enumerate(log.frames(edges[:-1])):
-        opening = found.start == edges[block]
-        order = np.argsort(found.disc[opening])
-        assert found.velocity[opening][order] == pytest.approx(state.velocity, abs=1e-12)
+        opening = result.start == edges[block]
+        order = np.argsort(result.disc[opening])
+        assert result.velocity[opening][order] == pytest.approx(state.velocity, abs=1e-12)
         if log.has_positions:
-            assert found.position[opening][order] == pytest.approx(state.position, abs=1e-12)
+            assert result.position[opening][order] == pytest.approx(state.position, abs=1e-12)
 
 
 def test_small_batches_have_the_same_flights_and_whole_pairs(log, monkeypatch):
@@ -173,8 +173,8 @@ def test_small_batches_have_the_same_flights_and_whole_pairs(log, monkeypatch):
 
     monkeypatch.setattr(log, "chunks", short)
     batches = list(log.flights(edges))
-    for one, other in zip(whole, Flights.joined(batches), strict=True):
-        assert np.array_equal(one, other)
+    for each, other in zip(whole, Flights.joined(batches), strict=True):
+        assert np.array_equal(each, other)
     assert np.median([len(batch.disc) for batch in batches]) < 9
     for batch in batches:
         ended = batch.kind == Kind.DISC
@@ -190,16 +190,16 @@ def test_some_discs_and_some_columns_and_a_data_frame(log):
     some = Flights.joined(log.flights(edges, discs=[2, 5]))
     few = Flights.joined(log.flights(edges, discs=7, columns=("end", "new_velocity")))
     chosen = np.isin(whole.disc, [2, 5])
-    for one, other in zip(whole, some, strict=True):
-        assert one is None is other or np.array_equal(one[chosen], other)
+    for each, other in zip(whole, some, strict=True):
+        assert each is None is other or np.array_equal(each[chosen], other)
     assert np.array_equal(few.end, whole.end[whole.disc == 7])
     assert np.array_equal(few.new_velocity, whole.new_velocity[whole.disc == 7])
     assert few.disc is None is few.velocity
     times = [0.0, log.end_time / 2, log.end_time]
-    frame, found = log.to_pandas("flights", times=times), Flights.joined(log.flights(times))
-    assert frame["end_vy"].tolist() == found.end_velocity[:, 1].tolist()
-    assert frame["kind"].isna().tolist() == (found.kind == NO_EVENT).tolist()
-    assert (frame["kind"] == "disc").tolist() == (found.kind == Kind.DISC).tolist()
+    frame, result = log.to_pandas("flights", times=times), Flights.joined(log.flights(times))
+    assert frame["end_vy"].tolist() == result.end_velocity[:, 1].tolist()
+    assert frame["kind"].isna().tolist() == (result.kind == NO_EVENT).tolist()
+    assert (frame["kind"] == "disc").tolist() == (result.kind == Kind.DISC).tolist()
     assert set(log.to_pandas("flights", disc=3)["disc"]) == {3}
 
 

@@ -16,9 +16,9 @@ def test_states_pass_from_each_event_of_a_disc_to_its_next():
     def before(times, discs):
         rows = {"time": np.array(times, float), "disc": np.array(discs, np.uint32)}
         rows["velocity"] = np.column_stack((rows["time"], rows["disc"]))
-        found = join.pass_on(rows)
-        assert found["velocity"][:, 0].tolist() == found["time"].tolist()
-        return found["time"].tolist()
+        result = join.pass_on(rows)
+        assert result["velocity"][:, 0].tolist() == result["time"].tolist()
+        return result["time"].tolist()
 
     assert before([1, 2, 3, 4, 4], [1, 65_537, 1, 0, 1]) == [0, 0, 1, 0, 3]
     assert before([], []) == []

@@ -43,8 +43,8 @@ def test_states_are_those_of_the_engine_at_any_time_and_at_events(path):
                 assert np.array_equal(state.angular_velocity, discs["angular_velocity/value"][step])
         times = np.linspace(0, log.end_time, 7)
         for time, frame in zip(times, log.frames(times), strict=True):
-            for one, other in zip(frame, log.state_at(time), strict=True):
-                assert np.array_equal(one, other) or one is other is None
+            for each, other in zip(frame, log.state_at(time), strict=True):
+                assert np.array_equal(each, other) or each is other is None
         first = len(log) // 2
         for block in log.chunks(None, first, first + 20):
             for row in range(20):

@@ -68,10 +68,10 @@ def test_straight_flight_to_an_arc(name):
             away = nearest_points(np.array([[x, y]]), points[0], points[2], arc_through(*points)) - (x, y)
             if np.hypot(*away.T) < 0.3:
                 continue
-            found = arc_contact(disc, 0, *wall(points), None, None, None, NO_IMAGES)
+            result = arc_contact(disc, 0, *wall(points), None, None, None, NO_IMAGES)
             expected, condition = min(contacts(disc, points), default=(NEVER, 0))
             met += expected < NEVER
-            assert abs(found - expected) <= 16 * U * (8 * condition + expected) or found == expected == NEVER
+            assert abs(result - expected) <= 16 * U * (8 * condition + expected) or result == expected == NEVER
     assert met > (120 if name == "round" else 60)
 
 
@@ -89,13 +89,13 @@ def test_flight_on_a_parabola_to_an_arc(name):
 
         if distance(np.zeros(1))[0] < 0.3:
             continue
-        found = arc_contact(disc, 0, *wall(points), gravity, None, None, NO_IMAGES)
-        times = np.linspace(0, min(found, 30), 400)
+        result = arc_contact(disc, 0, *wall(points), gravity, None, None, NO_IMAGES)
+        times = np.linspace(0, min(result, 30), 400)
         assert distance(times).min() > 0.3 - 1e-12
-        if found < NEVER:
+        if result < NEVER:
             met += 1
-            assert distance(np.array([found]))[0] == pytest.approx(0.3, abs=1e-12)
-            assert distance(np.array([found + 1e-6]))[0] < 0.3
+            assert distance(np.array([result]))[0] == pytest.approx(0.3, abs=1e-12)
+            assert distance(np.array([result + 1e-6]))[0] < 0.3
     assert met > (60 if name == "round" else 20)
 
 

@@ -27,20 +27,20 @@ def combine(columns, found, order):
 
 
 def combined(columns):
-    found, order = np.zeros((7, *columns.shape[1:]), columns.dtype), np.zeros(5, np.bool_)
-    product = combine(columns, found, order)
-    return found, order.tolist(), product
+    result, order = np.zeros((7, *columns.shape[1:]), columns.dtype), np.zeros(5, np.bool_)
+    product = combine(columns, result, order)
+    return result, order.tolist(), product
 
 
 @pytest.mark.parametrize(
     "pair", [((2.0, 1e-17), (-3.0, 2e-17)), ((-1.5, 0.0), (0.1, -1e-18)), ((4.0, 1e-17), (4.0, 3e-17))]
 )
 def test_pairs_have_the_operators_of_numbers(pair):
-    found, order, product = combined(np.array(pair))
+    result, order, product = combined(np.array(pair))
     a, b = pair
     sums = [getattr(double_double, name)(a, b) for name in ("add", "subtract", "multiply", "divide")]
     square = double_double.root(double_double.multiply(a, a))
-    assert [tuple(row) for row in found.tolist()] == [*sums, square, max(a, b), (0.25, 0.0)]
+    assert [tuple(row) for row in result.tolist()] == [*sums, square, max(a, b), (0.25, 0.0)]
     assert order == [a < b, a > b, a <= b, a == b, True]
     assert product == sums[2][0]
 
@@ -48,9 +48,9 @@ def test_pairs_have_the_operators_of_numbers(pair):
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_floats_of_every_length_keep_it(dtype):
     a, b = values = np.array([0.7, -1.3], dtype)
-    found, order, product = combined(values)
+    result, order, product = combined(values)
     expected = [a + b, a - b, a * b, a / b, np.sqrt(a * a), max(a, b), 0.25]
-    assert found.tolist() == np.array(expected, dtype).tolist()
+    assert result.tolist() == np.array(expected, dtype).tolist()
     assert order == [False, True, False, False, True]
     assert product == a * b
 

@@ -49,5 +49,5 @@ def test_collisions_of_all_discs_per_length():
         ((200.0, 1.0), (False, False), 2 / math.pi / 199),  # no room for two: the others are left out
         ((200.0, 1.0), (False, True), 2 / math.pi * (1 / 199 + 1)),
     ):
-        found = collisions_per_length(10, 0.4, 0.5, 0.2, size, periodic)
-        assert found == pytest.approx(10 * (pairs + sides), rel=1e-14)
+        result = collisions_per_length(10, 0.4, 0.5, 0.2, size, periodic)
+        assert result == pytest.approx(10 * (pairs + sides), rel=1e-14)

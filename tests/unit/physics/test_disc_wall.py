@@ -24,8 +24,8 @@ def test_arrival():
         for position, target, speed in draw.uniform(0.1, 10, (200, 3)):
             velocity = speed if target > position else -speed
             expected = (exact(target) - exact(position)) / exact(velocity)
-            found = arrival_delay(np.float64(position), np.float64(velocity), np.float64(target))
-            assert abs(found - expected) <= gamma(2) * expected
+            result = arrival_delay(np.float64(position), np.float64(velocity), np.float64(target))
+            assert abs(result - expected) <= gamma(2) * expected
     assert arrival_delay(np.float64(1.0), np.float64(2.0), np.float64(0.5)) == 0.0  # beyond it by rounding
     assert arrival_delay(np.float64(1.0), np.float64(0.0), np.float64(2.0)) == NEVER
 
@@ -40,12 +40,12 @@ def test_contact_in_straight_flight():
                 position, velocity = map(exact, ((disc.x, disc.vx), (disc.y, disc.vy))[side // 2])
                 target = 10 - exact(disc.r) if side % 2 else exact(disc.r)
                 delay = (target - position) / velocity
-                found = side_contact(disc, side, 10.0, None)
+                result = side_contact(disc, side, 10.0, None)
                 if (velocity > 0) != bool(side % 2):
-                    assert found == NEVER
+                    assert result == NEVER
                 else:
                     error = gamma(1) * target / abs(velocity) + gamma(3) * delay
-                    assert abs(found - (exact(disc.t) + delay)) <= error + gamma(1) * (disc.t + delay)
+                    assert abs(result - (exact(disc.t) + delay)) <= error + gamma(1) * (disc.t + delay)
 
 
 @pytest.mark.parametrize("side", range(4))
@@ -58,15 +58,15 @@ def test_contact_under_gravity(side):
     with mpmath.workdps(50):
         for _ in range(100):
             disc, gravity = some_disc(draw), Gravity(*draw.normal(size=2))
-            found = side_contact(disc, side, 10.0, gravity)
-            if found == NEVER:
+            result = side_contact(disc, side, 10.0, gravity)
+            if result == NEVER:
                 continue
             met += 1
             x, v, a = map(exact, ((disc.x, disc.vx, gravity.x), (disc.y, disc.vy, gravity.y))[side // 2])
-            t = exact(found) - exact(disc.t)
+            t = exact(result) - exact(disc.t)
             target = 10 - exact(disc.r) if side % 2 else exact(disc.r)
             moved, slope = abs(v * t) + abs(a * t * t), abs(v) + abs(a * t)
-            error = gamma(11) * (abs(x) + target + moved) + gamma(1) * exact(found) * slope
+            error = gamma(11) * (abs(x) + target + moved) + gamma(1) * exact(result) * slope
             assert abs(x + v * t + a * t * t / 2 - target) <= error
     assert met > 30
 

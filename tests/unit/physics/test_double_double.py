@@ -39,10 +39,10 @@ def test_sums_and_products_of_floats_lose_nothing(seed):
 def test_arithmetic_keeps_32_digits(name):
     operation = {"add": "__add__", "subtract": "__sub__", "multiply": "__mul__", "divide": "__truediv__"}[name]
     for a, b in zip(numbers(1000, 1), numbers(1000, 2), strict=True):
-        found = getattr(double_double, name)(a, b)
+        result = getattr(double_double, name)(a, b)
         true = getattr(exact(a), operation)(exact(b))
-        assert abs(exact(found) - true) <= 10 * ULP * abs(true)
-        assert found[0] == found[0] + found[1]
+        assert abs(exact(result) - true) <= 10 * ULP * abs(true)
+        assert result[0] == result[0] + result[1]
 
 
 def test_what_nearly_cancels_keeps_its_digits():

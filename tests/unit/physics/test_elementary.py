@@ -20,9 +20,9 @@ def random_numbers(number):
     return [*(np.maximum(whole, 1) * 2.0**-53).tolist(), 2.0**-53, 1.0]
 
 
-def units(found, expected):
+def units(result, expected):
     """Distance of a float from an exact number in units in its last place; 0 where both are 0."""
-    return float(abs(mpmath.mpf(float(found)) - expected) / math.ulp(float(expected))) if expected else abs(found)
+    return float(abs(mpmath.mpf(float(result)) - expected) / math.ulp(float(expected))) if expected else abs(result)
 
 
 @pytest.mark.interpreted
@@ -42,8 +42,8 @@ def test_cosine_and_sine_are_within_one_unit_in_the_last_place_and_quarter_turns
             exact = mpmath.cospi(2 * mpmath.mpf(turns)), mpmath.sinpi(2 * mpmath.mpf(turns))
             worst = [max(pair) for pair in zip(worst, map(units, cos_sin_turns(turns), exact), strict=True)]
         assert max(worst) < 1
-    found = [tuple(map(float, cos_sin_turns(quarters / 4))) for quarters in range(5)]
-    assert found == [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)]
+    actual = [tuple(map(float, cos_sin_turns(quarters / 4))) for quarters in range(5)]
+    assert actual == [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 0)]
 
 
 @pytest.mark.interpreted
@@ -66,10 +66,10 @@ def all_of(numbers, found):
 def test_compiled_code_gives_the_same_bits():
     """No operation is fused with another or put in another order."""
     numbers = np.array(random_numbers(FEW))
-    found, python = np.empty((len(numbers), 5)), np.empty((len(numbers), 5))
-    all_of(numbers, found)
+    result, python = np.empty((len(numbers), 5)), np.empty((len(numbers), 5))
+    all_of(numbers, result)
     getattr(all_of, "py_func", all_of)(numbers, python)
-    assert found.tobytes() == python.tobytes()
+    assert result.tobytes() == python.tobytes()
 
 
 def extended(numbers):
@@ -87,9 +87,9 @@ def extended(numbers):
 def test_a_million_arguments():
     """Within one unit in the last place, less the error of the reference, which is compared with `mpmath`."""
     numbers = np.array(random_numbers(MANY))
-    found, expected = np.empty((len(numbers), 5)), extended(numbers)
-    all_of(numbers, found)
-    assert (np.abs(found[:, :3].T - expected) / np.spacing(np.abs(expected).astype(float))).max() < 1 - 2.0**-9
+    result, expected = np.empty((len(numbers), 5)), extended(numbers)
+    all_of(numbers, result)
+    assert (np.abs(result[:, :3].T - expected) / np.spacing(np.abs(expected).astype(float))).max() < 1 - 2.0**-9
     with mpmath.workprec(120):
         for k in range(0, MANY, 1000):
             x = mpmath.mpf(numbers[k])

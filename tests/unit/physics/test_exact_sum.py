@@ -81,8 +81,8 @@ def test_stored_and_restored(terms, more, typical):
     ((high, low, k),) = stored(sums).tolist()
     assert 0 <= low < 2**63
     assert values(sums)[0] == float(Fraction(high * 2**63 + low) * Fraction(2) ** k)
-    for one in (sums, again):
-        add_each(one[0], np.array(more) * 2.0**k)
+    for each in (sums, again):
+        add_each(each[0], np.array(more) * 2.0**k)
     assert again.tobytes() == sums.tobytes()
 
 

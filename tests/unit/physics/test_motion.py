@@ -136,13 +136,13 @@ def test_a_fall_that_is_slowed_down():
         for _ in range(300):
             height, pull = 10.0 ** draw.uniform(-3, 3, 2)
             velocity = -math.sqrt(2 * pull * height) * (1 + draw.choice([-1, 1]) * 10.0 ** draw.uniform(-16, 0))
-            found = time_to_plane(height, velocity, pull)
+            result = time_to_plane(height, velocity, pull)
             h, v, a = map(exact, (height, velocity, pull))
-            if found == NEVER:
+            if result == NEVER:
                 assert v * v - 2 * a * h < gamma(4) * v * v
                 continue
             met += 1
-            t = exact(found)
+            t = exact(result)
             terms = abs(h) + abs(v * t) + abs(a * t * t / 2)
             assert abs(h + v * t + a * t * t / 2) <= gamma(8) * terms
     assert met > 100

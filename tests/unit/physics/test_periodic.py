@@ -43,11 +43,11 @@ def test_the_nearest_image():
     """The image at half a length or less; a product and a difference round: two roundings of the distance."""
     draw = np.random.default_rng(1)
     for distance in draw.uniform(-20, 20, 300):
-        found = nearest_image(distance, LX, True)
+        result = nearest_image(distance, LX, True)
         images = [Fraction(distance) - k * Fraction(LX) for k in range(-4, 5)]
         nearest = min(images, key=abs)
         if abs(abs(nearest) - Fraction(LX) / 2) > 1e-12:
-            assert abs(Fraction(found) - nearest) <= gamma(2) * abs(distance)
+            assert abs(Fraction(result) - nearest) <= gamma(2) * abs(distance)
         assert nearest_image(distance, LX, False) == distance
     assert nearest_image(LX / 2, LX, True) == LX / 2  # as near both ways: stays
 

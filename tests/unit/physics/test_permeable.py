@@ -36,12 +36,12 @@ def test_a_disc_bounces_where_it_touches_or_where_its_centre_is_back(gravity):
             r, an = draw.uniform(0.1, 1.0), gravity * an
             if abs(abs(d) / r - 1) < 0.01:
                 continue
-            found = closed_face_delay(d, vn, an, r)
+            result = closed_face_delay(d, vn, an, r)
             times = {t: h for h in (exact(r), exact(0)) for t in descents(d, vn, an, h)}
             if not times:
-                assert found == NEVER
+                assert result == NEVER
                 continue
-            t, height = exact(found), times[min(times)]
+            t, height = exact(result), times[min(times)]
             met[height > 0] += 1
             there = exact(d) + exact(vn) * t + exact(an) * t * t / 2 - height
             assert abs(there) <= gamma(9) * (abs(exact(d)) + height + abs(exact(vn) * t) + abs(exact(an) * t * t))

@@ -64,20 +64,20 @@ def test_contact(side, falls):
     with mpmath.workdps(50):
         for _ in range(150):
             piston, disc, gravity = before_meeting(draw, side, falls)
-            found = piston_contact(disc, piston, gravity)
-            if found == NEVER:
+            result = piston_contact(disc, piston, gravity)
+            if result == NEVER:
                 continue
             met += 1
             pull = gravity[piston.axis] if gravity else 0.0
             own = (disc.x, disc.vx) if piston.axis == 0 else (disc.y, disc.vy)
             sign = outward(piston, piston.x - own[0])
             assert sign == (1 if piston.x > 5 else -1)
-            place, speed, terms = motion(*own, pull, exact(found) - exact(disc.t))
-            piston_place, piston_speed, more = motion(piston.x, piston.v, piston.a, exact(found) - exact(piston.t))
+            place, speed, terms = motion(*own, pull, exact(result) - exact(disc.t))
+            piston_place, piston_speed, more = motion(piston.x, piston.v, piston.a, exact(result) - exact(piston.t))
             error = gamma(16) * (terms + more + exact(disc.r))
-            error += gamma(1) * exact(found) * (abs(speed) + abs(piston_speed))
+            error += gamma(1) * exact(result) * (abs(speed) + abs(piston_speed))
             distance = sign * (piston_place - place)
-            assert found >= max(disc.t, piston.t)
+            assert result >= max(disc.t, piston.t)
             assert abs(distance - exact(disc.r)) <= error
     assert met > 40
 
@@ -96,12 +96,12 @@ def test_what_surely_misses_it(side, falls):
     met = told = 0
     for _ in range(300):
         piston, disc, gravity = before_meeting(draw, side, falls)
-        found = piston_contact(disc, piston, gravity)
-        if found < NEVER:
+        result = piston_contact(disc, piston, gravity)
+        if result < NEVER:
             met += 1
-            assert not misses_piston_until(disc, piston, gravity, found)
-            assert not misses_piston_until(disc, piston, gravity, np.nextafter(found, 0))
-            told += misses_piston_until(disc, piston, gravity, found * (1 - 1e-8))
+            assert not misses_piston_until(disc, piston, gravity, result)
+            assert not misses_piston_until(disc, piston, gravity, np.nextafter(result, 0))
+            told += misses_piston_until(disc, piston, gravity, result * (1 - 1e-8))
         elif not falls:
             assert misses_piston_until(disc, piston, gravity, 0.5 * NEVER)
     assert met > 100

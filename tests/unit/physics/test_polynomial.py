@@ -30,15 +30,15 @@ def zeros_after_0(coefficients, last):
         return []
     degree = len(coefficients) - 1
     turns = zeros_after_0([c * (degree - k) for k, c in enumerate(coefficients[:-1])], last)
-    found = []
+    actual = []
     for low, high in itertools.pairwise([mpmath.mpf(0), *turns, last]):
         rises = value(coefficients, low) < 0
         if rises == (value(coefficients, high) > 0):
             for _ in range(140):
                 middle = (low + high) / 2
                 low, high = (low, middle) if (value(coefficients, middle) > 0) == rises else (middle, high)
-            found.append(high)
-    return found
+            actual.append(high)
+    return actual
 
 
 def wide(draw, n):
@@ -51,11 +51,11 @@ def test_cubic_and_parabola():
     with mpmath.workdps(50):
         for _ in range(300):
             *coefficients, t = wide(draw, 5)
-            found, high = cubic(*coefficients, t), [exact(c) for c in coefficients]
-            assert abs(found - value(high, exact(t))) <= gamma(6) * terms(high, exact(t))
+            result, high = cubic(*coefficients, t), [exact(c) for c in coefficients]
+            assert abs(result - value(high, exact(t))) <= gamma(6) * terms(high, exact(t))
             high = [high[2] / 2, high[1], high[0]]
-            found = parabola(*coefficients[:3], t)
-            assert abs(found - value(high, exact(t))) <= gamma(4) * terms(high, exact(t))
+            result = parabola(*coefficients[:3], t)
+            assert abs(result - value(high, exact(t))) <= gamma(4) * terms(high, exact(t))
 
 
 @pytest.mark.parametrize("closeness", [0, 4, 8, 12, 15, 16])
@@ -108,12 +108,12 @@ def test_turns_of_a_cubic():
                 continue
             scale = draw.choice([-1, 1]) * 10.0 ** draw.uniform(-3, 3)
             coefficients = scale * np.poly(zeros)
-            found = cubic_extrema(*coefficients, last)
+            result = cubic_extrema(*coefficients, last)
             inside = zeros[(zeros > 0) & (zeros < last)]
-            assert list(found[len(inside) :]) == [last] * (3 - len(inside))
-            assert found[: len(inside)] == pytest.approx(inside, rel=1e-9)
+            assert list(result[len(inside) :]) == [last] * (3 - len(inside))
+            assert result[: len(inside)] == pytest.approx(inside, rel=1e-9)
             high = [exact(c) for c in coefficients]
-            for t in map(exact, found[: len(inside)]):
+            for t in map(exact, result[: len(inside)]):
                 assert abs(value(high, t)) <= gamma(12) * terms(high, t)
 
 
@@ -149,12 +149,12 @@ def test_first_descent(strength):
             y = 0.5 * r * math.sin(angle) - vy * after - 0.5 * gy * after**2
             if math.hypot(x, y) < r:
                 continue
-            found = first_contact_root(x, y, vx, vy, gx, gy, r, -1.0)
+            result = first_contact_root(x, y, vx, vy, gx, gy, r, -1.0)
             met += 1
             for time, slope in exact_descents(x, y, vx, vy, gx, gy, r):
-                assert abs(found - time) <= 2 * rounding_of_gap(x, y, vx, vy, gx, gy, r, found) / abs(slope)
-                found = first_contact_root(x, y, vx, vy, gx, gy, r, found)
-            assert found == NEVER
+                assert abs(result - time) <= 2 * rounding_of_gap(x, y, vx, vy, gx, gy, r, result) / abs(slope)
+                result = first_contact_root(x, y, vx, vy, gx, gy, r, result)
+            assert result == NEVER
     assert met > 30
 
 
@@ -173,7 +173,7 @@ def test_descents_that_have_begun_or_pass_by():
 def test_the_gap_near_contact_keeps_its_digits():
     """From the place, not from expanded terms: a radius of 1e-6 at a distance of 1 after t = 1."""
     with mpmath.workdps(50):
-        found = gap(-1.0, 0.0, 1.0 + 1e-6, 0.0, 0.0, 0.0, 1e-6, 1.0)
+        result = gap(-1.0, 0.0, 1.0 + 1e-6, 0.0, 0.0, 0.0, 1e-6, 1.0)
         x = exact(-1.0) + exact(1.0 + 1e-6)
-        assert abs(found - (x * x - exact(1e-6) ** 2)) <= gamma(3) * 2e-12
-    assert math.isfinite(found)
+        assert abs(result - (x * x - exact(1e-6) ** 2)) <= gamma(3) * 2e-12
+    assert math.isfinite(result)

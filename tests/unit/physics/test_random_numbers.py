@@ -12,8 +12,8 @@ def test_splitmix64_gives_its_published_numbers_and_the_interval_excludes_zero()
     """For seed 1234567, as printed with the reference implementation (Vigna, https://prng.di.unimi.it/splitmix64.c)."""
     expected = [6457827717110365317, 3203168211198807973, 9817491932198370423, 4593380528125082431]
     with np.errstate(over="ignore"):
-        found = [int(mix(np.uint64(1234567) + np.uint64(k) * GOLDEN)) for k in range(1, 5)]
-    assert found == expected
+        actual = [int(mix(np.uint64(1234567) + np.uint64(k) * GOLDEN)) for k in range(1, 5)]
+    assert actual == expected
     assert unit_interval(np.uint64(0)) == 2.0**-53
     assert unit_interval(np.uint64(2**64 - 1)) == 1.0
 

@@ -45,8 +45,8 @@ def discs(*rows):
 @pytest.mark.parametrize("gravity", [None, Gravity(0.7, -1.3)])
 def test_a_flight_is_an_integral(gravity):
     g = gravity or (0.0, 0.0)
-    found = kinetic_flow(2.5, 1.1, -0.4, 1.7, gravity)
-    for part, (a, b) in zip(found, ((0, 0), (0, 1), (1, 1)), strict=True):
+    result = kinetic_flow(2.5, 1.1, -0.4, 1.7, gravity)
+    for part, (a, b) in zip(result, ((0, 0), (0, 1), (1, 1)), strict=True):
         v = [lambda t, k=k: (1.1, -0.4)[k] + g[k] * t for k in (a, b)]
         expected = quad(lambda t: 2.5 * v[0](t) * v[1](t), 0, 1.7, epsabs=1e-14)[0]  # noqa: B023
         assert part == pytest.approx(expected, rel=1e-13, abs=1e-15)

@@ -17,7 +17,7 @@ def differences(motion, state):
     for k in range(len(state)):
         ends = []
         for sign in (1, -1):
-            moved = [mpmath.mpf(one) for one in state]
+            moved = [mpmath.mpf(each) for each in state]
             moved[k] += sign * STEP
             ends.append(motion(moved))
         columns.append([float((a - b) / (2 * STEP)) for a, b in zip(*ends, strict=True)])
@@ -48,7 +48,7 @@ def test_flight_collision_and_flight(masses):
         x, y, vx, vy = (mpmath.mpf(start[k]) - start[4 + k] for k in range(4))
         b, c, v2 = x * vx + y * vy, x * x + y * y - 1, vx * vx + vy * vy
         time = c / (-b + mpmath.sqrt(b * b - v2 * c))
-        contact = [float(one) for one in (x + vx * time, y + vy * time, vx, vy)]
+        contact = [float(each) for each in (x + vx * time, y + vy * time, vx, vy)]
         time = float(time)
     deviations = np.eye(8).reshape(2, 4, 8)
     for i in (0, 1):

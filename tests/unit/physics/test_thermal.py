@@ -94,10 +94,10 @@ def test_which_walls_emit_and_on_what_their_random_numbers_depend():
     collide_with_wall(mirrored, 0, 0.0, 1.0, 0, None, None, thermal)
     assert (cold.vx, cold.vy) == (0.0, 0.0)
     assert (mirrored.vx, mirrored.vy) == (1.0, 2.0)
-    one, other = walls(1.0), walls(9.0, 2.0, discs=3)
-    one.emissions[:] = 3
+    result, other = walls(1.0), walls(9.0, 2.0, discs=3)
+    result.emissions[:] = 3
     other.emissions[:] = [8, 3, 0]
-    assert [uniform(one, 1, draw) for draw in range(3)] == [uniform(other, 1, draw) for draw in range(3)]
-    assert uniform(one, 1, 0) == uniform(one, 1, 0)
+    assert [uniform(result, 1, draw) for draw in range(3)] == [uniform(other, 1, draw) for draw in range(3)]
+    assert uniform(result, 1, 0) == uniform(result, 1, 0)
     numbers = {uniform(walls(1.0, seed=seed), own, draw) for seed in range(3) for own in range(3) for draw in range(3)}
     assert len(numbers) == 27

@@ -71,12 +71,12 @@ def test_first_collisions_are_drawn_as_the_others():
 def test_numbers_are_not_those_of_thermal_walls():
     """Neither of the same disc's emissions, nor of each other: the thermostat has other draws of the eight."""
     thermostat, thermal = bath(), Thermal(np.ones(4), np.uint64(7), np.zeros(4, np.uint64))
-    found = set()
+    result = set()
     for number in range(20):
         thermostat.number[:] = thermal.emissions[:] = number
-        found |= {uniform(thermostat, own, draw) for own in range(4) for draw in range(3, 8)}
-        found |= {uniform_at_wall(thermal, own, draw) for own in range(4) for draw in range(3)}
-    assert len(found) == 20 * 4 * 8
+        result |= {uniform(thermostat, own, draw) for own in range(4) for draw in range(3, 8)}
+        result |= {uniform_at_wall(thermal, own, draw) for own in range(4) for draw in range(3)}
+    assert len(result) == 20 * 4 * 8
 
 
 def test_times_keep_their_digits_from_epoch_to_epoch():

@@ -40,13 +40,13 @@ def test_straight_flight_to_the_body():
         for d, s, vn, vt, r in zip(*draw.normal(size=(4, 300)), draw.uniform(0.01, 0.2, 300), strict=True):
             if abs(d) < r:
                 continue
-            found = straight_body_delay(d, s, vn, vt, r, 2.0)
+            result = straight_body_delay(d, s, vn, vt, r, 2.0)
             expected = (abs(exact(d)) - exact(r)) / abs(exact(vn))
             foot = exact(s) + exact(vt) * expected
             if d * vn > 0 or not 0 < foot < 2:
-                assert found == NEVER
+                assert result == NEVER
             else:
-                assert abs(found - expected) <= gamma(2) * expected
+                assert abs(result - expected) <= gamma(2) * expected
     assert straight_body_delay(0.1, 1.0, -1.0, 0.0, 0.2, 2.0) == 0.0  # touches or overlaps, and approaches
     assert straight_body_delay(0.1, 1.0, 1.0, 0.0, 0.2, 2.0) == NEVER
     assert straight_body_delay(1.0, 1.0, 0.0, 1.0, 0.2, 2.0) == NEVER
@@ -87,14 +87,14 @@ def test_a_parabola_to_the_body():
             r = 0.1
             if abs(d) < 1.01 * r:
                 continue
-            found = accelerated_body_delay(d, s, vn, vt, an, at, r, 2.0)
+            result = accelerated_body_delay(d, s, vn, vt, an, at, r, 2.0)
             times = descents_to_face(d, s, vn, vt, an, at, r, 2.0)
             if not times:
-                assert found == NEVER
+                assert result == NEVER
                 continue
             met += 1
-            assert found == pytest.approx(float(times[0]), rel=1e-9)  # of all, the first
-            t = exact(found)
+            assert result == pytest.approx(float(times[0]), rel=1e-9)  # of all, the first
+            t = exact(result)
             height = abs(exact(d) + exact(vn) * t + exact(an) * t * t / 2) - exact(r)
             terms = abs(exact(d)) + exact(r) + abs(exact(vn) * t) + abs(exact(an) * t * t)
             assert abs(height) <= gamma(9) * terms
@@ -123,17 +123,17 @@ def test_contact_with_a_segment(gravity):
             disc = body(x=x, y=y, vx=vx, vy=vy, r=draw.uniform(0.05, 0.4), m=1.0, t=draw.uniform(0, 1))
             if distance_to(wall, exact(x), exact(y)) < 1.5 * disc.r:
                 continue
-            found = segment_contact(disc, 0, wall, None, gravity, None, None, NO_IMAGES)
+            result = segment_contact(disc, 0, wall, None, gravity, None, None, NO_IMAGES)
             gx, gy = map(exact, gravity or (0.0, 0.0))
 
             def place(t, disc=disc, gx=gx, gy=gy):
                 return [exact(p) + exact(v) * t + g * t * t / 2
                         for p, v, g in ((disc.x, disc.vx, gx), (disc.y, disc.vy, gy))]  # fmt: skip
 
-            last = exact(found) - exact(disc.t) if found < NEVER else mpmath.mpf(30)
+            last = exact(result) - exact(disc.t) if result < NEVER else mpmath.mpf(30)
             gaps = [distance_to(wall, *place(last * k / 200)) - exact(disc.r) for k in range(200)]
             assert min(gaps) > 0
-            if found == NEVER:
+            if result == NEVER:
                 missed += 1
                 continue
             met += 1
@@ -176,19 +176,19 @@ def test_straight_flight_to_an_end():
         for x, y, vx, vy in draw.normal(size=(400, 4)):
             if math.hypot(x, y) < 0.3:
                 continue
-            found = straight_end_delay(x, y, body(vx=vx, vy=vy, r=0.3), 0.3)
+            result = straight_end_delay(x, y, body(vx=vx, vy=vy, r=0.3), 0.3)
             a, b, p, q, r = map(exact, (x, y, vx, vy, 0.3))
             square, approach = p * p + q * q, a * p + b * q
             D = square * r * r - (p * b - q * a) ** 2
             if D <= 0 or approach >= 0:
-                assert found == NEVER or abs(D) < gamma(8) * square * (a * a + b * b)
+                assert result == NEVER or abs(D) < gamma(8) * square * (a * a + b * b)
                 continue
             met += 1
             delay, condition = (-approach - mpmath.sqrt(D)) / square, r / mpmath.sqrt(D)
             largest = abs(a) + abs(b) + r
-            assert abs(found - delay) <= 4 * U * (largest * condition + delay)
+            assert abs(result - delay) <= 4 * U * (largest * condition + delay)
             if x < 0:  # beyond the end of a wall that goes on along x
-                assert end_delay(x, y, 0, y, x, vy, vx, 0.0, 0.0, 9.0, body(vx=vx, vy=vy, r=0.3), 0.3, None) == found
+                assert end_delay(x, y, 0, y, x, vy, vx, 0.0, 0.0, 9.0, body(vx=vx, vy=vy, r=0.3), 0.3, None) == result
     assert met > 30
 
 

@@ -29,9 +29,9 @@ def test_two_digits_of_the_error(value, error, shown):
 
 
 def test_tables_and_sentences_have_the_same_digits():
-    found = Estimate(1.898934, 0.00692, 16.0, theory=1.8978612, theory_error=0.00099)
-    ((_, *cells),) = estimates("t", [("rate", found)]).shown
+    result = Estimate(1.898934, 0.00692, 16.0, theory=1.8978612, theory_error=0.00099)
+    ((_, *cells),) = estimates("t", [("rate", result)]).shown
     assert cells == ["1.8989", "0.0069", "16", "1.89786", "0.00099", "+0.15"]
-    assert format_estimate(found) == "1.899(7)"
+    assert format_estimate(result) == "1.899(7)"
     series = time_series("t", {"t": np.array([1.0]), "P": np.array([1.898934]), "± s.e.": np.array([0.00692])})
     assert series.shown == [["1", "1.8989", "0.0069"]]

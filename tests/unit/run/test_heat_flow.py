@@ -42,8 +42,8 @@ def test_the_sums_are_those_of_the_events(whole):
         currents = Currents()
         stream(log, time, [currents])
         for name, part in SUMS.items():
-            found, expected = np.diff(log.observables[name][1], axis=0), currents.flow[:, part, HEAT_X : HEAT_Y + 1]
-            assert np.abs(found - expected).max() < 1e-11 * np.abs(expected).max()
+            result, expected = np.diff(log.observables[name][1], axis=0), currents.flow[:, part, HEAT_X : HEAT_Y + 1]
+            assert np.abs(result - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 @pytest.mark.slow

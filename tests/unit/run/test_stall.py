@@ -169,9 +169,9 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1, region = [0
 
 
 def notices(text, path, *overrides):
-    found = []
-    simulate(parse_scene(text, overrides=overrides), path, on_progress=lambda progress: found.append(progress.notice))
-    return [notice for notice in found if notice]
+    actual = []
+    simulate(parse_scene(text, overrides=overrides), path, on_progress=lambda progress: actual.append(progress.notice))
+    return [notice for notice in actual if notice]
 
 
 def test_a_disc_that_keeps_the_run_busy_is_told_once_and_a_gas_never_is(tmp_path, monkeypatch):

@@ -68,12 +68,12 @@ def test_a_start_from_a_checkpoint_goes_on_bit_for_bit(tmp_path, effect):
     assert len(expected["time"]) > 1000
     output_of("scene", tmp_path / "old.h5", "--at", repr(at), "-o", tmp_path / "next.toml")
     with logged(load_scene(tmp_path / "next.toml", ["run.events=1500"]), tmp_path / "new.h5") as log:
-        found = rows_of(log)
-    n = min(len(found["time"]), len(expected["time"])) - 10
+        result = rows_of(log)
+    n = min(len(result["time"]), len(expected["time"])) - 10
     for name in ("disc", "partner", "kind", "position", "velocity", "angular_velocity"):
-        if name in found and not (effect == "wall" and name == "partner"):  # the first wall has been removed
-            assert np.array_equal(found[name][:n], expected[name][:n]), name
-    assert np.abs(found["time"][:n] + at - expected["time"][:n]).max() <= 2**-51 * expected["time"][n]
+        if name in result and not (effect == "wall" and name == "partner"):  # the first wall has been removed
+            assert np.array_equal(result[name][:n], expected[name][:n]), name
+    assert np.abs(result["time"][:n] + at - expected["time"][:n]).max() <= 2**-51 * expected["time"][n]
 
 
 def test_a_start_from_the_end_has_the_same_next_events(tmp_path, old):
@@ -87,10 +87,10 @@ def test_a_start_from_the_end_has_the_same_next_events(tmp_path, old):
     longer.write_bytes(old.read_bytes())
     resume(longer, ["run.events=4020"])
     with open_log(tmp_path / "new.h5") as new, open_log(longer) as log, open_log(old) as before:
-        found, expected, end = rows_of(new), rows_of(log, len(before)), before.end_time
-    assert np.array_equal(found["disc"], expected["disc"])
-    assert np.array_equal(found["partner"], expected["partner"])
-    assert np.abs(found["time"] + end - expected["time"]).max() < 1e-12
+        result, expected, end = rows_of(new), rows_of(log, len(before)), before.end_time
+    assert np.array_equal(result["disc"], expected["disc"])
+    assert np.array_equal(result["partner"], expected["partner"])
+    assert np.abs(result["time"] + end - expected["time"]).max() < 1e-12
 
 
 def test_the_new_log_needs_the_old_one_no_more(tmp_path):
@@ -180,9 +180,9 @@ def test_a_reversed_gas_returns(tmp_path, old):
         before, after = log.end_time - 0.1, log.end_time
         expected = log.state_at(before)
     with logged(parse_scene(f"{GAS}[start]\nlog = '{old}'\nvelocities = 'reversed'\n"), tmp_path / "new.h5") as log:
-        found = log.state_at(after - before)
-    assert np.abs(found.position - expected.position).max() < 1e-11
-    assert np.abs(found.velocity + expected.velocity).max() < 1e-11
+        result = log.state_at(after - before)
+    assert np.abs(result.position - expected.position).max() < 1e-11
+    assert np.abs(result.velocity + expected.velocity).max() < 1e-11
 
 
 def test_methods_agree_from_a_start(tmp_path, old):

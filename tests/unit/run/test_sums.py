@@ -65,8 +65,8 @@ def test_the_same_without_events(whole, tmp_path):
         assert a.observables.keys() == b.observables.keys() >= {*SUMS, "face_hits"}
         for name, (_, values) in a.observables.items():
             assert np.array_equal(values, b.observables[name][1]), name
-        for one, same in zip(a.checkpoints, b.checkpoints, strict=True):
-            assert all(np.array_equal(entry, same.arrays[name]) for name, entry in one.arrays.items())
+        for each, same in zip(a.checkpoints, b.checkpoints, strict=True):
+            assert all(np.array_equal(entry, same.arrays[name]) for name, entry in each.arrays.items())
 
 
 def test_brute_force_has_the_same_sums(whole, tmp_path):
@@ -109,9 +109,9 @@ def test_the_sums_are_those_of_the_events(whole):
         falls = any(log.gravity)  # then the velocity changes between events too, which these tallies take for impulse
         if not falls:
             for name in ("pair_virial", "wall_virial", "impulse"):
-                found, expected = getattr(samples, name), getattr(events, name)
+                result, expected = getattr(samples, name), getattr(events, name)
                 scale = np.abs(expected).max()
-                assert np.abs(found - expected).max() < 1e-12 * scale, name
+                assert np.abs(result - expected).max() < 1e-12 * scale, name
     # Momentum at the samples, less what gravity gave, changes by what the faces received, normal and along.
     with open_log(path) as log:
         time, momentum = log.observables["momentum"]
@@ -137,16 +137,16 @@ def compared(tmp_path, *overrides):
             assert np.array_equal(a.observables[name][1], b.observables[name][1])
         time = b.observables["energy"][0]
         start, end = time[len(time) // 10], time[-3]
-        one, other = (pressure(log, start, end) for log in (a, b))
+        each, other = (pressure(log, start, end) for log in (a, b))
     assert other.window.start == start
-    assert [route.name for route in other.routes] == [route.name for route in one.routes]
-    for found, expected in zip(other.routes, one.routes, strict=True):
-        assert found.compressibility_factor.value == pytest.approx(expected.compressibility_factor.value, rel=1e-12)
-        assert found.compressibility_factor.theory == expected.compressibility_factor.theory
-        error = found.compressibility_factor.standard_error / expected.compressibility_factor.standard_error
+    assert [route.name for route in other.routes] == [route.name for route in each.routes]
+    for result, expected in zip(other.routes, each.routes, strict=True):
+        assert result.compressibility_factor.value == pytest.approx(expected.compressibility_factor.value, rel=1e-12)
+        assert result.compressibility_factor.theory == expected.compressibility_factor.theory
+        error = result.compressibility_factor.standard_error / expected.compressibility_factor.standard_error
         assert 0.5 < error < 2
-    for found, expected in zip(other.collision_rates, one.collision_rates, strict=True):
-        assert found.rate.value == pytest.approx(expected.rate.value, rel=1e-12)
+    for result, expected in zip(other.collision_rates, each.collision_rates, strict=True):
+        assert result.rate.value == pytest.approx(expected.rate.value, rel=1e-12)
     assert other.free_paths == ()
     return other
 
@@ -158,8 +158,8 @@ def test_the_same_pressure_without_events(tmp_path):
 @pytest.mark.long
 def test_the_same_pressure_without_events_in_a_long_run(tmp_path):
     """Ten million collisions."""
-    found = compared(tmp_path, "run.events=", "run.collisions_per_disc=333_334")
-    assert found.check().agrees
+    result = compared(tmp_path, "run.events=", "run.collisions_per_disc=333_334")
+    assert result.check().agrees
 
 
 PARTED = (
@@ -177,19 +177,19 @@ def test_the_same_mechanical_pressure_without_events(tmp_path):
         simulate(parse_scene(PARTED, overrides=[f"log.events={events}"]), path)
     with open_log(paths[0]) as a, open_log(paths[1]) as b:
         time = b.observables["energy"][0]
-        one, other = (pressure(log, time[10], time[-3]) for log in (a, b))
-    assert one.mechanical
+        each, other = (pressure(log, time[10], time[-3]) for log in (a, b))
+    assert each.mechanical
     assert other.mechanical
-    assert other.temperature == pytest.approx(one.temperature, rel=0.02)  # with the energy at events, not in between
-    walls = list(zip(other.mechanical.walls, one.mechanical.walls, strict=True))
-    assert [found.name for found, _ in walls] == [expected.name for _, expected in walls]
+    assert other.temperature == pytest.approx(each.temperature, rel=0.02)  # with the energy at events, not in between
+    walls = list(zip(other.mechanical.walls, each.mechanical.walls, strict=True))
+    assert [result.name for result, _ in walls] == [expected.name for _, expected in walls]
     assert len(walls) == 6
-    for found, expected in walls:
-        assert found.pressure.value == pytest.approx(expected.pressure.value, rel=1e-11)
-        assert found.stress
+    for result, expected in walls:
+        assert result.pressure.value == pytest.approx(expected.pressure.value, rel=1e-11)
+        assert result.stress
         assert expected.stress
-        assert found.stress.value == pytest.approx(expected.stress.value, rel=1e-9)
-    for push, awaited in zip(other.mechanical.forces, one.mechanical.forces, strict=True):
+        assert result.stress.value == pytest.approx(expected.stress.value, rel=1e-9)
+    for push, awaited in zip(other.mechanical.forces, each.mechanical.forces, strict=True):
         assert (push.name, push.x.theory, push.y.theory) == (awaited.name, awaited.x.theory, awaited.y.theory)
         assert push.y.value == pytest.approx(awaited.y.value, rel=1e-9)
 
@@ -218,11 +218,11 @@ def test_pressure_of_few_and_of_enough_samples(tmp_path):
     path = tmp_path / "run.h5"
     overrides = ("log.events=false", "log.snapshot_every=", "run.events=400_000")
     with logged(parse_scene(GAS, overrides=overrides), path) as log:
-        found = pressure(log)
-        assert found.window.detected
-        assert found.check().agrees
+        result = pressure(log)
+        assert result.window.detected
+        assert result.check().agrees
         z = status(log).compressibility_factor
-        assert abs(z.value - found.routes[-1].compressibility_factor.value) < 5 * z.standard_error
+        assert abs(z.value - result.routes[-1].compressibility_factor.value) < 5 * z.standard_error
         time = log.observables["energy"][0]
         few = rf"only 16 samples between t = 0 and {time[15]:g}, one for each epoch or snapshot \(allowed >= 17\)"
         with pytest.raises(UserError, match=few):

@@ -22,25 +22,25 @@ def scene(*overrides):
 
 
 def test_without_a_force_it_is_far_below_every_free_time():
-    found = scene()
-    assert found.pressing_acceleration == (0, 0)
-    assert found.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
-    assert found.resting_disc is None
-    assert scene("piston=[{ position=9, velocity=-0.1 }]").restitution == found.restitution
+    result = scene()
+    assert result.pressing_acceleration == (0, 0)
+    assert result.restitution.contact_duration == 1e-6 * 20 * 2 * 0.2 / 20 / 2
+    assert result.resting_disc is None
+    assert scene("piston=[{ position=9, velocity=-0.1 }]").restitution == result.restitution
 
 
 def test_under_gravity_it_is_a_twentieth_of_the_mean_free_time():
     """`test_defaults` has the mean free time, also under gravity."""
-    found = scene(FALL)
-    assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
-    assert parse_scene(GAS, overrides=[FALL]).restitution == found.restitution
+    result = scene(FALL)
+    assert result.restitution.contact_duration == pytest.approx(result.mean_free_time / 20, rel=1e-14)
+    assert parse_scene(GAS, overrides=[FALL]).restitution == result.restitution
 
 
 def test_a_force_and_what_is_given():
-    found = scene(PISTON)
-    assert found.pressing_acceleration == (-0.5 * 8 / 4, 0)
-    assert found.restitution.contact_duration == pytest.approx(found.mean_free_time / 20, rel=1e-14)
-    assert found.mean_free_time < scene("piston=[{ position=9, velocity=0 }]").mean_free_time
+    result = scene(PISTON)
+    assert result.pressing_acceleration == (-0.5 * 8 / 4, 0)
+    assert result.restitution.contact_duration == pytest.approx(result.mean_free_time / 20, rel=1e-14)
+    assert result.mean_free_time < scene("piston=[{ position=9, velocity=0 }]").mean_free_time
     assert scene(FALL, "restitution.contact_duration=1e-4").restitution.contact_duration == 1e-4
     assert scene(FALL, "restitution={ normal = 1, wall = 1 }").restitution.contact_duration is None
     assert 0 < scene(FALL, "species.gas.speed=0").restitution.contact_duration < math.inf

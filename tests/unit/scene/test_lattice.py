@@ -13,10 +13,10 @@ from idealgas.scene.lattice import triangular_lattice
 
 
 def test_870_discs_in_a_square_are_strained_and_an_odd_number_has_no_lattice():
-    found = triangular_lattice(870, (1.0, 1.0))
-    assert {found.columns, found.rows} == {29, 30}
-    assert found.strain == pytest.approx(29 / 30 / (math.sqrt(3) / 2) - 1)  # 11.6 %
-    width, height = found.unstrained
+    result = triangular_lattice(870, (1.0, 1.0))
+    assert {result.columns, result.rows} == {29, 30}
+    assert result.strain == pytest.approx(29 / 30 / (math.sqrt(3) / 2) - 1)  # 11.6 %
+    width, height = result.unstrained
     assert width * height == pytest.approx(1.0)
     assert triangular_lattice(870, (width, height)).strain == pytest.approx(0.0, abs=1e-12)
     assert triangular_lattice(29, (1.0, 1.0)) is None

@@ -111,12 +111,12 @@ def test_what_keys_decide(overrides, changed):
 def test_drives_accelerations_and_temperatures():
     assert properties("piston=[{ velocity = -0.5 }]").driven
     assert not properties("piston=[{ velocity = 0 }]").driven
-    one, other = (replace(Properties(), acceleration=a) for a in ((1.0, 0.0), (0.5, -2.0)))
-    assert (one & other).acceleration == (1.5, -2.0)
+    each, other = (replace(Properties(), acceleration=a) for a in ((1.0, 0.0), (0.5, -2.0)))
+    assert (each & other).acceleration == (1.5, -2.0)
     walls = "wall=[{from=[16, 4], to=[18, 5]}, {from=[16, 2], to=[18, 3], temperature=4}]"
-    found = properties("box.right={thermal=2}", walls)
-    assert found.emits == (None, 2.0, None, None, None, 4.0)
-    assert found.temperatures == {2.0, 4.0}
+    result = properties("box.right={thermal=2}", walls)
+    assert result.emits == (None, 2.0, None, None, None, 4.0)
+    assert result.temperatures == {2.0, 4.0}
     assert Properties().emits == (None,) * FIRST_SEGMENT
     assert properties("box.right={thermal=2}", *TABLES["thermostat"]).temperatures == {2.0, 3.0}
     assert all("combine" in entry.metadata for entry in fields(Properties))
@@ -167,10 +167,10 @@ def test_along_which_axes_momentum_is_kept(overrides, kept):
 @pytest.mark.parametrize("names", list(combinations(NAMES, 2)))
 def test_effects_come_together(names):
     """Whichever comes first; the plain box adds nothing."""
-    one, other = (properties(*TABLES[name]) for name in names)
+    result, other = (properties(*TABLES[name]) for name in names)
     both = properties(*together(*names))
-    assert replace(both, emits=both.emits[:FIRST_SEGMENT]) == one & other == other & one
-    assert one & Properties() == Properties() & one == one
+    assert replace(both, emits=both.emits[:FIRST_SEGMENT]) == result & other == other & result
+    assert result & Properties() == Properties() & result == result
 
 
 SPREAD = {"acceleration": (1.0, 0.0), "later_accelerations": ((-3.0, 0.5), (2.0, -0.25))}

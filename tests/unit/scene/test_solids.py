@@ -34,16 +34,16 @@ def scene(walls: str, rest: str = 'species = [{ name = "gas", count = 200, radiu
 def test_no_disc_is_in_a_polygon():
     """Of 200 discs some 10 % would be in the hexagon; its walls may run in any direction."""
     turned = [side[::-1] if k % 2 else side for k, side in enumerate(SIDES)]
-    found = scene(walls("inside", turned))
+    result = scene(walls("inside", turned))
     area = 6 * math.sqrt(3)  # of a hexagon of radius 2
-    assert found.solids.area == pytest.approx(area, rel=1e-14)
-    gas = make_gas(found)
+    assert result.solids.area == pytest.approx(area, rel=1e-14)
+    gas = make_gas(result)
     assert gas.area == pytest.approx(100 - area, rel=1e-14)
     assert gas.packing_fraction == pytest.approx(200 * math.pi * 0.15**2 / (100 - area), rel=1e-12)
     angle = np.arctan2(*(gas.position - 5).T[::-1]) % (math.pi / 3) - math.pi / 6
     assert (np.hypot(*(gas.position - 5).T) * np.cos(angle) > math.sqrt(3)).all()
     on_lattice = make_gas(scene(walls("inside", SIDES), LATTICE))
-    assert not found.solids.contain(on_lattice.position).any()
+    assert not result.solids.contain(on_lattice.position).any()
 
 
 LATTICE = 'species = [{ name = "gas", count = 300, radius = 0.15, speed = 1, placement = "lattice" }]'
@@ -55,19 +55,19 @@ def test_areas_of_arcs_and_of_nested_curves():
                     [None, [9, 3], None, [1, 3]])  # fmt: skip
     notched = walls("inside", [([4, 2], [6, 2]), ([4, 2], [4, 4]), ([4, 4], [6, 4]), ([6, 4], [6, 2])],
                     [None, [5, 3], None, None])  # fmt: skip
-    found = scene(stadium + notched, "species = [{ name = 'gas', count = 100, radius = 0.1, speed = 1 }]")
+    result = scene(stadium + notched, "species = [{ name = 'gas', count = 100, radius = 0.1, speed = 1 }]")
     covered = 4 - math.pi / 2
-    assert found.solids.area == pytest.approx(100 - 16 - 4 * math.pi + covered, rel=1e-14)
+    assert result.solids.area == pytest.approx(100 - 16 - 4 * math.pi + covered, rel=1e-14)
     points = np.array([[5, 4.5], [4.5, 3], [5.5, 3], [1.5, 1.5], [1.2, 3], [8.9, 3], [9.5, 3], [5, 0.5], [4.1, 2.9]])
     there = [False, False, True, True, False, False, True, True, False]
-    assert found.solids.contain(points).tolist() == there
-    position = make_gas(found).position
-    assert not found.solids.contain(position).any()
+    assert result.solids.contain(points).tolist() == there
+    position = make_gas(result).position
+    assert not result.solids.contain(position).any()
     ring = walls("outside", [([1, 5], [1, 5]), ([3, 5], [3, 5])], [[9, 5], [7, 5]])
     assert scene(ring).solids.area == pytest.approx(100 - 16 * math.pi + 4 * math.pi, rel=1e-14)
     a, b, small, large = ([5 + 3 * math.cos(t), 5 + 3 * math.sin(t)] for t in (0.3, 2.0, 1.15, 1.15 + math.pi))
-    found = scene(walls("inside", [(a, b), (b, a)], [small, large]))
-    assert found.solids.area == pytest.approx(9 * math.pi, rel=1e-12)
+    result = scene(walls("inside", [(a, b), (b, a)], [small, large]))
+    assert result.solids.area == pytest.approx(9 * math.pi, rel=1e-12)
 
 
 def test_the_ray_through_a_corner():
@@ -155,7 +155,7 @@ def test_fixed_discs_leave_less_area(discs, joined, covered):
     text = "".join(DISC.format(*each) for each in discs)
     rest = 'species = [{ name = "gas", count = 10, radius = 0.1, speed = 1 }]'
     text = f"box.size = [10, 10]\nrun.events = 10\ndisc = [\n{text}]\n{rest}\n"
-    found = parse_scene(text, overrides=[SIDES_JOINED] * joined)
-    gas = make_gas(found)
+    result = parse_scene(text, overrides=[SIDES_JOINED] * joined)
+    gas = make_gas(result)
     assert gas.area == pytest.approx(100 - covered, rel=1e-14)
     assert gas.packing_fraction == pytest.approx(10 * math.pi * 0.01 / (100 - covered), rel=1e-12)

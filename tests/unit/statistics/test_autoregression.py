@@ -10,10 +10,10 @@ from idealgas.statistics import autoregression
 def series_of(coefficients, length, rng):
     """A stationary autoregressive series with noise of variance 1."""
     p, burn = len(coefficients), 400
-    found = rng.normal(size=length + burn)
-    for k in range(p, len(found)):
-        found[k] += np.dot(coefficients, found[k - p : k][::-1])
-    return found[burn:]
+    result = rng.normal(size=length + burn)
+    for k in range(p, len(result)):
+        result[k] += np.dot(coefficients, result[k - p : k][::-1])
+    return result[burn:]
 
 
 PROCESSES = {
@@ -30,9 +30,9 @@ PROCESSES = {
 def test_error_of_long_series(name):
     coefficients, spectrum = PROCESSES[name]
     rng = np.random.default_rng(1)
-    found = [autoregression.error_of_mean(series_of(coefficients, 4000, rng)) for _ in range(10)]
-    squares = np.array([spread.error**2 * 4000 for spread in found])
-    own = np.mean([2 / spread.samples for spread in found]) ** 0.5
+    actual = [autoregression.error_of_mean(series_of(coefficients, 4000, rng)) for _ in range(10)]
+    squares = np.array([spread.error**2 * 4000 for spread in actual])
+    own = np.mean([2 / spread.samples for spread in actual]) ** 0.5
     assert abs(squares.mean() / spectrum - 1) < 4 * own / np.sqrt(10)  # four standard errors
     assert own < 0.4
 
@@ -66,19 +66,19 @@ def test_short_and_constant_series():
 
 def test_variance_of_mean_sums_all_covariances():
     covariance = np.array([2.0, 0.7, -0.3, 0.1])
-    found = autoregression.variance_of_mean(covariance)
+    result = autoregression.variance_of_mean(covariance)
     for n in range(1, 5):
         matrix = covariance[np.abs(np.subtract.outer(np.arange(n), np.arange(n)))]
-        assert found[n - 1] == pytest.approx(matrix.mean())
+        assert result[n - 1] == pytest.approx(matrix.mean())
 
 
 def test_covariances_follow_the_model():
     process = autoregression.process_of(series_of([0.5, 0.3], 500, np.random.default_rng(3)))
     model = process.models[-1]
-    found, p = process.covariances_of_models(50)[-1], len(model.coefficients)
+    result, p = process.covariances_of_models(50)[-1], len(model.coefficients)
     for k in range(p + 1, 50):
-        assert found[k] == pytest.approx(model.coefficients @ found[k - p : k][::-1])
-    assert process.covariances_of_models(2)[-1] == pytest.approx(found[:2])
+        assert result[k] == pytest.approx(model.coefficients @ result[k - p : k][::-1])
+    assert process.covariances_of_models(2)[-1] == pytest.approx(result[:2])
 
 
 @pytest.mark.parametrize(("length", "members"), [(2, 1), (16, 1), (250, 1), (60, 7)])
@@ -102,8 +102,8 @@ def test_inefficiency_of_a_known_process(memory, expected):
     def error(samples):  # four standard errors: the model's a has √((1 - a²)/n), and dg/da = 2/(1 - a)²
         return 4 * np.sqrt((1 - memory**2) / samples) * 2 / (1 - memory) ** 2 + 8 * expected / samples
 
-    one = autoregression.inefficiency(series_of([memory], 20_000, rng))
-    assert one == pytest.approx(expected, abs=error(20_000))
+    result = autoregression.inefficiency(series_of([memory], 20_000, rng))
+    assert result == pytest.approx(expected, abs=error(20_000))
     members = np.column_stack([series_of([memory], 400, rng) for _ in range(100)])
     many = autoregression.inefficiency(members)
     assert expected * (1 - expected / 400) - error(40_000) < many < expected + error(40_000)  # weights 1 - k/n

@@ -22,8 +22,8 @@ def autoregressive(rng, length, memory, runs=1):
 
 def test_errors_by_blocks_of_a_straight_line():
     """0 to 15, of the variance 16 · 17/12, and means of pairs, of 4 · 8 · 9/12; over √16 and √8 of them, and 2."""
-    found = statistics.errors_by_blocks(np.arange(16.0), 2.0)
-    assert found == ((1 / 16, pytest.approx(math.sqrt(16 * 17 / 12) / 8)), (2 / 16, pytest.approx(math.sqrt(3) / 2)))
+    result = statistics.errors_by_blocks(np.arange(16.0), 2.0)
+    assert result == ((1 / 16, pytest.approx(math.sqrt(16 * 17 / 12) / 8)), (2 / 16, pytest.approx(math.sqrt(3) / 2)))
 
 
 @pytest.mark.parametrize(
@@ -104,10 +104,10 @@ def test_few_events_have_no_error_and_no_more_samples_than_events():
     for number, known in ((2, False), (7, False), (8, True), (9, True)):
         events, lengths = np.zeros(400), np.zeros(400)
         events[:number], lengths[:number] = 1, 230 + np.arange(number)
-        found = statistics.of_events(statistics.ratio(lengths, events), number)
-        assert found.value == pytest.approx(lengths.sum() / number)
-        assert bool(found.standard_error > 0) == known
-        assert found.independent_samples <= number
+        result = statistics.of_events(statistics.ratio(lengths, events), number)
+        assert result.value == pytest.approx(lengths.sum() / number)
+        assert bool(result.standard_error > 0) == known
+        assert result.independent_samples <= number
 
 
 @pytest.mark.parametrize(("samples", "off"), [(10, 0.0025), (50, 0.0003), (1000, 3e-5)])
@@ -115,7 +115,7 @@ def test_p_values_of_kolmogorov_and_smirnov(samples, off):
     """The exact distribution of SciPy: Simard & L'Ecuyer, J. Stat. Softw. 39, 11 (2011)."""
     distances = np.linspace(0.3, 2.5, 200) / math.sqrt(samples)
     exact = stats.kstwo.sf(distances, samples)
-    assert np.abs(exact - [ks_p_value(one, samples) for one in distances]).max() < off
+    assert np.abs(exact - [ks_p_value(distance, samples) for distance in distances]).max() < off
 
 
 def test_common_fluctuations_cancel_in_a_ratio():
@@ -128,16 +128,16 @@ def test_common_fluctuations_cancel_in_a_ratio():
 def test_errors_by_blocks_rise_to_the_stated_one():
     """The mean of AR(1) with a = 0.9 has √((1 + a)/(1 - a)) = 4.4 times the error of independent samples."""
     n, a = 2**16, 0.9
-    found = statistics.mean(autoregressive(np.random.default_rng(1), n, a)[:, 0])
-    share, error = np.array(found.blocks).T
+    result = statistics.mean(autoregressive(np.random.default_rng(1), n, a)[:, 0])
+    share, error = np.array(result.blocks).T
     assert share.tolist() == [2.0**k / n for k in range(14)]  # 8 blocks and more
     assert np.all(np.diff(error[:6]) > 0)
-    error *= found.standard_error * math.sqrt(n)
+    error *= result.standard_error * math.sqrt(n)
     assert error[0] == pytest.approx(1, rel=0.05)
     long = (share * n > 10 / (1 - a)) & (share < 1 / 32)
     exact = math.sqrt((1 + a) / (1 - a))
     assert np.all(np.abs(error[long] / exact - 1) < 4 * np.sqrt(share[long] / 2) + 0.05)  # blocks are 5 % short
-    assert found.times(-3.0).blocks == found.blocks
+    assert result.times(-3.0).blocks == result.blocks
     assert statistics.mean(np.ones(64)).blocks == ()
 
 
@@ -180,9 +180,9 @@ def test_flux_has_the_error_of_a_store_of_known_variance(length):
     rng, deviations = np.random.default_rng(17), []
     for _ in range(300):
         store = 3 * (autoregressive(rng, length + 1, math.exp(-1 / 50))[:, 0] - 5)
-        found = statistics.mean_of_flux(5 + np.diff(store), np.full(length, 5.0), 5.0, 9.0)
-        assert found.value == pytest.approx(5 + (store[-1] - store[0]) / length)
-        deviations.append(found.deviation)
+        result = statistics.mean_of_flux(5 + np.diff(store), np.full(length, 5.0), 5.0, 9.0)
+        assert result.value == pytest.approx(5 + (store[-1] - store[0]) / length)
+        deviations.append(result.deviation)
     more = math.sqrt(length / (length - 2))  # at first the error is known as from as many squares as there are samples
     assert 1 - 4 / math.sqrt(600) < rms(deviations) < more * (1 + 4 / math.sqrt(600))
 
@@ -210,9 +210,9 @@ def test_known_memory_makes_the_error_of_a_faint_slow_process_right():
     rng, deviations = np.random.default_rng(5), {0.0: [], 30.0: []}
     slow = autoregressive(rng, 600, 29 / 31, runs=200) - 5.0  # inefficiency 30
     for series in (slow + 2 * rng.normal(size=slow.shape)).T:
-        for memory, found in deviations.items():
+        for memory, result in deviations.items():
             estimate = statistics.mean(series, memory=memory)
-            found.append(estimate.value / estimate.standard_error)
-    rms = {memory: np.sqrt(np.mean(np.square(found))) for memory, found in deviations.items()}
+            result.append(estimate.value / estimate.standard_error)
+    rms = {memory: np.sqrt(np.mean(np.square(result))) for memory, result in deviations.items()}
     assert rms[30.0] < rms[0.0]
     assert rms[30.0] < 1.3

@@ -39,13 +39,13 @@ def put(*path_and_value):
     """Change of one value of the file."""
 
     def change(text):
-        found = json.loads(text)
+        result = json.loads(text)
         *path, last, value = path_and_value
-        node = found
+        node = result
         for step in path:
             node = node[step]
         node[last] = value
-        return json.dumps(found)
+        return json.dumps(result)
 
     return change
 

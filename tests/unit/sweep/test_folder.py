@@ -62,13 +62,13 @@ def folder(tmp_path):
 def finish(sweep, folder, points, **summary):
     """Results of points as their workers leave them, with a summary as their only numbers."""
     for point in points:
-        found = {
+        actual = {
             "point": point.index, "seed": point.scene.scene.seed, "combination": point.combination,
             "replicate": point.replicate, "values": point.values, "scene": dump_document(point.scene),
             "summary": summary,
             "analyses": {name: {"caveats": []} for name in sweep.analyses},
         }  # fmt: skip
-        result_path(folder, point.index).write_text(json.dumps(found))
+        result_path(folder, point.index).write_text(json.dumps(actual))
 
 
 def numbers(sweep):

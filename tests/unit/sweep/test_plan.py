@@ -29,7 +29,7 @@ def sweep(tmp_path):
 
 
 def test_axes_are_crossed_and_zipped(sweep):
-    found = sweep(
+    result = sweep(
         """
         axis = [
             {key = "species.gas.radius", values = [0.1, 0.2], zip = "a"},
@@ -40,19 +40,20 @@ def test_axes_are_crossed_and_zipped(sweep):
         + BASE
     )
     taken = [
-        tuple(point.values[f"species.gas.{key}"] for key in ("radius", "mass", "temperature")) for point in found.points
+        tuple(point.values[f"species.gas.{key}"] for key in ("radius", "mass", "temperature"))
+        for point in result.points
     ]
     assert taken == [(r, m, t) for r, m in ((0.1, 1.0), (0.2, 4.0)) for t in (1.0, 1.5, 2.0)]
     assert [
-        (p.scene.species[0].radius, p.scene.species[0].mass, p.scene.species[0].temperature) for p in found.points
+        (p.scene.species[0].radius, p.scene.species[0].mass, p.scene.species[0].temperature) for p in result.points
     ] == taken
-    assert [point.index for point in found.points] == list(range(6))
+    assert [point.index for point in result.points] == list(range(6))
 
 
 def test_whole_numbers_of_a_range_are_whole(sweep):
     """As a count wants them; geometric steps in floats come to 23.999999999999993."""
-    found = sweep('axis = [{key = "species.gas.count", log_range = [3, 48, 5]}]\n' + BASE)
-    assert [point.scene.species[0].count for point in found.points] == [3, 6, 12, 24, 48]
+    result = sweep('axis = [{key = "species.gas.count", log_range = [3, 48, 5]}]\n' + BASE)
+    assert [point.scene.species[0].count for point in result.points] == [3, 6, 12, 24, 48]
 
 
 def test_phi_scales_the_box_after_all_other_axes(sweep):
@@ -156,9 +157,9 @@ def test_faults_are_lines_with_their_place(sweep, tmp_path, text, lines):
     with pytest.raises(SceneError) as caught:
         sweep(text)
     assert len(caught.value.errors) == len(lines)
-    for found, expected in zip(caught.value.errors, lines, strict=True):
+    for result, expected in zip(caught.value.errors, lines, strict=True):
         place = str(tmp_path) + "/" if expected.startswith("missing") else f"{tmp_path / 'sweep.toml'}:"
-        assert found.startswith(place + expected)
+        assert result.startswith(place + expected)
 
 
 def test_overrides_change_the_base_scene_or_the_sweep(sweep, tmp_path):
@@ -171,11 +172,11 @@ def test_overrides_change_the_base_scene_or_the_sweep(sweep, tmp_path):
         "axis.0.values=[4]",
         "base.box.size=[3, 4]",
     )
-    found = load_sweep(tmp_path / "sweep.toml", overrides)
-    (scene, *_) = scenes = [point.scene for point in found.points]
+    result = load_sweep(tmp_path / "sweep.toml", overrides)
+    (scene, *_) = scenes = [point.scene for point in result.points]
     assert (len(scenes), scene.run.events, scene.species[0].count, scene.box.size) == (3, 7, 5, (3.0, 4.0))
     assert scene.species[0].temperature == 4
-    assert found.text.splitlines()[:2] == ["# sweep of 3 points by idealgas", '# --set "run.events=7"']
+    assert result.text.splitlines()[:2] == ["# sweep of 3 points by idealgas", '# --set "run.events=7"']
     (tmp_path / "gas.toml").write_text(BASE.replace("[base]", ""))
     sweep('sweep.scene = "gas.toml"\n' + axis)
     assert [p.scene.run.events for p in load_sweep(tmp_path / "sweep.toml", ["run.events=7"]).points] == [7, 7]

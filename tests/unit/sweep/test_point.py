@@ -33,11 +33,11 @@ def point(tmp_path):
 def test_a_point_leaves_its_log_and_its_results(point, tmp_path):
     run_point(point, tmp_path, ANALYSES, True)
     assert sorted(path.name for path in points_folder(tmp_path).iterdir()) == ["0003.h5", "0003.json"]
-    (found,) = read_points(tmp_path)
-    assert (found["point"], found["replicate"], found["seed"]) == (3, 1, 4)
-    assert set(found["analyses"]) == {"pressure", "temperature"}
-    assert "seconds" not in found["summary"]
-    assert parse_scene(found["scene"]) == parse_scene(SCENE)
+    (result,) = read_points(tmp_path)
+    assert (result["point"], result["replicate"], result["seed"]) == (3, 1, 4)
+    assert set(result["analyses"]) == {"pressure", "temperature"}
+    assert "seconds" not in result["summary"]
+    assert parse_scene(result["scene"]) == parse_scene(SCENE)
 
 
 def test_what_is_done_is_not_done_again(point, tmp_path):

@@ -85,11 +85,11 @@ def test_several_sweeps_have_one_figure(plan, tmp_path):
     """A folder for each, one list as JSON, and one figure of all deviations, a row for each paper."""
     pi = ROOT / "configs" / "classics" / "galperin-2003.toml"
     drawn = tmp_path / "classics.svg"
-    found = json.loads(
+    result = json.loads(
         output_of("sweep", plan, pi, "-o", tmp_path / "out", "--workers", 1, "--json", "--plot", drawn, "-q")
     )
-    assert [one["ran"] for one in found] == [4, 4]
-    assert [one["files"][0] for one in found] == [
+    assert [each["ran"] for each in result] == [4, 4]
+    assert [each["files"][0] for each in result] == [
         str(tmp_path / "out" / name / "results.csv") for name in ("sweep", "galperin-2003")
     ]
     text = drawn.read_text()

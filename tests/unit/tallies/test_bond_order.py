@@ -22,32 +22,32 @@ def triangular(columns, rows):
 @pytest.mark.parametrize("shape", [(1, 2), (2, 2), (4, 6), (3, 40), (29, 30)])
 def test_a_triangular_lattice_has_order_1(shape):
     sites, box = triangular(*shape)
-    found = bond_order((sites + 0.3) % box, box, (True, True))
-    assert found.value == pytest.approx(1.0, abs=1e-9)
-    assert (found.neighbours == 6).all()
+    result = bond_order((sites + 0.3) % box, box, (True, True))
+    assert result.value == pytest.approx(1.0, abs=1e-9)
+    assert (result.neighbours == 6).all()
     turned = bond_order(sites[:, ::-1], box[::-1], (True, True))  # neighbours above and below instead of beside
     assert turned.value == pytest.approx(-1.0, abs=1e-9)
 
 
 def test_a_square_lattice_has_none():
     sites = np.array(list(itertools.product(range(5), range(4)))) + 0.5
-    found = bond_order(sites, (5, 4), (True, True))
-    assert np.abs(found.value).max() < 1e-9
-    assert (found.neighbours == 4).all()  # and not those across corners, where four cells meet
+    result = bond_order(sites, (5, 4), (True, True))
+    assert np.abs(result.value).max() < 1e-9
+    assert (result.neighbours == 4).all()  # and not those across corners, where four cells meet
 
 
 def cut(polygon, middle, normal):
     """Part of a polygon behind a line; corners (C, 3) with a mark of an edge that begins there, nan at the cut."""
     side = (polygon[:, :2] - middle) @ normal
-    found = []
+    actual = []
     for k in range(len(polygon)):
         after = (k + 1) % len(polygon)
         if side[k] <= 0:
-            found.append(polygon[k])
+            actual.append(polygon[k])
         if (side[k] <= 0) != (side[after] <= 0):
             at = polygon[k, :2] + side[k] / (side[k] - side[after]) * (polygon[after, :2] - polygon[k, :2])
-            found.append((*at, math.nan if side[k] <= 0 else polygon[k, 2]))  # the edge that starts here is the cut
-    return np.array(found)
+            actual.append((*at, math.nan if side[k] <= 0 else polygon[k, 2]))  # the edge that starts here is the cut
+    return np.array(actual)
 
 
 def by_hand(position, box, periodic):
@@ -74,15 +74,15 @@ def by_hand(position, box, periodic):
 def test_cells_cut_out_by_hand(number, periodic):
     box = np.array((1.5, 1.0))
     position = np.random.default_rng(number).random((number, 2)) * box
-    found = bond_order(position, tuple(box), periodic)
-    assert found.value == pytest.approx(by_hand(position, box, periodic), abs=1e-9)
+    result = bond_order(position, tuple(box), periodic)
+    assert result.value == pytest.approx(by_hand(position, box, periodic), abs=1e-9)
 
 
 def test_few_discs_in_a_long_box_have_neighbours_far_away():
     position = np.random.default_rng(3).random((20, 2)) * (100, 0.1)
-    found = bond_order(position, (100, 0.1), (True, True))
-    assert found.neighbours.mean() == 6  # Euler's formula on a torus
-    assert np.abs(found.value).max() <= 1 + 1e-12
+    result = bond_order(position, (100, 0.1), (True, True))
+    assert result.neighbours.mean() == 6  # Euler's formula on a torus
+    assert np.abs(result.value).max() <= 1 + 1e-12
 
 
 def test_order_does_not_depend_on_where_the_box_is_cut():
@@ -93,13 +93,13 @@ def test_order_does_not_depend_on_where_the_box_is_cut():
 
 def test_100_states_of_a_fluid_have_no_common_direction():
     """√N |⟨ψ₆⟩| is below 4 where directions are independent: their sum is a walk of N steps of less than 1."""
-    found = []
+    actual = []
     for seed in range(100):
         made = make_gas(parse_scene(gas(400, 0.01545096808, (1, 1), "until = 1", periodic="xy", seed=seed)))
-        found.append(20 * abs(bond_order(made.position, made.box, (True, True)).value.mean()))
+        actual.append(20 * abs(bond_order(made.position, made.box, (True, True)).value.mean()))
     assert made.packing_fraction == pytest.approx(0.3, abs=1e-6)
-    assert np.mean(found) < 4
-    assert np.mean(found) > 0.3  # and they have an order, each of its own
+    assert np.mean(actual) < 4
+    assert np.mean(actual) > 0.3  # and they have an order, each of its own
 
 
 def test_an_uneven_gas_needs_no_images(monkeypatch):

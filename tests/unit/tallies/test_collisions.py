@@ -13,11 +13,11 @@ GAS = gas(50, 0.1, (10, 10), "until = 200", seed=1).replace(
 
 def test_few_collisions_are_few_samples(log):
     """An error from n events is known no better than from n samples."""
-    found = pressure(log)
-    duration = found.window.duration
-    inside = np.concatenate([b.time > found.window.start for b in log.chunks()])
+    result = pressure(log)
+    duration = result.window.duration
+    inside = np.concatenate([b.time > result.window.start for b in log.chunks()])
     disc, partner = (np.concatenate([getattr(b, name) for b in log.chunks()])[inside] for name in ("disc", "partner"))
-    (rate,) = [r.rate for r in found.collision_rates if r.species == r.other == "grain"]
+    (rate,) = [r.rate for r in result.collision_rates if r.species == r.other == "grain"]
     events = ((disc < 2) & (partner >= 0) & (partner < 2)).sum() / 2
     assert 1 < events < 20
     assert rate.independent_samples <= events

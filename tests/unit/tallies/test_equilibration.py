@@ -8,10 +8,10 @@ from idealgas.tallies.observables import Observable
 
 
 def noise(rng, length, memory=0.0):
-    found = rng.normal(size=length)
+    result = rng.normal(size=length)
     for k in range(1, length):
-        found[k] += memory * found[k - 1]
-    return found
+        result[k] += memory * result[k - 1]
+    return result
 
 
 def detect(series):
@@ -87,13 +87,13 @@ def test_known_fluctuations_show_what_a_short_series_cannot():
     """Two blocks of six standard deviations in 40 correlated ones; of 100 steady gases 10 ± 3 lose some."""
     rng = np.random.default_rng(10)
     variance = 1 / (1 - 0.6**2)
-    found = []
+    actual = []
     for _ in range(100):
         steady = [noise(rng, 100, 0.6)[60:] for _ in range(6)]
         jump = [steady[0] + 6 * np.sqrt(variance) * (np.arange(40) < 2), *steady[1:]]
         known = ([Observable(values, most=variance) for values in series] for series in (steady, jump))
-        found.append([detect(steady), detect(jump), *map(detect_equilibration, known)])
-    kept, missed, kept_by_theory, missed_by_theory = (np.array(found) == 0).sum(axis=0)
+        actual.append([detect(steady), detect(jump), *map(detect_equilibration, known)])
+    kept, missed, kept_by_theory, missed_by_theory = (np.array(actual) == 0).sum(axis=0)
     assert missed > 0 == missed_by_theory
     assert kept_by_theory >= kept - 4 * 3
 

@@ -59,8 +59,8 @@ FAST = {  # 1.0
 def test_slow_structure_is_said(name, start):
     discs, collisions = (SLOW | FAST)[name]
     log = log_of(f"scene.seed = 1\n[box]\nsize = [1, 1]\n{discs}[run]\ncollisions_per_disc = {collisions}\n")
-    found = [analyse(log, analysis, start=start) for analysis in ("pressure", "histogram")]
-    for result in found:
+    actual = [analyse(log, analysis, start=start) for analysis in ("pressure", "histogram")]
+    for result in actual:
         said = [sentence for sentence in result.caveats if "relaxes slowly" in sentence]
         assert bool(said) == (name in SLOW)
         assert all(f"in t = {result.window.slowest.time:.2g}" in sentence for sentence in said)

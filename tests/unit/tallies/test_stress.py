@@ -34,8 +34,8 @@ def test_strips_together_have_what_collisions_pass_on(make, axis, bins, sides):
     currents = Currents(log.periodic)
     stream(log, times, [passed_on, currents])
     whole = currents.flow[:, PASSED_ON]
-    found = passed_on.stress.sum(axis=1)
-    assert found == pytest.approx(np.stack((whole[:, XX], whole[:, YY], whole[:, XY]), axis=1), abs=1e-9)
+    result = passed_on.stress.sum(axis=1)
+    assert result == pytest.approx(np.stack((whole[:, XX], whole[:, YY], whole[:, XY]), axis=1), abs=1e-9)
     assert (np.abs(passed_on.stress[:, :, :2]).sum(axis=(0, 2)) > 0).all()
 
 
@@ -53,11 +53,11 @@ def test_a_line_of_centres_is_shared_by_its_strips():
 def test_a_periodic_gas_has_one_pressure(make):
     """That of the virial, everywhere and in both directions; 4 standard errors of 24 strips."""
     log = make(*PERIODIC, "run.collisions_per_disc=600")
-    found, (route, *_) = profile(log, "y", bins=8).pressure, pressure(log).routes
-    assert max(e.standard_error for e in found["yy"]) < 0.1 * route.pressure.value
-    assert far(found["xx"], route.pressure.value) < STANDARD_ERRORS
-    assert far(found["yy"], route.pressure.value) < STANDARD_ERRORS
-    assert far(found["xy"], 0.0) < STANDARD_ERRORS
+    result, (route, *_) = profile(log, "y", bins=8).pressure, pressure(log).routes
+    assert max(e.standard_error for e in result["yy"]) < 0.1 * route.pressure.value
+    assert far(result["xx"], route.pressure.value) < STANDARD_ERRORS
+    assert far(result["yy"], route.pressure.value) < STANDARD_ERRORS
+    assert far(result["xy"], 0.0) < STANDARD_ERRORS
 
 
 def test_walls_hold_the_gas_in_every_strip(make):
@@ -68,14 +68,14 @@ def test_walls_hold_the_gas_in_every_strip(make):
     """
     log = make("run.collisions_per_disc=600")
     strips, routes = profile(log, "x", bins=12), {r.name: r for r in pressure(log).routes}
-    found = strips.pressure
+    result = strips.pressure
     left = routes["left wall"].pressure
-    assert max(e.standard_error for e in found["xx"]) < 0.1 * left.value
-    assert far(found["xx"], left.value) < STANDARD_ERRORS
-    assert far(found["xy"], 0.0) < STANDARD_ERRORS
+    assert max(e.standard_error for e in result["xx"]) < 0.1 * left.value
+    assert far(result["xx"], left.value) < STANDARD_ERRORS
+    assert far(result["xy"], 0.0) < STANDARD_ERRORS
     bottom = routes["bottom wall"].pressure.times(12 / 11.2 * 7.2 / 8)
     error = np.hypot(bottom.standard_error, np.sqrt(120 / strips.frames) / (11.2 * 8))
-    assert abs(np.mean([e.value for e in found["yy"]]) - bottom.value) < STANDARD_ERRORS * error
+    assert abs(np.mean([e.value for e in result["yy"]]) - bottom.value) < STANDARD_ERRORS * error
 
 
 def test_under_gravity_the_pressure_carries_the_weight_above(make):
@@ -84,9 +84,9 @@ def test_under_gravity_the_pressure_carries_the_weight_above(make):
     Densities are from strips a sixteenth as wide; their errors add up as if they were the same everywhere.
     """
     log = make("gravity={ acceleration = [0, -0.2] }", "run.collisions_per_disc=1000")
-    found, (fine,) = profile(log, bins=8), profile(log, bins=128).species
-    assert found.axis == "y"
-    pressures, width = found.pressure["yy"], float(found.edges[1] - found.edges[0])
+    result, (fine,) = profile(log, bins=8), profile(log, bins=128).species
+    assert result.axis == "y"
+    pressures, width = result.pressure["yy"], float(result.edges[1] - result.edges[0])
     triangle = 1 - np.abs((np.arange(32) + 0.5) / 16 - 1)
     for k in range(7):
         some, (low, high) = fine.density[16 * k : 16 * k + 32], pressures[k : k + 2]
@@ -102,12 +102,12 @@ def test_under_gravity_the_pressure_carries_the_weight_above(make):
 def test_a_sheared_gas_has_one_stress():
     """P_xy is that of the analysis `shear` in every strip, P_xx and P_yy too."""
     log = log_of("shear", "run.until=200")
-    whole, found = shear(log, start=20.0), profile(log, bins=6, start=20.0)
-    assert (found.axis, found.law) == ("y", None)
-    assert "up to 1.4 times too small" in found.caveats[-1]
-    assert far(found.pressure["xy"], -whole.viscosity.value * whole.rate) < STANDARD_ERRORS
-    assert max(e.value + 3 * e.standard_error for e in found.pressure["xy"]) < 0
+    whole, result = shear(log, start=20.0), profile(log, bins=6, start=20.0)
+    assert (result.axis, result.law) == ("y", None)
+    assert "up to 1.4 times too small" in result.caveats[-1]
+    assert far(result.pressure["xy"], -whole.viscosity.value * whole.rate) < STANDARD_ERRORS
+    assert max(e.value + 3 * e.standard_error for e in result.pressure["xy"]) < 0
     for name in ("xx", "yy"):
-        assert far(found.pressure[name], whole.pressure.value) < STANDARD_ERRORS
-    (gas,) = found.species
+        assert far(result.pressure[name], whole.pressure.value) < STANDARD_ERRORS
+    (gas,) = result.species
     assert far(gas.temperature, whole.temperature.value) < STANDARD_ERRORS

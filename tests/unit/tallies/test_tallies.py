@@ -94,8 +94,8 @@ def test_velocity_histogram(log, edges, quantity):
     assert tally.counts == pytest.approx(counts, rel=1e-11, abs=1e-12)
     assert tally.sums == pytest.approx(sums, rel=1e-11, abs=1e-12)
     for k, state in enumerate(log.frames(edges[1:-1])):
-        found = [value(log.discs.mass[disc], state.velocity[disc]) for disc in sampled]
-        assert tally.snapshots[k] == pytest.approx(found, rel=1e-14)
+        actual = [value(log.discs.mass[disc], state.velocity[disc]) for disc in sampled]
+        assert tally.snapshots[k] == pytest.approx(actual, rel=1e-14)
 
 
 def test_impacts(log, edges):
@@ -216,32 +216,32 @@ def test_impact_parameters(log, edges):
     """From positions and velocities after collisions, which conserve |b|."""
     tally = streamed(log, edges, ImpactParameters((False, False), 10, stride=3, most_samples=200))
     rows = rows_of(log, edges)
-    found = []
+    actual = []
     for first, second in pairwise(rows):
         if second[2] == first[1] and second[0] == first[0] and first[2] == second[1]:
             (x, y), (vx, vy) = (np.subtract(second[k], first[k]) for k in (4, 5))
-            found.append((block_of(edges, first[0]), abs(x * vy - y * vx) / math.hypot(x, y) / math.hypot(vx, vy)))
+            actual.append((block_of(edges, first[0]), abs(x * vy - y * vx) / math.hypot(x, y) / math.hypot(vx, vy)))
     counts = np.zeros_like(tally.counts)
-    for block, b in found:
+    for block, b in actual:
         counts[block, 0, min(int(b * 10), 9) + 1] += 1
     assert tally.counts.tolist() == counts.tolist()
-    assert tally.sample == pytest.approx([b for _, b in found[::3][:200]], rel=1e-9)
+    assert tally.sample == pytest.approx([b for _, b in actual[::3][:200]], rel=1e-9)
 
 
 def test_collision_counts(log, edges):
     time = (edges[-1] - edges[0]) / 7.5
     tally = streamed(log, edges, CollisionCounts(time, bins=4, stride=3))
-    found = np.zeros((7, 14), int)
+    result = np.zeros((7, 14), int)
     for when, disc, partner, *_ in rows_of(log, edges):
         if partner >= 0 and (v := int((when - edges[0]) / time)) < 7:
-            found[v, disc] += 1
+            result[v, disc] += 1
     assert tally.begins == pytest.approx(edges[0] + time * np.arange(7))
-    for v, numbers in enumerate(found):
+    for v, numbers in enumerate(result):
         for s in range(2):
             own = numbers[log.discs.species == s]
             assert tally.counts[v, s].tolist() == [0, *[(own == n).sum() for n in range(4)], (own >= 4).sum()]
             assert tally.sums[v, s].tolist() == [(own**power).sum() for power in range(4)]
-    sampled = [(found[v, disc], v, log.discs.species[disc]) for v in range(7) for disc in range(v % 3, 14, 3)]
+    sampled = [(result[v, disc], v, log.discs.species[disc]) for v in range(7) for disc in range(v % 3, 14, 3)]
     assert list(zip(tally.sample, tally.sample_index, tally.sample_species, strict=True)) == sampled
 
 

@@ -25,7 +25,7 @@ def test_derivatives_of_a_run(tmp_path):
     """Between walls; the step is as small as the digits of a scene allow, and so are the next derivatives' parts."""
     step = 1e-7
     scene = parse_scene(GAS)
-    _, start, found, rows = final(scene, tmp_path / "run.h5")
+    _, start, result, rows = final(scene, tmp_path / "run.h5")
     assert rows > 30
     for disc, component in ((0, 0), (3, 1), (2, 2), (5, 3)):
         ends = []
@@ -37,15 +37,15 @@ def test_derivatives_of_a_run(tmp_path):
             moved = idealgas.Scene(box={"size": [6.0, 6.0]}, discs=discs, run=run)
             ends.append(final(moved, tmp_path / "moved.h5")[0])
         expected = (ends[0] - ends[1]) / (2 * step)
-        derivative = found[:, :, disc, component]
+        derivative = result[:, :, disc, component]
         assert np.abs(derivative - expected).max() < 1e-3 * np.abs(derivative).max()
 
 
 def test_phase_space_keeps_its_volume():
     """The determinant of the map is 1 in size (Liouville): exact motion of equal masses, 24 dimensions."""
     log = log_of(GAS, *PERIODIC, "run={until=6}")
-    found = idealgas.sensitivity(log).reshape(24, 24)
-    assert np.abs(np.linalg.slogdet(found)[1]) < 1e-6
-    one = idealgas.sensitivity(log, discs=[2])
-    assert np.array_equal(one[:, :, 0], idealgas.sensitivity(log)[:, :, 2])
+    result = idealgas.sensitivity(log).reshape(24, 24)
+    assert np.abs(np.linalg.slogdet(result)[1]) < 1e-6
+    each = idealgas.sensitivity(log, discs=[2])
+    assert np.array_equal(each[:, :, 0], idealgas.sensitivity(log)[:, :, 2])
     raised("discs: no disc 6", idealgas.sensitivity, log, discs=[6])

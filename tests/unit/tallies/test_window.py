@@ -54,10 +54,10 @@ def test_start_is_after_a_gate_has_opened():
 
 def test_start_is_after_a_gas_has_filled_its_box():
     half = gas(200, 0.05, (10, 10), "collisions_per_disc = 60", region=[0, 0, 5, 10])
-    found = [starts(log_of(half, f"scene.seed={seed}"), "profile").pop() for seed in range(1, 8)]
-    assert min(found) > 0
-    assert sorted(found)[3] > 2  # a disc of the mean speed crosses the empty half in 4
-    assert max(found) < 20
+    actual = [starts(log_of(half, f"scene.seed={seed}"), "profile").pop() for seed in range(1, 8)]
+    assert min(actual) > 0
+    assert sorted(actual)[3] > 2  # a disc of the mean speed crosses the empty half in 4
+    assert max(actual) < 20
 
 
 def test_steady_gas_is_kept():

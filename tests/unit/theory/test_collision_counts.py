@@ -65,5 +65,5 @@ def test_limits():
 def test_as_a_continuous_distribution():
     law = CollisionCountLaw(4.0)
     assert law.pdf(np.array([-1.0, 2.4, 1.6, 1e6])) == pytest.approx([0, *law.probabilities[[2, 2]], 0])
-    none, one = law.probabilities[:2]
-    assert law.cdf(np.array([-0.5, 0.5, 1.0])) == pytest.approx([0, none, none + one / 2])
+    none, result = law.probabilities[:2]
+    assert law.cdf(np.array([-0.5, 0.5, 1.0])) == pytest.approx([0, none, none + result / 2])

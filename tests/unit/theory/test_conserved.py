@@ -57,10 +57,10 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
     scene, gas = made(TWO, *PERIODIC, FLOW)
     assert conserved.centre_of_mass_velocity(scene, gas) == pytest.approx([3, 0])
     assert gas.temperature == pytest.approx(4.505)
-    found = forecast(scene, gas)
-    assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
-    assert found.temperature == pytest.approx(0.04 / 6, rel=1e-9)
-    (sentence,) = found.caveats
+    result = forecast(scene, gas)
+    assert result.species[0].temperature == pytest.approx(0.005, rel=1e-9)
+    assert result.temperature == pytest.approx(0.04 / 6, rel=1e-9)
+    (sentence,) = result.caveats
     assert "moves as a whole with the velocity (3, 0), 99.9% of its kinetic energy" in sentence
 
 
@@ -78,10 +78,10 @@ def test_unequal_discs_have_a_centre_of_mass_and_a_fixed_disc_takes_momentum():
 def test_a_flow_that_walls_stop_becomes_heat():
     scene, gas = made(STREAM)
     assert conserved.centre_of_mass_velocity(scene, gas).tolist() == [0, 0]
-    found = forecast(scene, gas)
-    assert found.species[0].temperature == pytest.approx(0.005, rel=1e-9)
-    assert found.temperature == pytest.approx(4.505, rel=1e-9)
-    (sentence,) = found.caveats
+    result = forecast(scene, gas)
+    assert result.species[0].temperature == pytest.approx(0.005, rel=1e-9)
+    assert result.temperature == pytest.approx(4.505, rel=1e-9)
+    (sentence,) = result.caveats
     assert "starts with a common motion (3, 0), 99.9% of its kinetic energy" in sentence
     assert "becomes heat at the walls" in sentence
     (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 1 }", "run.events=10000")).caveats

@@ -69,10 +69,10 @@ def test_walls_of_one_temperature_give_it_to_the_gas(heated):
 def test_walls_inside_leave_the_temperature(heated):
     """2E/2N = 1, or that of thermal walls; it is approximate, as walls may divide the gas."""
     wall = "wall=[{ from = [1, 1], to = [2, 2] }]"
-    found = forecast_of(wall, *heated)
-    assert (found.temperature, found.beyond) == (pytest.approx(4 if heated else 1, rel=1e-12), ("wall segments",))
-    assert found.collision_rate is None
-    assert "may divide the gas" in found.rough
+    result = forecast_of(wall, *heated)
+    assert (result.temperature, result.beyond) == (pytest.approx(4 if heated else 1, rel=1e-12), ("wall segments",))
+    assert result.collision_rate is None
+    assert "may divide the gas" in result.rough
     assert forecast_of(wall, "gravity.acceleration=[0, -0.2]").temperature is None
 
 

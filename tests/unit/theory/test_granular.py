@@ -65,12 +65,12 @@ def test_losses_are_means_over_collisions(parameters, x):
     across = -(1 + parameters.roughness) * slip * kappa / (1 + kappa) / 2
     motion = along * g_n + along**2 + across * g_t + across**2  # change of the energy of both discs
     spin = across * omega.sum(axis=0) + across**2 / kappa
-    for found, energy, share in (
+    for result, energy, share in (
         (loss_of_motion(parameters, x), motion, 0.5),
         (loss_of_spin(parameters, x), spin, 1.0),
     ):
         error = share * energy.std() / math.sqrt(n)
-        assert abs(-share * energy.mean() - found) <= 4 * error + 1e-15
+        assert abs(-share * energy.mean() - result) <= 4 * error + 1e-15
 
 
 def test_rough_discs_at_their_ratio_follow_haff():

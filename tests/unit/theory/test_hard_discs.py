@@ -41,10 +41,10 @@ def test_the_long_time_tail():
 
 
 def test_mixture_of_equals_is_one_species():
-    one = hard_discs.mixture_compressibility_factor([0.5], [300], 1000.0)
+    result = hard_discs.mixture_compressibility_factor([0.5], [300], 1000.0)
     two = hard_discs.mixture_compressibility_factor([0.5, 0.5], [100, 200], 1000.0)
-    assert two == pytest.approx(one, rel=1e-14)
-    assert one == pytest.approx(hard_discs.compressibility_factor(300 * math.pi * 0.25 / 1000), rel=1e-14)
+    assert two == pytest.approx(result, rel=1e-14)
+    assert result == pytest.approx(hard_discs.compressibility_factor(300 * math.pi * 0.25 / 1000), rel=1e-14)
     rates = hard_discs.mixture_collision_rate([0.5, 0.5], [2.0, 2.0], [100, 200], 1000.0, 1.5)
     alone = hard_discs.collision_rate(1.0, 0.3, 1.5, 2.0, 300 * math.pi * 0.25 / 1000)
     assert rates.sum(axis=1) == pytest.approx([alone, alone], rel=1e-14)
@@ -108,23 +108,23 @@ def test_confinement_is_a_mean_over_the_contact_circle(box, periodic, axis):
     The sum misses up to h² s/16π at a kink where the slope changes by s: 7e-11 for h = 2π/10⁶ and s of 90.
     """
     radius, angle = np.array([0.1, 0.3, 0.9]), (np.arange(10**6) + 0.5) * 2e-6 * math.pi
-    found = hard_discs.confinement(radius, box, periodic, axis)
+    result = hard_discs.confinement(radius, box, periodic, axis)
     for i, j in np.ndindex(3, 3):
         share = np.ones_like(angle) if axis is None else 2 * (np.cos(angle), np.sin(angle))[axis] ** 2
         for side, wraps, along in zip(box, periodic, (np.cos(angle), np.sin(angle)), strict=True):
             a, b = side - 2 * radius[i], side - 2 * radius[j]
             inside = np.clip((a + b) / 2 - (radius[i] + radius[j]) * np.abs(along), 0, min(a, b))
             share = share if wraps else share * inside * side / (a * b)
-        assert found[i, j] == pytest.approx(share.mean(), rel=1e-9, abs=7e-11)
+        assert result[i, j] == pytest.approx(share.mean(), rel=1e-9, abs=7e-11)
 
 
 def test_confinement_of_a_thousand_species_takes_little_memory():
     """A few arrays of 8 MB, a million pairs each; a sum over angles would take 30 GB."""
     tracemalloc.start()
-    found = hard_discs.confinement(np.linspace(0.3, 0.6, 1000), (100.0, 100.0))
+    result = hard_discs.confinement(np.linspace(0.3, 0.6, 1000), (100.0, 100.0))
     assert tracemalloc.get_traced_memory()[1] < 400_000_000
     tracemalloc.stop()
-    assert found[0, 999] == pytest.approx(hard_discs.confinement([0.3, 0.6], (100.0, 100.0))[0, 1], rel=1e-15)
+    assert result[0, 999] == pytest.approx(hard_discs.confinement([0.3, 0.6], (100.0, 100.0))[0, 1], rel=1e-15)
 
 
 def test_second_virial_coefficient_of_a_small_box():

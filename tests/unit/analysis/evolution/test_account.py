@@ -64,8 +64,8 @@ def law(temperature, area=None, steady=False):
 def test_an_adiabatic_exponent_between_the_ends():
     """1 + ln(T₂/T₁)/ln(A₁/A₂), here of T 1 → 4 while A 8 → 2: 2; the law has T 1 → 2, 1.5."""
     temperature = np.array([1.0, 1.9, 2.7, 4.0])
-    found = adiabatic_exponent(temperature, law([1.0, 1.3, 1.6, 2.0], [8.0, 6.0, 4.0, 2.0]))
-    assert (found.value, found.theory) == (pytest.approx(2.0), pytest.approx(1.5))
+    result = adiabatic_exponent(temperature, law([1.0, 1.3, 1.6, 2.0], [8.0, 6.0, 4.0, 2.0]))
+    assert (result.value, result.theory) == (pytest.approx(2.0), pytest.approx(1.5))
     assert adiabatic_exponent(temperature, law([1.0, 1.3, 1.6, 2.0], [8.0, 8.0, 8.0, 7.9])) is None
     assert adiabatic_exponent(temperature, law([1.0, 1.3, 1.6, 2.0])) is None
     assert adiabatic_exponent(np.array([1.0, 0.0]), law([1.0, 2.0], [8.0, 2.0])) is None

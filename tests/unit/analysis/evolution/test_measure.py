@@ -21,23 +21,23 @@ GAS = gas(40, 0.1, (12, 8), "until = 20", temperature=1.5, seed=3)
 
 def test_temperatures_are_those_of_the_states(make):
     log = make("rotation={ inertia = 0.4 }")
-    found = evolution(log, 2.0, 10.0)
-    assert (found.time[0], found.time[-1]) == (2.0, 10.0)
-    state = log.state_at(found.time[100])
-    assert found.temperature[100] == pytest.approx((state.velocity**2).sum() / 2 / 40)
-    assert found.spin[100] == pytest.approx(0.4 * 0.01 * (state.angular_velocity**2).mean())
-    assert found.law.temperature[0] == pytest.approx(1.0)
-    assert json.dumps(found.as_dict(), allow_nan=False)
+    result = evolution(log, 2.0, 10.0)
+    assert (result.time[0], result.time[-1]) == (2.0, 10.0)
+    state = log.state_at(result.time[100])
+    assert result.temperature[100] == pytest.approx((state.velocity**2).sum() / 2 / 40)
+    assert result.spin[100] == pytest.approx(0.4 * 0.01 * (state.angular_velocity**2).mean())
+    assert result.law.temperature[0] == pytest.approx(1.0)
+    assert json.dumps(result.as_dict(), allow_nan=False)
 
 
 def test_without_events_it_has_the_samples(make):
     log = make("log.events=false", "rotation.inertia=0.4")
-    found = evolution(log)
-    assert found.time.tolist() == found.samples.tolist()
-    assert found.temperature == pytest.approx(found.parts["motion"] / 40)
-    assert np.abs(found.balance).max() < 1e-12
-    assert found.spin == pytest.approx(found.parts["spin"] * 2 / 40)
-    assert found.pressure is None
+    result = evolution(log)
+    assert result.time.tolist() == result.samples.tolist()
+    assert result.temperature == pytest.approx(result.parts["motion"] / 40)
+    assert np.abs(result.balance).max() < 1e-12
+    assert result.spin == pytest.approx(result.parts["spin"] * 2 / 40)
+    assert result.pressure is None
 
 
 def test_more_gases_than_colours(make):
@@ -46,12 +46,12 @@ def test_more_gases_than_colours(make):
     inside = [f"{{ position = [{k + 1.5}, 4], velocity = [0.1, 0], radius = 0.1 }}" for k in range(8)]
     last = '{ inner = "x", position = 9, mass = 9 }'
     discs = (f"disc=[{', '.join(inside)}]", "species.0.region=[9, 0, 12, 8]")
-    found = evolution(make(f"piston=[{', '.join([*pistons, last])}]", *discs))
-    assert [*found.pistons] == [*(f"{name} piston" for name in "abcdefg"), "piston"]
-    assert [*found.chambers][-2:] == ["between g piston and piston", "right"]
-    lines = found.figure().axes[0].lines
+    result = evolution(make(f"piston=[{', '.join([*pistons, last])}]", *discs))
+    assert [*result.pistons] == [*(f"{name} piston" for name in "abcdefg"), "piston"]
+    assert [*result.chambers][-2:] == ["between g piston and piston", "right"]
+    lines = result.figure().axes[0].lines
     looks = {(line.get_color(), line.get_linestyle()) for line in lines}
-    assert len(lines) == len(looks) == 1 + len(found.chambers)
+    assert len(lines) == len(looks) == 1 + len(result.chambers)
     assert lines[1].get_label() == "left of the pistons"
 
 
@@ -70,23 +70,23 @@ def test_of_very_many_samples_some_are_read(make, tmp_path):
     craft(path, multiply, {"observables": number})
     with open_log(path) as log:
         tracemalloc.start()
-        found = evolution(log)
+        result = evolution(log)
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert len(log.observables["energy"][1]) == number
-    assert found.samples.tolist() == np.linspace(0, 20, number)[::17].tolist()
-    assert (found.parts["motion"] == found.parts["motion"][0]).all()
+    assert result.samples.tolist() == np.linspace(0, 20, number)[::17].tolist()
+    assert (result.parts["motion"] == result.parts["motion"][0]).all()
     assert most < 60e6  # all of them are 100 MB
 
 
 def test_a_gate_counts_who_is_beyond(make):
     gate = "wall=[{ from = [6, 0], to = [6, 8], opens_at = 5 }]"
     log = make(gate, "species.region=[0, 0, 6, 8]")
-    found = evolution(log)
-    share = found.beyond["gas"]
-    assert (share[found.time <= 5] == 0).all()
+    result = evolution(log)
+    share = result.beyond["gas"]
+    assert (share[result.time <= 5] == 0).all()
     assert share[-1] == (log.state_at(20.0).position[:, 0] > 6).mean() > 0.2
-    assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in found.summary()
+    assert f"At the end {100 * share[-1]:.1f} % of the discs are beyond the wall" in result.summary()
 
 
 PISTON = "piston=[{ velocity = -0.05 }]"
@@ -95,14 +95,14 @@ PISTON = "piston=[{ velocity = -0.05 }]"
 def test_an_adiabatic_exponent_from_temperature_and_area(make):
     """The piston goes from 12 to 11 in a time of 20: instants, not means over bins."""
     log = make(PISTON)
-    found = evolution(log)
+    result = evolution(log)
     kinetic = [(log.state_at(t).velocity ** 2).sum() for t in (0.0, 20.0)]
-    gamma = found.adiabatic_exponent
+    gamma = result.adiabatic_exponent
     assert gamma.value == pytest.approx(1 + math.log(kinetic[1] / kinetic[0]) / math.log(12 / 11))
     assert gamma.theory == pytest.approx(2.06, abs=0.02)  # discs have 2 where Z = 1, and φ is 0.013
     assert 0.01 < gamma.standard_error < 0.5
     assert abs(gamma.deviation) < 4
-    assert " The piston goes from 12 to 11. γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = " in found.summary()
+    assert " The piston goes from 12 to 11. γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = " in result.summary()
     assert evolution(log, 0.0, 5.0).adiabatic_exponent is None  # the area hardly changes
 
 
@@ -119,13 +119,13 @@ def test_errors_of_adiabatic_exponents_are_right(make):
 
 def test_the_mean_of_a_steady_temperature_is_compared_with_theory(make):
     """Not an instant, whose kinetic energy fluctuates by T/√N."""
-    found = evolution(make("box.left={ thermal = 3 }", "run.until=400"))
-    mean = found.mean_temperature
-    assert (mean.theory, found.law.temperature[-1]) == (3.0, 3.0)
+    result = evolution(make("box.left={ thermal = 3 }", "run.until=400"))
+    mean = result.mean_temperature
+    assert (mean.theory, result.law.temperature[-1]) == (3.0, 3.0)
     assert abs(mean.deviation) < 4
-    assert mean.value == pytest.approx(found.temperature[-200:].mean(), rel=0.1)
-    assert "; its mean once steady, " in found.summary()
-    assert "equilibrium (3, " in found.summary()
+    assert mean.value == pytest.approx(result.temperature[-200:].mean(), rel=0.1)
+    assert "; its mean once steady, " in result.summary()
+    assert "equilibrium (3, " in result.summary()
     closed = evolution(make())
     assert closed.mean_temperature is None  # its energy is conserved
     assert closed.summary() == "The kinetic energy per disc stays at 1.5; equilibrium theory predicts 1.5."
@@ -134,28 +134,28 @@ def test_the_mean_of_a_steady_temperature_is_compared_with_theory(make):
 def test_work_of_a_piston_at_constant_temperature(make):
     """A slow piston does N T ln(A₁/A₂) on an ideal gas; 40 discs of this size need a little more."""
     slow = "piston=[{ velocity = -0.0125 }]"
-    found = evolution(make("box.left={ thermal = 1.5 }", slow, "run.until=80", "log.snapshot_every=1"))
-    work = found.isothermal_work
-    assert work.value == pytest.approx(found.given["piston"][-1])
+    result = evolution(make("box.left={ thermal = 1.5 }", slow, "run.until=80", "log.snapshot_every=1"))
+    work = result.isothermal_work
+    assert work.value == pytest.approx(result.given["piston"][-1])
     assert work.theory == pytest.approx(40 * 1.5 * math.log(12 / 11), rel=0.06)
     assert work.theory > 40 * 1.5 * math.log(12 / 11)
     assert abs(work.deviation) < 4
-    assert "The piston does the work " in found.summary()
+    assert "The piston does the work " in result.summary()
     assert evolution(make(PISTON)).isothermal_work is None
 
 
 def test_haff(make):
     """τ of a dilute gas: 4/((1 - e²) 2σn√(πT/m)); what size, number and velocities' a₂ change is some percent."""
-    found = evolution(make("restitution.normal=0.8", "species.radius=0.02", *PERIODIC))
+    result = evolution(make("restitution.normal=0.8", "species.radius=0.02", *PERIODIC))
     tau = 4 / (0.36 * 2 * 0.04 * 40 / 96 * math.sqrt(math.pi * 1.5))
-    t = found.law.temperature
+    t = result.law.temperature
     assert t[0] == pytest.approx(1.5)
     assert 20 / (math.sqrt(t[0] / t[-1]) - 1) == pytest.approx(tau, rel=0.05)
-    assert np.abs(found.balance).max() < 1e-12
-    assert found.dissipated.keys() == {"discs"}
-    assert found.pressure is None  # nothing is hit
-    energy = found.parts["motion"]
-    assert found.dissipated["discs"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-12 * energy[0])
+    assert np.abs(result.balance).max() < 1e-12
+    assert result.dissipated.keys() == {"discs"}
+    assert result.pressure is None  # nothing is hit
+    energy = result.parts["motion"]
+    assert result.dissipated["discs"] == pytest.approx(energy[0] - energy, rel=1e-12, abs=1e-12 * energy[0])
 
 
 @pytest.mark.usefixtures("uncompiled")
@@ -165,21 +165,21 @@ def test_what_elastic_discs_lose_by_rounding_is_no_loss(make):
 
 def test_adiabat(make):
     """Of points T A stays the same; the discs' size makes it a little more."""
-    found = evolution(make("piston=[{ velocity = -0.2 }]", "species.radius=0.001"))
-    assert found.law.temperature[-1] == pytest.approx(1.5 * 12 / 8, rel=1e-3)
-    assert found.pistons["piston"][[0, -1]] == pytest.approx([12, 8])
-    assert found.given["piston"][-1] == pytest.approx(found.parts["motion"][-1] - 60)
+    result = evolution(make("piston=[{ velocity = -0.2 }]", "species.radius=0.001"))
+    assert result.law.temperature[-1] == pytest.approx(1.5 * 12 / 8, rel=1e-3)
+    assert result.pistons["piston"][[0, -1]] == pytest.approx([12, 8])
+    assert result.given["piston"][-1] == pytest.approx(result.parts["motion"][-1] - 60)
 
 
 def test_a_piston_with_a_mass_keeps_its_balance_and_has_a_place(make):
-    found = evolution(make("piston=[{ side = 'left', position = 4, mass = 5, pressure = 1 }]", "species.radius=0.001"))
-    assert np.abs(found.balance).max() < 1e-12
-    assert set(found.parts) == {"motion", "piston"}
+    result = evolution(make("piston=[{ side = 'left', position = 4, mass = 5, pressure = 1 }]", "species.radius=0.001"))
+    assert np.abs(result.balance).max() < 1e-12
+    assert set(result.parts) == {"motion", "piston"}
     energy, n = 60 + 8 * (8 - 0.002), 40
     t = energy / (2 * n + 1.5)
-    assert found.law.temperature[0] == pytest.approx(t, rel=1e-3)
-    assert 12 - found.law.piston == pytest.approx(0.002 + (n + 1) * t / 8, rel=1e-3)
-    shown = found.plot().axes
+    assert result.law.temperature[0] == pytest.approx(t, rel=1e-3)
+    assert 12 - result.law.piston == pytest.approx(0.002 + (n + 1) * t / 8, rel=1e-3)
+    shown = result.plot().axes
     assert "piston position (length)" in [ax.get_ylabel() for ax in shown]
     assert "work done by the piston" in [text.get_text() for ax in shown for text in ax.get_legend().get_texts()]
 
@@ -199,23 +199,23 @@ def test_equilibrium(make):
 def test_pressure_in_bins_of_time(make):
     """The bins together are the mean over the log, and the picture has one panel for P(t) and one for P(A)."""
     log = make("piston=[{ velocity = -0.1 }]", "species.radius=0.001")
-    found = evolution(log)
-    series, force = found.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
+    result = evolution(log)
+    series, force = result.pressure, log.observables["wall_energy"][1][-1, 1] / 0.1 / 20  # work per way and time
     assert series.pressure["right wall"].mean() * 8 == pytest.approx(force, rel=1e-9)
     n = len(series.area)
     assert series.area[[0, -1]] == pytest.approx(96 - 0.8 * 20 * np.array([0.5, n - 0.5]) / n)
     assert {*series.pressure} == {f"{side} wall" for side in SIDES}
-    titles = [table.title for table in found.plain_tables()]
+    titles = [table.title for table in result.plain_tables()]
     assert titles[1] == "Pressure on walls, means over bins of time"
-    axes = [ax.get_ylabel() for ax in found.plot().axes]
+    axes = [ax.get_ylabel() for ax in result.plot().axes]
     assert axes.count("pressure (energy/length²)") == 2
-    labels = [text.get_text() for text in found.plot().axes[-1].get_legend().get_texts()]
+    labels = [text.get_text() for text in result.plot().axes[-1].get_legend().get_texts()]
     assert labels == ["isotherm through the start", "adiabat through the start", "P on right wall, in time"]
 
 
-def states_of(found):
+def states_of(result):
     """Areas of the pressures that the picture of an evolution shows against the area."""
-    return found.plot().axes[-1].containers[0].lines[0].get_xdata()
+    return result.plot().axes[-1].containers[0].lines[0].get_xdata()
 
 
 def test_states_of_a_piston_are_a_path_until_it_rests(make):
@@ -223,12 +223,12 @@ def test_states_of_a_piston_are_a_path_until_it_rests(make):
     moved = evolution(make("piston=[{ velocity = -0.1 }]"))
     assert (moved.rest_start, len(states_of(moved))) == (None, len(moved.pressure.area))
     log = make("piston=[{ position = 12, mass = 100, pressure = 3 }]", "species.count=60", "run.until=1000")
-    found, late = evolution(log), evolution(log, 500.0)
-    assert 100 < found.rest_start < 500 < late.rest_start
-    areas = states_of(found)
+    result, late = evolution(log), evolution(log, 500.0)
+    assert 100 < result.rest_start < 500 < late.rest_start
+    areas = states_of(result)
     assert len(areas) == STATES + 1
     assert np.ptp(areas[:4]) > 10
-    assert areas[-1] == pytest.approx(8 * found.rest.value, rel=0.01)
+    assert areas[-1] == pytest.approx(8 * result.rest.value, rel=0.01)
     assert len(states_of(late)) == 1
 
 

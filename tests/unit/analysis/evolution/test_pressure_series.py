@@ -17,11 +17,11 @@ GAS = gas(
 
 def scatters(change, spread=1.0):
     """Mean and standard error over 200 series of bins whose errors are 1, with a change in the series."""
-    found = [
+    actual = [
         scatter(spread * draw.normal(size=BINS) + change, np.ones(BINS))
         for draw in map(np.random.default_rng, range(200))
     ]
-    return np.mean(found), np.std(found) / math.sqrt(len(found))
+    return np.mean(actual), np.std(actual) / math.sqrt(len(actual))
 
 
 @pytest.mark.parametrize("spread", [0.5, 1.0, 2.0])

@@ -29,8 +29,8 @@ def test_heat_bath(dof):
     random, hits = np.random.default_rng(1), 0
     for _ in range(100):
         energy = 1.5 * random.gamma(dof * N / 2, size=2000)
-        found = bath_fluctuations(energy, N, 1.5, 0.0, dof / 2)
-        low, high = found.interval()
+        result = bath_fluctuations(energy, N, 1.5, 0.0, dof / 2)
+        low, high = result.interval()
         hits += low < dof / 2 < high
     assert 85 <= hits <= 100
 
@@ -82,9 +82,9 @@ def test_slope(errors):
 
 def test_routes_that_do_not_apply_say_why():
     logs = [measured(BATH, 1.0, 1.0, (0.01, 0.0), {"Var(E)/T²": Estimate(1.0, 0.02, 100.0, 1.0)})]
-    found = HeatCapacityAnalysis.combine(logs)
-    assert [route.name for route in found.routes] == ["Var(E)/T²"]
-    assert set(found.refused) == {"dE/dT", "E/T", "fluctuations of the kinetic energy", "γ"}
+    result = HeatCapacityAnalysis.combine(logs)
+    assert [route.name for route in result.routes] == ["Var(E)/T²"]
+    assert set(result.refused) == {"dE/dT", "E/T", "fluctuations of the kinetic energy", "γ"}
 
 
 def test_gamma_takes_the_best_measured_capacity_at_constant_area():

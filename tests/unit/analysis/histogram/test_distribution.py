@@ -22,15 +22,15 @@ def made(samples=(0.25, 0.5), law_error=0.0, counts=COUNTS):
 
 def test_densities_are_shares_of_all_counts_over_the_widths():
     """Of 64 counts 40 and 8 are in the bins; 8 blocks with a value are too few for the error of the second."""
-    found = made()
-    assert found.density == pytest.approx([40 / 64 / 0.5, 8 / 64 / 1.5], rel=1e-14)
-    assert found.middles.tolist() == [0.25, 1.25]
+    result = made()
+    assert result.density == pytest.approx([40 / 64 / 0.5, 8 / 64 / 1.5], rel=1e-14)
+    assert result.middles.tolist() == [0.25, 1.25]
     error = ratio(COUNTS[:, 1].astype(float), COUNTS.sum(axis=1).astype(float)).standard_error
-    assert found.error[0] == pytest.approx(error / 0.5, rel=1e-14)
+    assert result.error[0] == pytest.approx(error / 0.5, rel=1e-14)
     assert error > 0
-    assert np.isnan(found.error[1])
-    assert (found.samples, found.correlation_time, found.mean.value) == (2, 3.0, 0.5)
-    assert found.laws["even"].tolist() == [1.0, 0.0]
+    assert np.isnan(result.error[1])
+    assert (result.samples, result.correlation_time, result.mean.value) == (2, 3.0, 0.5)
+    assert result.laws["even"].tolist() == [1.0, 0.0]
 
 
 def test_distances_from_a_law_and_its_error():

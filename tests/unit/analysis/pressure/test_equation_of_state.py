@@ -36,12 +36,12 @@ def samples(phis, error, number=1000, runs=4, seed=0):
 
 def test_virial_coefficients_come_back():
     """Four standard errors; the errors themselves must be small enough to tell B2 to 0.5 %."""
-    found = equation_of_state(list(samples(np.linspace(0.02, 0.25, 12), 2e-4, seed=3)))
-    assert [state.runs for state in found.states] == [4] * 12
-    for coefficient in (found.b2, found.b3):
+    result = equation_of_state(list(samples(np.linspace(0.02, 0.25, 12), 2e-4, seed=3)))
+    assert [state.runs for state in result.states] == [4] * 12
+    for coefficient in (result.b2, result.b3):
         assert abs(coefficient.deviation) < 4
-    assert found.b2.standard_error < 0.005 * found.b2.value
-    assert found.check().agrees is True
+    assert result.b2.standard_error < 0.005 * result.b2.value
+    assert result.check().agrees is True
 
 
 def test_spread_of_the_fit_is_its_standard_error():
@@ -63,33 +63,33 @@ def test_rows_of_states_have_n_and_phi_and_seeds():
     """In CSV each state has a row of Z with the number of the table, for N → ∞."""
     runs = list(samples([0.1, 0.2], 1e-3, number=100, runs=2))
     origins = [Origin(f"{k}.h5", str(k), "", "", "", False, 3 + k % 2, "") for k in range(4)]
-    found = equation_of_state([replace(run, origin=origin) for run, origin in zip(runs, origins, strict=True)])
-    rows = {row["quantity"]: row for row in csv.DictReader(io.StringIO(as_csv(found.as_dict(), "pressure")))}
+    result = equation_of_state([replace(run, origin=origin) for run, origin in zip(runs, origins, strict=True)])
+    rows = {row["quantity"]: row for row in csv.DictReader(io.StringIO(as_csv(result.as_dict(), "pressure")))}
     z = [row for name, row in rows.items() if name.endswith(".Z")]
     assert [row["group"] for row in z] == [f"φ = {phi}, N = 100, seeds 3, 4" for phi in (0.1, 0.2)]
-    table = found.plain_tables()[0]
+    table = result.plain_tables()[0]
     shown = [row[table.heads.index("Z")].value for row in table.rows]
-    assert [float(row["value"]) for row in z] == shown == [state.infinite.value for state in found.states]
+    assert [float(row["value"]) for row in z] == shown == [state.infinite.value for state in result.states]
     of_n = [float(row["value"]) for name, row in rows.items() if name.endswith(".Z_of_this_N")]
-    assert of_n == [state.compressibility_factor.value for state in found.states] != shown
+    assert of_n == [state.compressibility_factor.value for state in result.states] != shown
 
 
 def test_every_phase_has_the_theory_that_is_known():
     """Fluid, published simulations, nothing where it freezes, and the crystal, with the error of free-volume theory."""
     published = pressure_of(0.67, 870, Estimate(9.36, 0.01, 10.0, 9.3624))
     unknown, crystal = (pressure_of(phi, 480, Estimate(z, 0.01, 10.0)) for phi, z in ((0.71, 10.2), (0.8, 16.93)))
-    found = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
+    result = equation_of_state([*samples([0.1, 0.2], 1e-3), published, unknown, crystal])
     sources = ["virial series, resummed"] * 2 + ["published simulations", None, "free volume, of a crystal"]
-    assert [state.source for state in found.states] == sources
-    dense = found.states[-1]
+    assert [state.source for state in result.states] == sources
+    dense = result.states[-1]
     assert dense.infinite.theory == pytest.approx(1 / (1 - math.sqrt(0.8 * math.sqrt(12) / math.pi)))
     assert 0.4 < dense.infinite.theory_error < 0.6
     assert (dense.virial, dense.henderson) == (None, None)
-    checked = found.check()
+    checked = result.check()
     assert checked.agrees is True
     assert len(checked.compared) == 4
     assert equation_of_state([unknown]).check().agrees is None
-    (row,) = (row for row in found.plain_tables()[0].shown if row[0] == "0.71")
+    (row,) = (row for row in result.plain_tables()[0].shown if row[0] == "0.71")
     assert row[5:] == ["", "", "", "", ""]
     without_error = equation_of_state([pressure_of(0.1, 100, Estimate(1.2, math.nan, 1.0, 1.2))])
     assert without_error.plain_tables()[0].shown[0][4:6] == ["nan", ""]
@@ -98,14 +98,14 @@ def test_every_phase_has_the_theory_that_is_known():
 @pytest.mark.parametrize(("phis", "numbers"), [((0.05, 0.1), (100, 400)), ((0.05, 0.1, 0.2), (100, 200, 400))])
 def test_few_packing_fractions_give_states_however_many_they_are(phis, numbers):
     """Four free parameters or more need as many packing fractions; other numbers of discs do not help."""
-    found = equation_of_state([s for n in numbers for s in samples(phis, 1e-3, n, runs=1)])
-    assert [(state.packing_fraction, state.number) for state in found.states] == list(product(phis, numbers))
-    assert (found.b2, found.b3) == (None, None)
-    states, coefficients = found.plain_tables()
+    result = equation_of_state([s for n in numbers for s in samples(phis, 1e-3, n, runs=1)])
+    assert [(state.packing_fraction, state.number) for state in result.states] == list(product(phis, numbers))
+    assert (result.b2, result.b3) == (None, None)
+    states, coefficients = result.plain_tables()
     assert len(states.rows) == len(phis) * len(numbers)
     assert states.heads[:2] == ("φ", "N")
     assert coefficients.notes == ("No virial coefficients: a fit takes 4 packing fractions or more, up to 0.25.",)
-    assert found.check().agrees is True
+    assert result.check().agrees is True
     enough = equation_of_state(list(samples((0.05, 0.1, 0.15, 0.2), 1e-3, runs=1)))
     assert enough.b2 is not None
 

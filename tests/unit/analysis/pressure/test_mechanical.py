@@ -27,33 +27,33 @@ EFFECTS = {
 
 @pytest.mark.parametrize("override", EFFECTS)
 def test_every_effect_has_a_pressure_of_its_walls(override, make):
-    found = pressure(make(override))
-    assert found.routes == ()
-    assert found.theories == {}
-    assert found.no_theory == f"no equation of state holds under {EFFECTS[override]}"
-    assert found.check().agrees is None
-    walls = {wall.name: wall.pressure for wall in found.mechanical.walls}
+    result = pressure(make(override))
+    assert result.routes == ()
+    assert result.theories == {}
+    assert result.no_theory == f"no equation of state holds under {EFFECTS[override]}"
+    assert result.check().agrees is None
+    walls = {wall.name: wall.pressure for wall in result.mechanical.walls}
     assert {"left wall", "right wall", "bottom wall", "top wall"} <= set(walls)
     for name, value in walls.items():
         assert 0 < value.value < 8, name
         assert 0 < value.standard_error < value.value, name
-    known = json.loads(json.dumps(found.as_dict(), allow_nan=False))
+    known = json.loads(json.dumps(result.as_dict(), allow_nan=False))
     assert [wall["wall"] for wall in known["walls"]] == list(walls)
     assert known["forces"][-1]["wall"] == "all walls"
-    tables = found.plain_tables()
-    assert f"Theory is not available: {found.no_theory}." in tables[0].notes
+    tables = result.plain_tables()
+    assert f"Theory is not available: {result.no_theory}." in tables[0].notes
     assert len(tables[0].rows) == len(walls)
-    assert [label.get_text() for label in found.figure().axes[0].get_yticklabels()] == list(walls)[::-1]
+    assert [label.get_text() for label in result.figure().axes[0].get_yticklabels()] == list(walls)[::-1]
 
 
 def test_a_plain_box_has_routes_and_no_more(make):
-    found = pressure(make())
-    assert found.mechanical is None
-    assert {"walls", "forces"}.isdisjoint(found.as_dict())
+    result = pressure(make())
+    assert result.mechanical is None
+    assert {"walls", "forces"}.isdisjoint(result.as_dict())
 
 
-def theories(found):
-    return {wall.name: wall.pressure.theory for wall in found.mechanical.walls}
+def theories(result):
+    return {wall.name: wall.pressure.theory for wall in result.mechanical.walls}
 
 
 def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
@@ -68,13 +68,13 @@ def test_the_outer_pressure_is_the_theory_of_a_piston_alone(make):
 
 
 def test_a_state_that_changes_all_the_time_is_averaged_and_said_so(make):
-    found = pressure(make("piston=[{ velocity = -0.05 }]"))
-    assert (found.window.start, found.window.detected) == (0.0, False)
-    assert found.mechanical.unsteady == "the gas is driven (piston)"
-    assert any("`evolution` shows P(t)" in note for note in found.plain_tables()[0].notes)
-    assert found.area == pytest.approx(6 * 7)
-    assert found.packing_fraction == pytest.approx(30 * np.pi * 0.01 / 42)
-    assert found.mechanical.forces[-1].x.theory is None
+    result = pressure(make("piston=[{ velocity = -0.05 }]"))
+    assert (result.window.start, result.window.detected) == (0.0, False)
+    assert result.mechanical.unsteady == "the gas is driven (piston)"
+    assert any("`evolution` shows P(t)" in note for note in result.plain_tables()[0].notes)
+    assert result.area == pytest.approx(6 * 7)
+    assert result.packing_fraction == pytest.approx(30 * np.pi * 0.01 / 42)
+    assert result.mechanical.forces[-1].x.theory is None
     assert pressure(make("piston=[{ velocity = -0.05 }]"), start=20.0).area == pytest.approx(6 * 6.5)
 
 
@@ -89,12 +89,12 @@ def test_a_heat_bath_carries_no_weight_on_average(make):
 
     The variance of the force in a time t is then Σ(2mv)²/t², 8 √m T^1.5/√(2π) times their barometric densities, over t.
     """
-    found = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }"))
+    result = pressure(make("gravity.acceleration=[0, -0.3]", "thermostat={ temperature = 1.5, rate = 2 }"))
     alone = pressure(make("gravity.acceleration=[0, -0.3]")).mechanical.forces[-1].y
-    force, x = found.mechanical.forces[-1].y, 0.3 * 5.8 / 1.5
+    force, x = result.mechanical.forces[-1].y, 0.3 * 5.8 / 1.5
     assert force.theory == alone.theory == pytest.approx(-9.0)
     hits = 30 / 5.8 * x / np.tanh(x / 2) * 8 * 1.5**1.5 / np.sqrt(2 * np.pi)
-    assert force.standard_error == pytest.approx(np.sqrt(hits / (40 - found.window.start)), rel=0.2)
+    assert force.standard_error == pytest.approx(np.sqrt(hits / (40 - result.window.start)), rel=0.2)
     assert alone.standard_error < force.standard_error / 3
     assert abs(force.deviation) < 4
 
@@ -102,9 +102,9 @@ def test_a_heat_bath_carries_no_weight_on_average(make):
 @pytest.mark.usefixtures("uncompiled")
 def test_a_disc_that_meets_nothing_presses_on_nothing(make):
     log = make("species.count=1", "run.until=4", "log={ events=false, pressure=true, snapshot_every=0.1 }", *PERIODIC)
-    found = pressure(log).mechanical
-    assert found.walls == ()
-    assert found.forces[-1].x.value == 0.0
+    result = pressure(log).mechanical
+    assert result.walls == ()
+    assert result.forces[-1].x.value == 0.0
 
 
 def test_smooth_walls_have_no_stress_and_rough_ones_do(make):
@@ -116,21 +116,21 @@ def test_smooth_walls_have_no_stress_and_rough_ones_do(make):
 
 
 def test_a_wall_that_is_never_hit_has_no_error_bar(make):
-    found = pressure(make("gravity.acceleration=[0, -20]", "species.region=[0, 0, 8, 2]", "run.until=4"), start=1.0)
-    top = next(wall.pressure for wall in found.mechanical.walls if wall.name == "top wall")
+    result = pressure(make("gravity.acceleration=[0, -20]", "species.region=[0, 0, 8, 2]", "run.until=4"), start=1.0)
+    top = next(wall.pressure for wall in result.mechanical.walls if wall.name == "top wall")
     assert (top.value, top.as_dict()["standard_error"]) == (0.0, None)
-    (row,) = [row for row in found.plain_tables()[0].shown if row[0] == "top wall"]
+    (row,) = [row for row in result.plain_tables()[0].shown if row[0] == "top wall"]
     assert row[1:3] == ["0", ""]
 
 
 def test_no_equation_of_state_of_such_gases(make):
     log = make("gravity.acceleration=[0, -0.3]")
-    found, analysis = registry.analyse(log, "pressure"), registry.find("pressure")
-    assert analysis.combined([found]) is found
-    point = analysis.restored(found.as_dict(), origin_of(log.scene, "sweep, point 3"))
-    raised(f"{log.path}: no equation of state holds under gravity", analysis.combine, [found, found])
+    result, analysis = registry.analyse(log, "pressure"), registry.find("pressure")
+    assert analysis.combined([result]) is result
+    point = analysis.restored(result.as_dict(), origin_of(log.scene, "sweep, point 3"))
+    raised(f"{log.path}: no equation of state holds under gravity", analysis.combine, [result, result])
     raised("sweep, point 3: no equation of state holds under gravity", analysis.combine, [point, point])
-    assert repr(point.mechanical) == repr(found.mechanical)
+    assert repr(point.mechanical) == repr(result.mechanical)
 
 
 def walls_at(*pressures):

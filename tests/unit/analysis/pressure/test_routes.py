@@ -44,12 +44,12 @@ def events(log):
 def test_every_route(make):
     """T = 2E/D of six degrees of freedom; N T/A = 3 T/20; over the time 40, lengths 5 and 4, and the area 20."""
     log = make()
-    found = pressure(log, 0.0)
+    result = pressure(log, 0.0)
     pushed, virial, pairs = events(log)
     temperature = (1.09 + 1.46 + 0.85) / 2 * 2 / 6
     ideal = 3 * temperature / 20
-    assert found.temperature == pytest.approx(temperature, rel=1e-12)
-    z = {route.name: route.compressibility_factor.value for route in found.routes}
+    assert result.temperature == pytest.approx(temperature, rel=1e-12)
+    z = {route.name: route.compressibility_factor.value for route in result.routes}
     sides = {
         f"{name} wall": pushed[k] / 40 / (4, 4, 5, 5)[k] for k, name in enumerate(("left", "right", "bottom", "top"))
     }
@@ -58,11 +58,11 @@ def test_every_route(make):
     assert z["all walls"] == pytest.approx(pushed.sum() / 40 / 18 / ideal, rel=1e-9)
     assert z[WALLS] == pytest.approx(virial / 40 / (2 * 20 * ideal), rel=1e-9)
     assert z[PAIRS] == pytest.approx(1 + pairs / 40 / (2 * 20 * ideal), rel=1e-9)
-    for route in found.routes:
+    for route in result.routes:
         assert route.pressure.value == pytest.approx(route.compressibility_factor.value * ideal, rel=1e-12)
     rate = (next(log.chunks()).partner >= 0).sum() / 3 / 40
-    assert found.collision_rates[0].rate.value == pytest.approx(rate, rel=1e-12)
-    assert found.free_paths[0].time.value == pytest.approx(1 / rate, rel=1e-12)
+    assert result.collision_rates[0].rate.value == pytest.approx(rate, rel=1e-12)
+    assert result.free_paths[0].time.value == pytest.approx(1 / rate, rel=1e-12)
     assert pairs > 0
 
 
@@ -80,19 +80,19 @@ def test_rooms_and_shares_of_sides():
 
 def test_pressures_of_two_discs_in_lanes(lanes):
     """2 m |v| for each hit, over the time 180 and the lengths 8 of left and right, 10 of the others."""
-    found = pressure(lanes, 0.0)
+    result = pressure(lanes, 0.0)
     rows = next(lanes.chunks())
     impulse = {0: (4.0, 2.0), 1: (4.0, 2.0)}
-    walls = {wall.name: wall.pressure.value for wall in found.mechanical.walls}
+    walls = {wall.name: wall.pressure.value for wall in result.mechanical.walls}
     hits = {(d, w): int(((rows.disc == d) & (rows.partner == -1 - w)).sum()) for d in (0, 1) for w in range(5)}
     for side, name in ((0, "left wall"), (1, "right wall")):
         given = sum(impulse[d][0] * hits[d, side] for d in (0, 1))
         assert walls[name] == pytest.approx(given / 180 / 8, rel=1e-9)
     for name, disc, wall in (("bottom wall", 0, 2), ("top wall", 1, 3), ("wall 4, up", 1, 4), ("wall 4, down", 0, 4)):
         assert walls[name] == pytest.approx(impulse[disc][1] * hits[disc, wall] / 180 / 10, rel=1e-9)
-    forces = {force.name: (force.x.value, force.y.value) for force in found.mechanical.forces}
+    forces = {force.name: (force.x.value, force.y.value) for force in result.mechanical.forces}
     on_wall = (impulse[0][1] * hits[0, 4] - impulse[1][1] * hits[1, 4]) / 180
     along_x = sum(impulse[d][0] * (hits[d, 1] - hits[d, 0]) for d in (0, 1)) / 180
     assert forces["wall 4"][1] == pytest.approx(on_wall, rel=1e-9)
     assert forces["all walls"][0] == pytest.approx(along_x, abs=1e-9)
-    assert found.area == 80.0
+    assert result.area == 80.0

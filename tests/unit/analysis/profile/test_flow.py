@@ -22,7 +22,7 @@ run.events = 1
 def test_a_parabola_with_slip(make):
     """u = ρg/2η (y (H - y) + sH), H = 40 between centres; s = 1.016 ℓ, ℓ = 1.022 · 2/√π free paths."""
     edges = np.linspace(0, 41, 4101)
-    found = expected_flow(make(), 1, edges)
+    result = expected_flow(make(), 1, edges)
     density = 200 / (20 * 40)
     phi = density * math.pi / 4
     chi = hard_discs.fluid_contact_value(phi)
@@ -30,12 +30,12 @@ def test_a_parabola_with_slip(make):
     slip = 1.016 * 1.022 * 2 / math.sqrt(math.pi) * hard_discs.mean_free_path(1.0, density, phi)
     y = np.array([0.005, 10.005, 20.005])  # middles of strips
     expected = 3 * density * 0.001 / (2 * viscosity) * (y * (40 - y) + slip * 40)
-    velocity = np.array([one.value for one in found.velocity])
+    velocity = np.array([each.value for each in result.velocity])
     assert velocity[[50, 1050, 2050]] == pytest.approx(expected, rel=1e-5)
     assert velocity[::-1] == pytest.approx(velocity, rel=1e-9)
-    assert found.relaxation == pytest.approx(1600 / math.pi**2 * 3 * density / viscosity, rel=1e-12)
-    assert {one.source for one in found.velocity} == {LAW}
-    assert 0.02 < found.velocity[2050].error / velocity[2050] < 0.1
+    assert result.relaxation == pytest.approx(1600 / math.pi**2 * 3 * density / viscosity, rel=1e-12)
+    assert {each.source for each in result.velocity} == {LAW}
+    assert 0.02 < result.velocity[2050].error / velocity[2050] < 0.1
 
 
 def test_energy_and_stress_of_strips_are_relative_to_their_flow(make):

@@ -92,18 +92,18 @@ def test_one_species_moves_apart_from_the_other(log, edges):
 
 def test_growth_is_half_the_slope_of_plain_averages():
     flow, lags = np.random.default_rng(2).normal(size=(2, 101)) + 0.3, Lags(0.5, 3, 7)
-    found = growth(flow, lags)
+    result = growth(flow, lags)
     squares = np.zeros((2, 8, 95))
     for route, series in enumerate(flow - flow.mean(axis=1, keepdims=True)):
         for start in range(95):
             for steps in range(8):
                 squares[route, steps, start] = series[start : start + steps].sum() ** 2
     long, short = (t - t * t / (101 * 0.5) for t in (3.5, 1.5))
-    assert found.series == pytest.approx((squares[:, 7] - squares[:, 3]) / 2 / (long - short))
+    assert result.series == pytest.approx((squares[:, 7] - squares[:, 3]) / 2 / (long - short))
     assert lags.plateau == (1.5, 3.5)
     time = np.arange(8) * 0.5
     used = squares.mean(axis=0)[:, : 95 - 95 % 13].mean(axis=1)
-    assert found.running == pytest.approx(np.diff(used) / np.diff(time - time**2 / 50.5) / 2)
+    assert result.running == pytest.approx(np.diff(used) / np.diff(time - time**2 / 50.5) / 2)
     assert lags.times == pytest.approx((time[1:] + time[:-1]) / 2)
 
 
@@ -114,28 +114,28 @@ def test_growth_of_a_current_that_is_known():
     current = np.zeros((2, n))
     for t in range(1, n):
         current[:, t] = a * current[:, t - 1] + noise[:, t]
-    found = growth(current, lags_of(1.0, 20.0, 0.5))
+    result = growth(current, lags_of(1.0, 20.0, 0.5))
     expected = 1 / (2 * (1 - a) ** 2)
-    assert len(found.running) == 20
-    assert (np.abs(found.running[10:] - expected) < 4 * found.error[10:]).all()
-    assert (found.error[10:] < 0.05 * expected).all()
-    assert found.running[0] < 0.7 * expected  # it has not forgotten yet
+    assert len(result.running) == 20
+    assert (np.abs(result.running[10:] - expected) < 4 * result.error[10:]).all()
+    assert (result.error[10:] < 0.05 * expected).all()
+    assert result.running[0] < 0.7 * expected  # it has not forgotten yet
 
 
 def test_coefficients_are_growth_over_area_and_temperature(log):
     """Viscosities are K/(A T), the conductivity is K/(A T²); xy, (xx - yy)/2 and heat have one current here."""
-    one, trace = np.random.default_rng(4).normal(size=(2, 101))
+    each, trace = np.random.default_rng(4).normal(size=(2, 101))
     flow = np.zeros((101, 2, 7))
-    flow[:, CARRIED, [XX, XY, HEAT_X, HEAT_Y]] = np.column_stack((trace + one, one, one, one))
-    flow[:, PASSED_ON, YY] = trace - one
-    known, unit = growth(np.array([one, trace]), Lags(0.5, 3, 7)).series.mean(axis=1), 30 * 4.0
-    found = _coefficients(flow, Lags(0.5, 3, 7), log.discs, 4.0, True, None)
+    flow[:, CARRIED, [XX, XY, HEAT_X, HEAT_Y]] = np.column_stack((trace + each, each, each, each))
+    flow[:, PASSED_ON, YY] = trace - each
+    known, unit = growth(np.array([each, trace]), Lags(0.5, 3, 7)).series.mean(axis=1), 30 * 4.0
+    result = _coefficients(flow, Lags(0.5, 3, 7), log.discs, 4.0, True, None)
     for name, value, routes in (
         ("viscosity", known[0] / unit, 2),
         ("thermal_conductivity", known[0] / unit / 4, 2),
         ("bulk_viscosity", known[1] / unit, 1),
     ):
-        assert [route.value for route in found[name].routes.values()] == pytest.approx([value] * routes)
+        assert [route.value for route in result[name].routes.values()] == pytest.approx([value] * routes)
 
 
 @pytest.mark.parametrize(("width", "longest"), [(1.0, 20.0), (1.0, 1.0), (30.0, 20.0), (0.2, 3.0)])
@@ -146,47 +146,47 @@ def test_lags_leave_a_plateau(width, longest):
 
 
 def test_coefficients_of_a_log(log):
-    found = transport(log)
-    whole = found.collective
+    result = transport(log)
+    whole = result.collective
     single = len(log.discs.species_names) == 1
     last = ["bulk_viscosity", *["mutual_diffusion"] * (not single)]
     assert list(whole.coefficients) == ["viscosity", *["thermal_conductivity"] * single, *last]
     assert whole.plateau[1] == pytest.approx(2 * whole.plateau[0])
-    for name, one in whole.coefficients.items():
-        routes = [route.value for route in one.routes.values()]
-        assert one.value.value == pytest.approx(np.mean(routes))
-        assert one.value.value > 0
-        assert (one.value.theory is not None) == (single or name == "mutual_diffusion")
-        assert (one.difference is None) == (len(routes) == 1)
-        if one.difference is not None:
-            assert one.difference.value == pytest.approx(routes[0] - routes[1])
-    trace = (found.pressure["xx"].value + found.pressure["yy"].value) / 2
-    impacts = streamed(log, np.array([found.window.start, found.window.end]), Impacts(len(log.walls), log.periodic))
+    for name, each in whole.coefficients.items():
+        routes = [route.value for route in each.routes.values()]
+        assert each.value.value == pytest.approx(np.mean(routes))
+        assert each.value.value > 0
+        assert (each.value.theory is not None) == (single or name == "mutual_diffusion")
+        assert (each.difference is None) == (len(routes) == 1)
+        if each.difference is not None:
+            assert each.difference.value == pytest.approx(routes[0] - routes[1])
+    trace = (result.pressure["xx"].value + result.pressure["yy"].value) / 2
+    impacts = streamed(log, np.array([result.window.start, result.window.end]), Impacts(len(log.walls), log.periodic))
     gas, dof = log.discs, 2 * len(log.discs) - 2
     frame = gas.mass @ gas.velocity / gas.mass.sum()
     temperature = (gas.mass * ((gas.velocity - frame) ** 2).sum(axis=1)).sum() / dof
-    virial = impacts.pair_virial[0] / found.window.duration / 2
+    virial = impacts.pair_virial[0] / result.window.duration / 2
     assert trace == pytest.approx((len(gas) * temperature + virial) / gas.area, rel=1e-9)
-    assert abs(found.pressure["xy"].deviation) < 4
-    assert json.dumps(found.as_dict(), allow_nan=False)
-    assert any("plateau: t = " in note for table in found.plain_tables() for note in table.notes)
+    assert abs(result.pressure["xy"].deviation) < 4
+    assert json.dumps(result.as_dict(), allow_nan=False)
+    assert any("plateau: t = " in note for table in result.plain_tables() for note in table.notes)
 
 
 def test_walls_have_no_coefficients_of_the_whole_gas(make):
     log = make("box.left=reflecting", "box.right=reflecting")
-    found = transport(log)
-    assert found.collective is None
-    assert any(WALLS in table.notes for table in found.plain_tables())
-    assert math.isfinite(found.diffusion[0].running[-1])
+    result = transport(log)
+    assert result.collective is None
+    assert any(WALLS in table.notes for table in result.plain_tables())
+    assert math.isfinite(result.diffusion[0].running[-1])
 
 
 def test_species_that_differ_by_name_only_diffuse_like_their_discs():
     gas = 'name = "{}", count = {}, radius = 0.3, temperature = 1.0'
     species = ", ".join("{" + gas.format(name, count) + "}" for name, count in (("white", 12), ("black", 30)))
-    found = transport(log_of(f"box.size = [8, 9]\nspecies = [{species}]\nrun.events = 20_000", *PERIODIC))
-    mutual = found.collective.coefficients["mutual_diffusion"].value
-    for one in found.diffusion:
-        assert mutual.theory == pytest.approx(one.coefficient.theory, rel=0.05)  # exactly so in an infinite gas
+    result = transport(log_of(f"box.size = [8, 9]\nspecies = [{species}]\nrun.events = 20_000", *PERIODIC))
+    mutual = result.collective.coefficients["mutual_diffusion"].value
+    for each in result.diffusion:
+        assert mutual.theory == pytest.approx(each.coefficient.theory, rel=0.05)  # exactly so in an infinite gas
     assert abs(mutual.deviation) < 4
 
 
@@ -220,17 +220,17 @@ def test_the_same_coefficients_without_events():
     for name, override in (("events", "log.events=true"), ("samples", "log.events=false")):
         log = log_of(SAMPLED, override)
         last = 0.5 * int(log.end_time / 0.5)
-        found = transport(log, start=1.5, end=last, lag=10.0)
-        flows[name], width = flow_in_samples(log, found.window, found.collective.plateau[1])
+        result = transport(log, start=1.5, end=last, lag=10.0)
+        flows[name], width = flow_in_samples(log, result.window, result.collective.plateau[1])
         if log.has_events:
             edges = 1.5 + width * np.arange(len(flows[name]) + 1)
             currents = streamed(log, edges, Currents())
             assert flows[name][..., :APART_X] == pytest.approx(currents.flow[..., :APART_X], rel=1e-9, abs=1e-9)
         else:
-            assert (found.diffusion, found.pair_distributions, found.free_paths) == ((), (), ())
-            assert list(found.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
-            assert len(found.plain_tables()) == 4
-            assert json.dumps(found.as_dict(), allow_nan=False)
+            assert (result.diffusion, result.pair_distributions, result.free_paths) == ((), (), ())
+            assert list(result.collective.coefficients) == ["viscosity", "bulk_viscosity"]  # two species
+            assert len(result.plain_tables()) == 4
+            assert json.dumps(result.as_dict(), allow_nan=False)
     assert np.array_equal(flows["events"], flows["samples"], equal_nan=True)
 
 
@@ -240,9 +240,9 @@ def test_walls_leave_the_pressure_tensor():
     walls, tensors = ("box.bottom=reflecting", "box.top=reflecting", "log.heat_flow=false"), []
     for override in ("log.events=true", "log.events=false"):
         log = log_of(SAMPLED, *walls, override)
-        found = transport(log, start=1.5, end=0.5 * int(log.end_time / 0.5))
-        assert (found.collective, found.walled) == (None, True)
-        tensors.append(found.pressure)
+        result = transport(log, start=1.5, end=0.5 * int(log.end_time / 0.5))
+        assert (result.collective, result.walled) == (None, True)
+        tensors.append(result.pressure)
     for name in ("xx", "yy"):
         assert tensors[0][name].value == pytest.approx(tensors[1][name].value, rel=1e-9)
     assert 0.5 < tensors[0]["xx"].value / tensors[0]["yy"].value < 2

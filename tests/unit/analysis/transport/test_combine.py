@@ -27,12 +27,12 @@ def test_states(results):
     assert states[1].coefficients["η"].value == pytest.approx(alone.value / alone.theory)
     assert states[1].coefficients["η"].standard_error == pytest.approx(alone.standard_error / alone.theory)
     both = [results[k].diffusion[0].coefficient for k in (0, 2)]
-    assert states[0].coefficients["D"].value == pytest.approx(sum(one.value / one.theory for one in both) / 2)
-    assert all(one.theory == pytest.approx(1.0) for state in states for one in state.coefficients.values())
+    assert states[0].coefficients["D"].value == pytest.approx(sum(each.value / each.theory for each in both) / 2)
+    assert all(each.theory == pytest.approx(1.0) for state in states for each in state.coefficients.values())
 
 
 def test_what_a_sweep_stores_gives_the_same(results):
-    stored = [json.loads(json.dumps(one.as_dict())) for one in results]
+    stored = [json.loads(json.dumps(result.as_dict())) for result in results]
     restored = [ANALYSIS.restored(values, run.origin) for values, run in zip(stored, results, strict=True)]
     assert ANALYSIS.combined(restored).states == ANALYSIS.combined(results).states
 
@@ -50,5 +50,5 @@ def test_tables_and_figures(results):
         text.get_text() for text in ax.get_legend().get_texts()
     }
     assert ANALYSIS.combined([results[0], results[2]]).figure().axes[0].get_xlabel().startswith("packing")
-    closer = [replace(found, packing_fraction=0.3 + 1e-15 * k) for k, found in enumerate(results)]
+    closer = [replace(result, packing_fraction=0.3 + 1e-15 * k) for k, result in enumerate(results)]
     assert ANALYSIS.combined(closer).figure().axes[0].get_xlabel() == "number of discs"

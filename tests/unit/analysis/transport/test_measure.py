@@ -48,11 +48,11 @@ def test_velocity_integral_of_a_known_motion():
     t = np.arange(7.0)
     velocities, places = np.zeros((2, 1, 7, 1, 2))
     velocities[0, :, 0, 0], places[0, :, 0, 0] = np.cos(t), np.sin(t)
-    found = velocity_integral(velocities, places)[0]
-    assert found[0] == 0
+    result = velocity_integral(velocities, places)[0]
+    assert result[0] == 0
     for k in range(1, 7):
         step = np.cos(t[: 7 - k]) * (np.sin(t[k:]) - np.sin(t[k - 1 : -1]))
-        assert found[k] - found[k - 1] == pytest.approx(step.mean(), abs=1e-14)
+        assert result[k] - result[k - 1] == pytest.approx(step.mean(), abs=1e-14)
 
 
 def test_velocity_correlation_time_at_any_lag():
@@ -61,9 +61,9 @@ def test_velocity_correlation_time_at_any_lag():
     short, long = (transport(log, start=0.0, lag=lag).diffusion[0] for lag in (20.0, 1000.0))
     square = 2 * 1.0 * (1 - 1 / 30)  # ⟨v²⟩ at T = 1 without momentum
     expected = 2 * short.coefficient.value / square
-    for one in (short.velocity_correlation_time, long.velocity_correlation_time):
-        assert one.standard_error < 0.2 * one.value
-        assert abs(one.value - expected) < 4 * one.standard_error
+    for each in (short.velocity_correlation_time, long.velocity_correlation_time):
+        assert each.standard_error < 0.2 * each.value
+        assert abs(each.value - expected) < 4 * each.standard_error
 
 
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (True, True)])
@@ -97,10 +97,10 @@ def test_a_single_result_holds_together(log):
 
 def test_a_species_of_one_disc_has_no_pair_with_itself(make):
     lone = '{name = "lone", count = 1, radius = 0.4, temperature = 1.0}'
-    found = transport(make(f'species=[{{name = "gas", count = 11, radius = 0.3, temperature = 1.0}}, {lone}]'))
-    pairs = [(one.species, one.other) for one in found.pair_distributions]
+    result = transport(make(f'species=[{{name = "gas", count = 11, radius = 0.3, temperature = 1.0}}, {lone}]'))
+    pairs = [(pair_distribution.species, pair_distribution.other) for pair_distribution in result.pair_distributions]
     assert pairs == [("gas", "gas"), ("gas", "lone")]
-    assert json.dumps(found.as_dict(), allow_nan=False)
+    assert json.dumps(result.as_dict(), allow_nan=False)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_a_species_of_one_disc_has_no_pair_with_itself(make):
 )
 def test_a_window_of_few_lags_is_said(make, collisions, caveat):
     """One of 20 mean free times each; `calibration.csv` has the errors with 75 and 200 of them."""
-    found = transport(make(*PERIODIC, f"run.collisions_per_disc={collisions}"), start=0.0)
-    said = [sentence for sentence in found.caveats if "times as long as currents are followed" in sentence]
+    result = transport(make(*PERIODIC, f"run.collisions_per_disc={collisions}"), start=0.0)
+    said = [sentence for sentence in result.caveats if "times as long as currents are followed" in sentence]
     assert len(said) == bool(caveat)
     assert all(caveat in sentence for sentence in said)

@@ -59,7 +59,7 @@ def test_the_cell_of_a_position(place, column, row):
     find_cell(cells, 3, body(x=place[0], y=place[1]))
     link = cells.link[3]
     assert (link.column, link.row) == (column, row)
-    assert [found.tolist() for found in cell_of(np.array([place]), cells)] == [[column], [row]]
+    assert [result.tolist() for result in cell_of(np.array([place]), cells)] == [[column], [row]]
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 0, 2), (1, 2, 0)])
@@ -68,12 +68,12 @@ def test_discs_enter_and_leave_a_cell(order):
 
     def discs(cell):
         """From the head on; the links back agree."""
-        found, before, i = [], -1, cells.head[cell]
+        result, before, i = [], -1, cells.head[cell]
         while i >= 0:
             assert cells.link[i].previous == before
-            found.append(int(i))
+            result.append(int(i))
             before, i = i, cells.link[i].next
-        return found
+        return result
 
     other, cell = 1 * cells.columns + 1, 1 * cells.columns + 2
     cells.link.row[:4] = 1

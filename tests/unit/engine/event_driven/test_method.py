@@ -30,9 +30,9 @@ def simulation_of(engine, effects):
 def rows_of(engine, effects, each=1000):
     """Rows of a run whose states are looked at on the way."""
     simulation = simulation_of(engine, effects)
-    found = record(simulation, STOP, events=each)
+    result = record(simulation, STOP, events=each)
     assert simulation.epoch > 1
-    return found
+    return result
 
 
 @several

@@ -42,11 +42,11 @@ def test_parts_are_eight_or_more_unless_memory_is_near(n, level):
 def test_the_log_is_that_of_the_oracle(names, events):
     """In cells of two sizes."""
     gas = make_gas(5)
-    *found, oracle = (
+    *result, oracle = (
         log_of(gas, make_effects(names, gas) if names else Effects(), method, Stop(events=events), 1000)
         for method in (EventDriven(), EventDriven(1e-9), BruteForce())
     )
-    assert all(np.array_equal(a, b) for log in found for a, b in zip(log, oracle, strict=True))
+    assert all(np.array_equal(a, b) for log in result for a, b in zip(log, oracle, strict=True))
 
 
 @pytest.mark.slow

@@ -84,10 +84,10 @@ def test_the_root_is_the_next_event(case):
 
     def is_first(root):
         """Whether the root has the event that comes first; both discs of a pair may have foretold it."""
-        found, i = entries[root], first_by_sorting(entries, ids)
+        result, i = entries[root], first_by_sorting(entries, ids)
         expected = entries[i]
-        pair = {root, found[2] if found[1] is None else found[1]}
-        return found[0] == expected[0] and pair == {i, expected[2] if expected[1] is None else expected[1]}
+        pair = {root, result[2] if result[1] is None else result[1]}
+        return result[0] == expected[0] and pair == {i, expected[2] if expected[1] is None else expected[1]}
 
     for i in range(n):
         root = renew(i)

@@ -47,8 +47,8 @@ species = [
 PLAIN_SEEDS, LATTICE_SEEDS = range(8), range(10)
 
 
-def assert_equal(found, expected, what=""):
-    assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True)), what
+def assert_equal(result, expected, what=""):
+    assert all(np.array_equal(a, b) for a, b in zip(result, expected, strict=True)), what
 
 
 def test_gases_have_the_log_of_one_thread():
@@ -63,9 +63,9 @@ def test_as_many_threads_as_are_worth_it_have_the_log_of_one(monkeypatch):
     ways = cycle((True, False))
     monkeypatch.setattr(ThreadAutotuner, "use_threads", lambda autotuner: next(ways))
     stop, method = Stop(events=5000), EventDriven(1e-9, None, EAGER._replace(autotune=True))
-    found = log_with(*tall_scene("plain", 3), stop, 300, method)
+    result = log_with(*tall_scene("plain", 3), stop, 300, method)
     expected = log_with(*tall_scene("plain", 3), stop, 300, EventDriven())
-    assert_equal(found, expected)
+    assert_equal(result, expected)
     assert method.threads[:2] == (3, "as many as there are cores")
     assert method.threads.slices - method.threads.aborted > 2
 
@@ -100,8 +100,8 @@ def test_a_disc_of_another_strip_is_not_in_the_schedule_after_events_of_one_time
     expected = log_with(*tie_at_an_interface(), stop, UNLIMITED, EventDriven())
     method = EventDriven(1e-3, 2, EAGER)
     method.workers.rate = 1000.0, 500.0  # all is one slice
-    found = log_with(*tie_at_an_interface(), stop, UNLIMITED, method)
-    assert_equal(found, expected)
+    result = log_with(*tie_at_an_interface(), stop, UNLIMITED, method)
+    assert_equal(result, expected)
     assert (method.threads.slices, method.threads.aborted) == (1, 0)
 
 
@@ -112,8 +112,8 @@ def test_a_disc_that_comes_late_has_its_turn_among_events_of_one_time():
     for _ in range(20):
         method = EventDriven(SMALLEST_CELLS, 2, EAGER)
         method.workers.rate = 1000.0, 500.0  # all is one slice
-        found = log_with(*tie_with_a_late_migrant(), stop, UNLIMITED, method)
-        assert_equal(found, expected)
+        result = log_with(*tie_with_a_late_migrant(), stop, UNLIMITED, method)
+        assert_equal(result, expected)
         ties += method.workers.counts["tie"]
     assert ties > 0
 
@@ -144,8 +144,8 @@ def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
 
     monkeypatch.setattr(_Slab, "run", fail)
     method = EventDriven(1e-9, 3, EAGER)
-    found = log_with(*sample(), stop, 1000, method)
-    assert_equal(found, expected)
+    result = log_with(*sample(), stop, 1000, method)
+    assert_equal(result, expected)
     assert 0 < method.workers.counts["error"] <= method.threads.aborted
 
 
@@ -172,18 +172,18 @@ def test_an_interrupt_sets_all_back_and_ends_the_threads(monkeypatch):
 
 
 def test_whole_logs_are_the_same_and_go_on_with_any_number_of_threads(tmp_path):
-    one, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
-    simulate(parse_scene(GAS), one)
+    result, two, cut_off = (tmp_path / f"{name}.h5" for name in ("one", "two", "cut"))
+    simulate(parse_scene(GAS), result)
     summary = simulate(parse_scene(GAS, overrides=["run.threads=2"]), two)
     assert (summary.threads, summary.threads_reason) == (2, "as run.threads says")
     assert 0 <= summary.aborted_slices < summary.shared_slices
-    assert differences(one, two) == []
+    assert differences(result, two) == []
     calls = []
     simulate(
         parse_scene(GAS, overrides=["run.threads=3"]), cut_off, interrupted=lambda: calls.append(1) or len(calls) > 9
     )
     assert resume(cut_off, ["run.threads=2"]).shared_slices > 0
-    assert differences(one, cut_off) == []
+    assert differences(result, cut_off) == []
 
 
 @pytest.mark.parametrize(
@@ -234,8 +234,8 @@ def test_discs_that_go_from_strip_to_strip_all_the_time_have_the_log_of_one_thre
         expected = log_with(*wind(seed), stop, 100, EventDriven(SMALLEST_CELLS))
         for number in (3, 7):
             method = EventDriven(SMALLEST_CELLS, number, EAGER._replace(lead=1e9))
-            found = log_with(*wind(seed), stop, 100, method)
-            assert_equal(found, expected, (seed, number))
+            result = log_with(*wind(seed), stop, 100, method)
+            assert_equal(result, expected, (seed, number))
             assert method.threads.number == number
             total += method.workers.counts
     print(dict(total))

@@ -224,10 +224,10 @@ def test_ovito_reads_it(log, frames, kind, tmp_path):
         if kind == "extxyz" or (log.discs.mass != 1).any():  # 1 is what no mass in a GSD file means
             expected["Mass"] = log.discs.mass
         for name, values in expected.items():
-            found = discs[name][...].reshape(len(values), -1)[:, : values.ndim]
-            digits = 24 if kind == "gsd" or found.dtype == np.float32 else 53
+            result = discs[name][...].reshape(len(values), -1)[:, : values.ndim]
+            digits = 24 if kind == "gsd" or result.dtype == np.float32 else 53
             bound = max(log.box) * 2.0 ** (1 - digits)  # what it makes of decimals may be an ulp off
-            assert np.abs(found - values.reshape(len(values), -1)).max() <= bound, name
+            assert np.abs(result - values.reshape(len(values), -1)).max() <= bound, name
         names = {kind.id: kind.name for kind in discs.particle_types.types}
         species = [log.discs.species_names[k] for k in log.discs.species]
         assert [names[k] for k in discs.particle_types[...]] == species

@@ -94,12 +94,12 @@ def test_a_changed_byte_is_found_or_changes_nothing(kind):
     stored = getattr(chunks.Encoder(), kind)(data).tobytes()
     mask = chunks.COMPRESSED if kind == "compressed" else chunks.PLAIN
     random = np.random.default_rng(3)
-    found = 0
+    actual = 0
     for place in random.integers(0, len(stored), 300):
         damaged = bytearray(stored)
         damaged[place] ^= random.integers(1, 256)
         try:
             assert np.array_equal(chunks.decode(bytes(damaged), mask, data.dtype, data.size), data.reshape(-1))
         except ValueError:
-            found += 1
-    assert found > 290
+            actual += 1
+    assert actual > 290
