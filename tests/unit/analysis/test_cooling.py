@@ -12,7 +12,9 @@ from helpers.logs import gas
 
 from idealgas import cooling
 from idealgas.analysis.cooling import _moments
-from idealgas.analysis.cooling.theory import law_error
+from idealgas.analysis.cooling.theory import cooling_theory, law_error
+from idealgas.theory import granular
+from idealgas.theory.granular import GranularParameters
 
 GAS = gas(300, 0.1, (14, 14), "collisions_per_disc = 70", periodic="xy", seed=1, then="restitution.normal = 0.95")
 
@@ -86,6 +88,25 @@ def test_moments_of_few_discs():
     temperature, spin, cumulant = _moments(log, state, 6)
     assert (temperature, spin) == (pytest.approx(20 / 6), 1.0)
     assert cumulant == pytest.approx(8 / 6 * 41 / 50 - 1)
+
+
+def test_haffs_time_of_a_gas_twice_as_fast_is_half_as_long(make):
+    slow, fast = (cooling(make(f"species.0.temperature={t}")) for t in (1, 4))
+    assert fast.collisions[-1] == pytest.approx(slow.collisions[-1], rel=1e-3)
+    assert fast.haff.value == pytest.approx(slow.haff.value / 2, rel=1e-9)
+    assert fast.haff.theory == pytest.approx(slow.haff.theory / 2, rel=1e-9)
+
+
+def test_theory_of_few_discs():
+    """Three free discs share energy in 4 of 6 degrees of freedom, and collide 3/2 times as often at one temperature."""
+    parameters = GranularParameters(0.9, -1.0, None)
+    theory = cooling_theory(parameters, 2.0, (1.0, 0.0), np.array([0.0, 1.0]), number=3, dof=4)
+    assert theory.haff.value == pytest.approx(granular.cooling_time(parameters, 3.0), rel=1e-14)
+    assert theory.haff.error == pytest.approx(theory.haff.value * math.hypot(0.025, 1 / 4), rel=1e-14)
+    assert theory.law[1] == pytest.approx((1 + 1 / theory.haff.value) ** -2, rel=1e-9)
+    assert theory.loss.value == pytest.approx(granular.cooling_per_collision(parameters) * 3 / 2, rel=1e-14)
+    unknown = cooling_theory(parameters, math.inf, (1.0, 0.0), np.array([0.0, 1.0]), number=3, dof=4)
+    assert (unknown.law, unknown.haff, unknown.last_temperature) == (None, None, None)
 
 
 def test_the_error_of_haffs_law():
