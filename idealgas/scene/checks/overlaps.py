@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from idealgas.effects.wall import wall_issues
+from idealgas.pairs import MARGIN
 from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.toml.issues import Issue, Key
@@ -25,10 +26,11 @@ ROUNDINGS = 16
 MOST_OVERLAPS = 1_000
 """Largest number of overlaps that are reported."""
 
-_PAIRS = 2**20
-"""Number of pairs that are compared at once."""
+FEW = 128
+"""Number of discs up to which all pairs are compared."""
 
-NEIGHBOURS = np.array([(c, r) for c in (-1, 0, 1) for r in (-1, 0, 1)])
+PART = 2048
+"""Number of discs all of whose pairs fit in memory."""
 
 
 def rounding(extent: float, reach: np.ndarray | float) -> np.ndarray | float:
@@ -74,7 +76,7 @@ def overlapping(discs: InitialDiscs, box: Box | None, accepted: float = 0.0) -> 
     for a, b, distance in overlaps(centre, discs.radius[owner], extent, accepted):
         pair = int(min(owner[a], owner[b])), int(max(owner[a], owner[b]))
         if pair[0] != pair[1]:
-            pairs.setdefault(pair, distance)
+            pairs[pair] = min(distance, pairs.get(pair, math.inf))
         if len(pairs) == MOST_OVERLAPS:
             break
     for (low, high), distance in sorted(pairs.items()):
@@ -99,69 +101,59 @@ def overlaps(
 ) -> Iterator[tuple[int, int, float]]:
     """Yield the indices of two discs that overlap, the lower index first, and their distance.
 
-    Discs with radii between two successive powers of two share a grid whose cells are no smaller than their diameters.
-    Each disc is compared with the discs in the nine cells around it in the grids of its size and of larger sizes, so
-    the time grows as N log N, unless very many discs overlap.
-
     Args:
         centre: (M, 2), length.
         radius: (M,), length.
         extent: largest coordinate, from which the rounding error follows, length.
         accepted: overlap that is accepted in addition to the rounding error, length.
     """
-    size = np.frexp(radius)[1]  # radius < 2^size
-    levels = np.unique(size)
-    for level in levels:
-        members = np.flatnonzero(size == level)
-        cell, order = _sorted_cells(_cells(centre[members], level))
-        members = members[order]
-        candidates = np.flatnonzero(size <= level)
-        for step in NEIGHBOURS:
-            wanted = _keys(_cells(centre[candidates], level) + step)
-            first, last = cell.searchsorted(wanted, "left"), cell.searchsorted(wanted, "right")
-            for i, k in _pairs(candidates, members, first, last):
-                once = (k < i) | (size[i] < level)
-                i, k = i[once], k[once]
-                reach = radius[i] + radius[k]
-                reach -= rounding(extent, reach) + accepted
-                dx, dy = (centre[i] - centre[k]).T
-                close = (dx * dx + dy * dy < reach * reach) & (reach > 0)
-                for a, b, x, y in zip(i[close].tolist(), k[close].tolist(), dx[close], dy[close], strict=True):
-                    yield min(a, b), max(a, b), math.hypot(x, y)
+    for i, k in _near_pairs(centre, radius, accepted):
+        reach = radius[i] + radius[k]
+        reach -= rounding(extent, reach) + accepted
+        dx, dy = (centre[i] - centre[k]).T
+        close = (dx * dx + dy * dy < reach * reach) & (reach > 0)
+        for a, b, x, y in zip(i[close].tolist(), k[close].tolist(), dx[close], dy[close], strict=True):
+            yield min(a, b), max(a, b), math.hypot(x, y)
 
 
-def _cells(centre: np.ndarray, level: int) -> np.ndarray:
-    """Column and row (M, 2) of points in a grid whose cells have the width 2 * 2^level."""
-    return np.floor(np.ldexp(centre, -level - 1))
+def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield pairs of discs that may overlap by more than is accepted, in parts; the caller stops at enough overlaps.
 
+    Discs are grouped by size, from one power of two to the next, so that a few large discs among many small ones cost
+    little. Two groups, or two halves of a group, are compared after the caller has seen the overlaps within each: if
+    these are few, few discs are near any disc, so a part never has too many pairs, even if all discs are in one place.
+    """
+    if len(radius) <= FEW:
+        yield np.triu_indices(len(radius), 1)
+        return
+    from scipy.spatial import cKDTree  # slow to import, and not needed for few discs
 
-def _keys(cells: np.ndarray) -> np.ndarray:
-    """Convert cells (M, 2) to complex numbers, which sort by column and then by row."""
-    return cells[:, 0] + 1j * cells[:, 1]
+    def tree_of(group: np.ndarray) -> cKDTree:
+        return cKDTree(centre[group], balanced_tree=False, compact_nodes=False)
 
+    def reach(a: np.ndarray, b: np.ndarray) -> float:
+        return max((1 + MARGIN) * float(radius[a].max() + radius[b].max()) - accepted, 0.0)
 
-def _sorted_cells(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    keys = _keys(cells)
-    order = np.argsort(keys, kind="stable")
-    return keys[order], order
+    def within(group: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        if len(group) <= PART:
+            pairs = tree_of(group).query_pairs(reach(group, group), output_type="ndarray")
+            yield group[pairs[:, 0]], group[pairs[:, 1]]
+        else:
+            a, b = np.array_split(group, 2)
+            yield from within(a)
+            yield from within(b)
+            yield between(a, b)
 
+    def between(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        near = tree_of(a).sparse_distance_matrix(tree_of(b), reach(a, b), output_type="ndarray")
+        return a[near["i"]], b[near["j"]]
 
-def _pairs(
-    candidates: np.ndarray, members: np.ndarray, first: np.ndarray, last: np.ndarray
-) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the pairs of each candidate with the members from `first` to before `last`, about _PAIRS at a time."""
-    number = last - first
-    nonempty = np.flatnonzero(number)
-    end = np.cumsum(number[nonempty])
-    start = 0
-    while start < len(nonempty):
-        before = end[start - 1] if start else 0
-        stop = max(int(end.searchsorted(before + _PAIRS, "right")), start + 1)
-        chosen = nonempty[start:stop]
-        count = number[chosen]
-        within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        yield np.repeat(candidates[chosen], count), members[np.repeat(first[chosen], count) + within]
-        start = stop
+    size = np.frexp(radius)[1]
+    for level in np.unique(size):
+        large, small = np.flatnonzero(size == level), np.flatnonzero(size < level)
+        yield from within(large[cKDTree(centre[large]).indices])  # in an order in which the halves are apart
+        if len(small):
+            yield between(large, small)
 
 
 def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable]) -> float:
