@@ -1,6 +1,6 @@
 """Measure Lyapunov exponents: how fast small deviations grow and digits are lost.
 
-With `--exponents K` the K largest exponents are measured; 4N of them are the whole spectrum.
+With `--exponents K`, the K largest exponents are measured; for N discs the whole spectrum has 4N exponents.
 """
 
 import math
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIGNMENT = 20
-"""Events per disc in which deviations turn into the directions of fastest growth before growth is measured."""
+"""Events per disc before growth is measured, while the deviations turn into the directions of fastest growth."""
 
 FEWEST = 32
-"""Smallest number of intervals of one event per disc in which growth is measured."""
+"""Smallest number of intervals, of one event per disc each, in which growth is measured."""
 
 PRECISIONS = (7, 16, 32)
-"""Numbers of digits whose loss is predicted."""
+"""Numbers of decimal digits for which the time until they are lost is predicted."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,17 @@ class Lyapunov(Result):
         window: window of time that was used.
         number: number N of discs.
         exponents: the largest exponents in decreasing order, 1/time.
-        mean_free_time: mean free time, averaged over window and discs, time.
-        digits: decimal digits that the motion of a disc loses between two of its collisions (no unit).
-        localisation: exp(S)/N, where S is the entropy of the squares of the leading deviation of each disc. It is 1/N
-            if one disc has the whole deviation, and 1 if all have an equal share.
+        mean_free_time: mean free time, averaged over the window and over the discs, time.
+        digits: number of decimal digits lost per mean free time (no unit).
+        localisation: exp(S)/N, where S = -Σ p ln p and p is the share of a disc in the square of the leading deviation.
+            It is 1/N if the deviation is confined to a single disc, and 1 if all discs have equal shares.
         entropy: sum of the positive exponents (Kolmogorov-Sinai entropy), 1/time; None without the whole spectrum.
-        pairing: largest |λ_i + λ_(4N+1-i)|, 0 for conservative motion, 1/time; None without the whole spectrum.
-        zeros: number of exponents that vanish by conservation laws: two for the energy and two for each momentum.
-        largest_zero: largest magnitude of these exponents, 1/time, which decays with time t as ln(t)/t; None without
-            the whole spectrum.
+        pairing: largest |λ_i + λ_(4N+1-i)|, which is 0 for conservative motion, 1/time; None without the whole
+            spectrum.
+        zeros: number of exponents that are zero because of conservation laws: two for the energy and two for each
+            conserved component of the momentum.
+        largest_zero: largest magnitude among the exponents that should be zero, 1/time; measured over a time t, it is
+            of order ln(t)/t. None without the whole spectrum.
         time: (n,), times from the start of the measurement.
         growth: (n,), natural logarithm of the leading deviation.
     """
@@ -69,11 +71,11 @@ class Lyapunov(Result):
     growth: Annotated[np.ndarray, OMITTED]
 
     def lifetime(self, digits: int) -> float:
-        """Return the time in which a deviation in the last of `digits` digits grows to the size of the motion."""
+        """Return the time in which an error in the last of `digits` digits grows to the size of the value itself."""
         return digits * math.log(10) / self.exponents[0].value
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the exponents (a long spectrum is shortened), of chaos, and of the loss of digits."""
+        """Return the tables of the exponents (cut short if there are many), of chaos, and of the loss of digits."""
         exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(self.exponents, 1)]
         notes = [str(self.window), "theory is not available at any density; the largest exponent grows with N"]
         chaos = [
@@ -92,7 +94,7 @@ class Lyapunov(Result):
         ]
 
     def summary(self) -> str:
-        """Return the growth rate of deviations and the loss of digits, for which theory is not available."""
+        """Return the headline: the growth rate of deviations and the loss of digits; neither has a theory."""
         return (
             f"Small deviations grow at the rate λ = {format_estimate(self.exponents[0])}: a collision of a disc "
             f"takes {format_estimate(self.digits)} digits, and float64 has lost its 16 digits after t = "
@@ -100,7 +102,7 @@ class Lyapunov(Result):
         )
 
     def figure(self) -> "Figure":
-        """Draw the growth of the leading deviation, and all exponents if there are several."""
+        """Draw the growth of the leading deviation and, if several exponents were measured, the spectrum."""
         from idealgas.presentation.style import BLACK, COLOURS, GREY, panels
 
         figure, axes = panels(1 + (len(self.exponents) > 1))
@@ -127,7 +129,7 @@ class Lyapunov(Result):
 
 
 class LyapunovAnalysis(Analysis):
-    """Lyapunov exponents of smooth elastic discs in a box, by the tangent map of each flight and collision."""
+    """Lyapunov exponents of smooth elastic discs in a box, from the tangent map of each flight and collision."""
 
     position = 105
     headline = "exponents.0"
@@ -154,13 +156,21 @@ class LyapunovAnalysis(Analysis):
     ) -> Lyapunov:
         """Measure Lyapunov exponents between two times of a log.
 
-        Deviations are propagated through the recorded flights and collisions by the exact tangent map, and made
-        orthogonal after each event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth during the first
-        events is discarded. Errors are those of the mean growth rate.
+        The exact tangent map propagates deviations through the recorded flights and collisions, and the deviations are
+        orthogonalised once per event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth during the first 20
+        events per disc is discarded. The standard errors are those of the mean growth rates.
+
+        Args:
+            log: the log.
+            start: start of the window, time; None to detect it.
+            end: end of the window, time; None for the end of the log.
+            progress: called as progress(done, total) while the log is read.
+            exponents: number of exponents to measure, from the largest down; at most 4N.
 
         Raises:
-            UserError: unless an exact method recorded the events of smooth elastic discs between periodic sides or
-                plain sides at rest; for more exponents than 4N, or fewer than 52 events per disc in the window.
+            UserError: if the log does not contain events of smooth elastic discs from an exact method, if a side of
+                the box is neither periodic nor a plain wall at rest, if more than 4N exponents are requested, or if
+                the window has fewer than 52 events per disc.
         """
         must_have_tangent_map(log)
         number = len(log.discs)
@@ -204,12 +214,13 @@ def _scaled(estimate: Estimate, factor: float) -> Estimate:
 def _steps(
     log: Log, window: Window, exponents: int, progress: ReadProgress | None
 ) -> Iterator[tuple[float, np.ndarray, float, int]]:
-    """Yield intervals of N event rows with their duration, the growth of deviations, localisation and collisions.
+    """Yield, for each interval of N event rows, its duration, growth, localisation and number of collisions.
 
-    The growth (K,) is logarithmic, and the localisation is that of the first deviation.
+    The growth (K,) is the logarithm of the factor by which each deviation grew; the localisation is that of the leading
+    deviation, see `Lyapunov`.
     """
     number, masses = len(log.discs), log.discs.mass
-    if exponents == 4 * number:  # conjugate pairs remain conjugate: their exponents are ±λ in each interval
+    if exponents == 4 * number:  # conjugate pairs stay conjugate, so that their exponents are ±λ in each interval
         components = np.arange(4 * number).reshape(number, 4)
         start = np.zeros((4 * number, 4 * number))
         start[[*components[:, :2].ravel(), *components[::-1, :1:-1].ravel()], range(4 * number)] = 1.0

@@ -1,8 +1,8 @@
 """Measure the order of the discs: ψ₆ of neighbours, its correlation g₆(r) and the structure factor S(k).
 
-ψ₆ measures how well the neighbours of a disc form a regular hexagon. The modulus of its mean over all discs is 1 in a
-crystal and of order 1/√N in a fluid. S(k), which requires a periodic box, measures how well the discs form rows; its
-limit at small k is the compressibility of the fluid by theory. A run without events is measured at its checkpoints.
+ψ₆ measures how closely the neighbours of a disc form a regular hexagon. The modulus of its mean over all discs is 1 in
+a crystal and of order 1/√N in a fluid. S(k), which requires a periodic box, shows how regularly discs form rows; theory
+predicts its limit at small k from the compressibility. A run without events is measured at its checkpoints.
 """
 
 import math
@@ -29,36 +29,37 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FRAMES, FEWEST_FRAMES = 128, 8
-"""Number of instants of the whole log at which the order is measured, and smallest number of them in the window."""
+"""Number of instants in the whole log at which the order is measured, and the smallest number in the window."""
 
 MOST_WAVES = 2**28
-"""Largest number of discs squared times frames; for a large gas fewer instants are used, at least FEWEST_FRAMES."""
+"""Largest N² times the number of frames; a large gas is measured at fewer instants, at least FEWEST_FRAMES."""
 
 MOST_PAIRS = 2**19
-"""Largest number of pairs of an instant for g₆(r); in a large gas a part of the discs is paired with all others."""
+"""Largest number of pairs per instant for g₆(r); in a large gas only some discs are paired with all the others."""
 
 BINS_A_SPACING = 8
 """Number of bins of g₆(r) per mean distance 1/√n between discs."""
 
 MOST_ROWS = 12
-"""Number of rows that are printed of a function of distance or wave number; CSV has all of them."""
+"""Largest number of rows printed for a function of distance or wave number; the CSV file contains all rows."""
 
 REACH = 15.0
-"""Largest wave number in units of √n: three rings of peaks of a triangular lattice, at 6.75, 11.7 and 13.5."""
+"""Largest wave number in units of √n; the first peaks of a triangular lattice lie at 6.75, 11.7 and 13.5."""
 
 RINGS = 60
-"""Number of rings of wave vectors over whose directions S(k) is averaged."""
+"""Number of rings into which the wave vectors are divided; S(k) is averaged over the directions in each ring."""
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Structure factor of the discs of a periodic box (no unit).
+    """Structure factor of the discs in a periodic box (no unit).
 
-    kx, ky: (X,) and (Y,), components of the wave vectors, 1/length; kx ≥ 0, as S(-k) = S(k). on_lattice: (X, Y), mean
-    of S over time at each wave vector; nan at 0 and beyond the reach. k, value, error: (K,), mean wave number of a
-    ring, mean of S over time and over the directions in the ring, and its standard error. peak: (2,), wave vector of
-    the highest S in every other frame. positional: S/N at this wave vector in the remaining frames, so that the choice
-    does not bias it: the square of the positional order, 1 in a lattice at rest.
+    Attributes:
+        kx, ky: (X,) and (Y,), components of the wave vectors, 1/length; kx ≥ 0, as S(-k) = S(k).
+        on_lattice: (X, Y), mean of S over time at each wave vector; nan for those that are not used.
+        k, value, error: (K,), mean wave number of each ring, S averaged over time and over the ring, standard error.
+        peak: (2,), wave vector at which S, averaged over every other frame, is highest, 1/length.
+        positional: S/N at `peak` in the other frames, which is unbiased by the choice of peak; 1 in a lattice at rest.
     """
 
     kx: Annotated[np.ndarray, OMITTED]
@@ -75,12 +76,15 @@ class Structure:
 class Order(Result):
     """Order of the discs of one log (no unit, except for times and lengths).
 
-    window: window of time that was used. frames: number of instants in it. local: mean |ψ₆| of a disc. whole: |Ψ₆|,
-    modulus of the mean of ψ₆ over all discs. square: N ⟨|Ψ₆|²⟩, the number of discs that turn together. hexagons:
-    fraction of the discs with six neighbours. time, series: (F,), instants from the start of the log on, and |Ψ₆| at
-    them. distance, correlation, correlation_error: (B,), middle of a bin of distances, length, g₆ = ⟨Re ψ₆*(0) ψ₆(r)⟩
-    of two discs at this distance, and its standard error. structure: structure factor; None unless the box is periodic.
-    compressibility: limit of S(k) at small k by theory, nT times the isothermal compressibility; None without theory.
+    Attributes:
+        window, frames: window of time that was used, and number of instants in it.
+        local, whole: mean |ψ₆| of a disc, and |Ψ₆|, the modulus of the mean of ψ₆ over all discs.
+        square, hexagons: N ⟨|Ψ₆|²⟩, and fraction of the discs that have six neighbours.
+        time, series: (F,), instants from the start of the log on, and |Ψ₆| at these instants.
+        distance, correlation, correlation_error: (B,), middle of each bin of distances r, length; g₆(r) = ⟨Re ψ₆*(0)
+            ψ₆(r)⟩ for two discs at distance r, and its standard error.
+        structure: structure factor; None unless the box is periodic.
+        compressibility: theoretical limit of S(k) at small k; None if theory is not available.
     """
 
     window: Window
@@ -120,14 +124,14 @@ class Order(Result):
         return [estimates("Order (no unit)", rows, notes), *functions]
 
     def summary(self) -> str:
-        """Return the hexagonal order of all discs, from 0 to 1, for which theory is not available."""
+        """Return the headline: |Ψ₆|, from 0 to 1, and the share of discs with six neighbours; neither has a theory."""
         return (
             f"|Ψ₆| of all discs is {format_estimate(self.whole)} (0 without order, 1 in a perfect crystal), and "
             f"{100 * self.hexagons.value:.0f} % have six neighbours; theory is not available for either."
         )
 
     def figure(self) -> "Figure":
-        """Draw |Ψ₆| against time, g₆ against distance and, in a periodic box, S against wave number and wave vector."""
+        """Draw |Ψ₆| against time and g₆ against distance; in a periodic box also S against wave number and vector."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(1 if self.structure is None else 2, 2)
@@ -178,12 +182,12 @@ class OrderAnalysis(Analysis):
     ) -> Order:
         """Measure how well the discs of a gas are ordered between two times of its log.
 
-        The order ψ₆ of the neighbours of each disc (`bond_order`) is averaged over all discs and correlated between
-        discs. In a periodic box the structure factor S(k) is measured, and compared at small k with theory for a fluid
-        of equal discs. All discs count alike, whatever their radius; walls inside the box do not separate neighbours.
+        The local order ψ₆ of each disc (`bond_order`) is averaged over all discs, and its correlation between pairs of
+        discs is measured. In a periodic box the structure factor S(k) is measured as well and, at small k, compared
+        with the theory of a fluid of equal discs. All discs have the same weight; walls inside do not separate them.
 
         Raises:
-            UserError: without positions or with a piston, or if the window is empty or has too few checkpoints.
+            UserError: if discs have no positions, if there is a piston, or if the window has too few checkpoints.
         """
         if not log.has_positions:
             raise NotApplicableError(f"{log.path}: order requires discs with positions")
@@ -219,7 +223,7 @@ class OrderAnalysis(Analysis):
 
 
 def _function(title: str, of: str, *columns: np.ndarray) -> Table:
-    """Return the table of a function of distance or wave number, with its standard error."""
+    """Return a table of a function of distance or wave number, with its standard errors."""
     rows = [
         (Number(float(x), ".4g"), *with_error(float(y), float(error))) for x, y, error in zip(*columns, strict=True)
     ]
@@ -227,7 +231,7 @@ def _function(title: str, of: str, *columns: np.ndarray) -> Table:
 
 
 def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window, np.ndarray]:
-    """Return the window, and instants from the start of the log, or from the given start, to its end."""
+    """Return the window and the instants of the measurement, from the start of the log (or `start`) to its end."""
     number = max(min(FRAMES, MOST_WAVES // len(log.discs) ** 2), FEWEST_FRAMES)
     if log.has_events:
         window = measure(log, [], start, end, needs=("fixed_walls",))
@@ -246,7 +250,7 @@ def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window,
 
 
 def _compressibility(log: Log) -> float | None:
-    """Return the limit 1/(d(φZ)/dφ) of S(k) at small k for a fluid of equal discs in a periodic box, else None."""
+    """Return the limit 1/(d(φZ)/dφ) of S(k) at small k; None unless a periodic box holds a fluid of equal discs."""
     gas, phi = log.discs, log.discs.packing_fraction
     if not all(log.periodic) or np.ptp(gas.radius) > 0 or phi > hard_discs.HIGHEST:
         return None
@@ -254,7 +258,7 @@ def _compressibility(log: Log) -> float | None:
 
 
 class _Distances:
-    """Sums of Re ψ₆*(0) ψ₆(r) over pairs of discs, by distance up to half of the shorter side of the box."""
+    """Sums of Re ψ₆*(0) ψ₆(r) over pairs of discs, in bins of distance up to half the shorter side of the box."""
 
     def __init__(self, log: Log) -> None:
         number = len(log.discs)
@@ -265,7 +269,7 @@ class _Distances:
         self._sums: list[np.ndarray] = []
 
     def add(self, position: np.ndarray, local: np.ndarray) -> None:
-        """Add the pairs of an instant with positions (N, 2) and the order ψ₆ (N,) of each disc."""
+        """Add the pairs at one instant, given the positions (N, 2) and the local order ψ₆ (N,) of the discs."""
         squared = np.zeros((len(self._chosen), len(position)))
         for place, size, periodic in zip(position.T, self._box, self._periodic, strict=True):
             apart = place[self._chosen, None] - place
@@ -277,7 +281,7 @@ class _Distances:
         self._sums.append(np.array([each[: self._bins] for each in sums]))
 
     def correlation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the middle of each bin that mostly contains pairs, the mean product in it, and its standard error."""
+        """Return the middles of bins that usually contain pairs, the mean product in each, and its standard error."""
         product, pairs = np.moveaxis(np.array(self._sums), 1, 0)
         middle = (np.arange(self._bins) + 0.5) * (self._reach / self._bins)
         filled = (pairs > 0).mean(axis=0) > 0.5  # the error of a rarely observed product is unknown
@@ -288,10 +292,10 @@ class _Distances:
 
 
 class WaveVectors:
-    """Wave vectors 2π(a/Lx, b/Ly) of a periodic box up to a maximum, one of each pair ±k."""
+    """Wave vectors 2π(a/Lx, b/Ly) of a periodic box, up to a maximum and one from each pair ±k."""
 
     def __init__(self, box: tuple[float, float], number: int) -> None:
-        """Take the width and height of the box, length, and the number of discs in it."""
+        """Choose the wave vectors for a box (width and height, length) with a given number of discs."""
         reach = REACH * math.sqrt(number / (box[0] * box[1]))
         most = [max(int(reach * size / (2 * math.pi)), 1) for size in box]
         self.kx = 2 * math.pi / box[0] * np.arange(most[0] + 1)
@@ -302,14 +306,14 @@ class WaveVectors:
         self.size = size[self.used]
 
     def structure_factor(self, position: np.ndarray) -> np.ndarray:
-        """Return S (K,) of positions (N, 2) at the wave vectors that are used."""
+        """Return S (K,) at the wave vectors that are used, for positions (N, 2)."""
         waves = zip((self.kx, self.ky[len(self.ky) // 2 :]), position.T, strict=True)
-        along, up = (np.vander(np.exp(1j * k[1] * x), len(k), increasing=True) for k, x in waves)  # powers of the first
+        along, up = (np.vander(np.exp(1j * k[1] * x), len(k), increasing=True) for k, x in waves)  # exp(ikx)
         across = np.hstack((up[:, :0:-1].conj(), up))
         return np.asarray(np.abs((along.T @ across)[self.used]) ** 2 / len(position))
 
     def structure(self, frames: np.ndarray, number: int) -> Structure:
-        """Return the structure factor of a gas of `number` discs from S (F, K) in F ≥ 2 frames."""
+        """Return the structure factor of a gas of `number` discs, given S (F, K) in F ≥ 2 frames."""
         edges = np.linspace(0.0, self.size.max() * (1 + 1e-9), RINGS + 1)
         ring = np.digitize(self.size, edges) - 1
         filled = np.unique(ring)
@@ -331,7 +335,7 @@ class WaveVectors:
 
 
 def _draw_vectors(ax: "Axes", structure: Structure) -> None:
-    """Draw S at every wave vector, in all directions."""
+    """Draw a map of S over all wave vectors, including those at -k."""
     from matplotlib.colors import LogNorm
 
     half = structure.on_lattice

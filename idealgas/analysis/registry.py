@@ -1,6 +1,6 @@
-"""Registry of all analyses: the modules and packages beside this file, each with one subclass of `Analysis`.
+"""Registry of all analyses: the modules and packages beside this file, each of which defines a subclass of `Analysis`.
 
-Names and first lines of help are read without importing any analysis.
+Names, positions and help texts are read from the source, without importing any analysis.
 """
 
 import ast
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from idealgas.tallies.stream import ReadProgress
 
 MAIN = ("pressure", "temperature", "histogram")
-"""Analyses that come first for a gas in equilibrium without effects."""
+"""Analyses at the beginning of the report on a plain gas in equilibrium."""
 
 
 def _source(name: str) -> str:
@@ -30,12 +30,12 @@ def _source(name: str) -> str:
 
 
 def help_of(name: str) -> str:
-    """Return the help text of the command of an analysis: the docstring of its module, read without importing it."""
+    """Return the help text of an analysis command: the docstring of its module, read without importing the module."""
     return ast.get_docstring(ast.parse(_source(name))) or ""
 
 
 def position_of(name: str) -> int:
-    """Return the position of an analysis in the report and in lists of commands, read without importing it."""
+    """Return the position of an analysis in reports and in lists of commands, read without importing the analysis."""
     match = re.search(r"^    position = (\d+)$", _source(name), re.MULTILINE)
     return int(match[1]) if match else 1000
 
@@ -46,7 +46,7 @@ def analyses() -> "tuple[type[Analysis], ...]":
 
 
 def find(name: str) -> "type[Analysis]":
-    """Return the analysis with a name such as "heat_capacity" or "heat-capacity".
+    """Return the analysis of the given name, such as "heat_capacity" or "heat-capacity".
 
     Raises:
         UserError: for an unknown name; the message lists all known names.
@@ -61,7 +61,7 @@ def find(name: str) -> "type[Analysis]":
 
 
 def shown(scene: "Scene") -> tuple[str, ...]:
-    """Return the analyses at the beginning of a report: those in `scene.shows`, or else those that suit the effects."""
+    """Return the analyses at the beginning of a report: those in `scene.shows`, or else those that suit the scene."""
     if scene.scene.shows:
         return scene.scene.shows
     properties = scene.properties
@@ -96,7 +96,7 @@ def analyse(
         start: start of the window, time; None for the default of the analysis.
         end: end of the window, time; None for the default of the analysis.
         progress: called as progress(done, total) while the log is read.
-        options: options of the command `idealgas NAME`, as keyword arguments.
+        **options: options of the command `idealgas NAME`, as keyword arguments.
 
     Raises:
         UserError: if the name or an option is unknown, or if the analysis does not apply to the log.
@@ -105,15 +105,15 @@ def analyse(
 
 
 def combine(results: "Sequence[Result]") -> "Result":
-    """Combine the results of one analysis of several logs, as commands with several logs do.
+    """Combine the results of one analysis for several logs, as a command that is given several logs does.
 
-    For example, the pressures of several gases become their equation of state with its virial coefficients.
+    For example, the pressures of several gases are combined into the equation of state and its virial coefficients.
 
     Args:
         results: results of the same analysis.
 
     Raises:
-        UserError: if the analysis does not combine logs, if a run is given twice, or if the gases do not fit together.
+        UserError: if the analysis does not combine logs, if a run is given twice, or if the gases cannot be combined.
     """
     analysis = results[0].analysis
     if analysis.combine is None and len(results) > 1:

@@ -1,4 +1,4 @@
-"""Base of the results of all analyses, which show themselves: caveats, the run, headline, tables and figures."""
+"""Base class of the results of all analyses: caveats, the run they come from, headline, tables and figures."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -17,15 +17,15 @@ class Origin:
     """Run that a result comes from.
 
     Attributes:
-        path: path of its log, or name of its point in a sweep.
-        run: digest of all that determines the motion, the same for two logs of one run.
-        gas: digest of the discs, the box and the effects, the same at another temperature.
-        words: the gas in words.
-        kind: kind of gas in words, whatever the number of discs and the size of the box.
-        mixture: whether radii differ.
-        seed: seed of the random numbers of the run; None if it draws none.
-        title: title of its scene, or else its path.
-        label: its name among several runs: the path of its log, or the values of the axes of a sweep.
+        path: path of the log, or name of the point in a sweep.
+        run: digest of everything that determines the motion; it is the same for two logs of one run.
+        gas: digest of the discs, the box and the effects; it does not depend on the temperature.
+        words: description of the gas in words.
+        kind: kind of gas in words, regardless of the number of discs and the size of the box.
+        mixture: whether the discs have different radii.
+        seed: seed of the random numbers of the run; None if the run draws none.
+        title: title of the scene, or the path if the scene has no title.
+        label: name of the run among several runs: the path of its log, or the values of the axes of a sweep.
     """
 
     path: str
@@ -41,12 +41,13 @@ class Origin:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """Base of the results of all analyses.
+    """Base class of the results of all analyses.
 
     Attributes:
-        caveats: one sentence for each condition of the numbers that is not met or is worth knowing. Tables, reports and
-            JSON contain them.
-        origin: run that the result comes from; None if it comes from several runs, or not from `Analysis.analyse`.
+        caveats: one sentence for each condition on the numbers that is not met or that the reader should know. Tables,
+            reports and JSON contain these sentences.
+        origin: run that the result comes from; None if the result combines several runs, or if it was not returned by
+            `Analysis.analyse`.
         title: name of the run or runs in figures.
     """
 
@@ -66,15 +67,15 @@ class Result:
         raise NotImplementedError
 
     def summary(self) -> str:
-        """Return the headline: the result, and whether it agrees with theory."""
+        """Return the headline, which gives the result and whether it agrees with theory."""
         return ""
 
     def text(self) -> str:
-        """Return a figure in characters for the terminal; empty if there is none."""
+        """Return a figure drawn with characters for the terminal; empty if there is none."""
         return ""
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain values by name, ready for JSON."""
+        """Return the result as plain values by name, ready for JSON."""
         return as_dict(self)
 
     def tables(self) -> "list[Table]":
@@ -84,14 +85,14 @@ class Result:
         return [replace(first, notes=notes), *remaining]
 
     def plot(self) -> "Figure":
-        """Return the figure of `--plot`: a figure of matplotlib, which notebooks display and `savefig` writes."""
+        """Return the matplotlib figure of `--plot`; notebooks display it, and `savefig` writes it to a file."""
         return self._titled(self.figure())
 
     def plot_errors(self) -> "Figure":
-        """Return the figure of `--plot-errors`: the error of each estimate against the length of blocks of time.
+        """Return the figure of `--plot-errors`: the error of each estimate against the length of the blocks of time.
 
         Raises:
-            UserError: if no error was estimated from blocks.
+            UserError: if no error was estimated from blocks of time.
         """
         from idealgas.presentation.style import block_figure
 
@@ -107,26 +108,26 @@ class Result:
         return self._titled(block_figure(names, *length))
 
     def _titled(self, figure: "Figure") -> "Figure":
-        """Return a figure with the names of the run and the analysis above it."""
+        """Return the figure with the names of the run and of the analysis as its title."""
         from idealgas.presentation.style import add_title
 
         return add_title(figure, f"{self.title}: {self.analysis.key}")
 
     def __str__(self) -> str:
-        """Return headline and tables as text."""
+        """Return the headline and the tables as text."""
         from idealgas.presentation.tables import as_text
 
         return "\n".join(filter(None, (self.summary(), as_text(self.tables()))))
 
     def _repr_html_(self) -> str:
-        """Return headline and tables as HTML, which notebooks display at the end of a cell."""
+        """Return the headline and the tables as HTML, which a notebook displays for the last expression of a cell."""
         from idealgas.presentation.tables import escape, html_tables
 
         return f"<p><b>{escape(self.summary())}</b></p>{html_tables(self.tables())}"
 
 
 class RunResult(Result):
-    """Base of the results of one run that are shown as a combination of several runs is."""
+    """Base class of results of single runs that are displayed in the same form as a combination of several runs."""
 
     def tables(self) -> "list[Table]":
         """Return the tables of this run alone."""
