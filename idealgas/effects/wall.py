@@ -234,10 +234,10 @@ def make_segments(
     return segments
 
 
-def _polygon(side: float, corners: int, height: float, radius: float = 4.0) -> str:
-    """Tables `[[wall]]` of a regular polygon with a radius (length), whose centre is at a height in the box."""
+def _polygon(side: float, corners: int, height: float) -> str:
+    """Tables `[[wall]]` of a regular polygon with the radius 4, whose centre is at a height in the box."""
     turn = [2 * math.pi * k / corners for k in range(corners + 1)]
-    points = [[side / 2 + radius * math.cos(a), height + radius * math.sin(a)] for a in turn]
+    points = [[side / 2 + 4.0 * math.cos(a), height + 4.0 * math.sin(a)] for a in turn]
     return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
 
 

@@ -31,9 +31,9 @@ _PRESSURE = Polynomial([0.0, 1.0]) * _RESUMMED  # φZ (1 - φ)²
 # equation of state
 
 
-def virial_series(packing_fraction: ArrayLike, terms: int = len(VIRIAL)) -> np.ndarray:
-    """Return Z = PA/NT by the virial series with its first `terms` coefficients (`VIRIAL`)."""
-    return Polynomial(_SERIES.coef[:terms])(np.asarray(packing_fraction, float))
+def virial_series(packing_fraction: ArrayLike) -> np.ndarray:
+    """Return Z = PA/NT by the virial series with the coefficients `VIRIAL`."""
+    return _SERIES(np.asarray(packing_fraction, float))
 
 
 def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:

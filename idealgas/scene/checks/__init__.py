@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, TypeVar
 
 from idealgas.columns import MOST_SPECIES, MOST_WALLS
 from idealgas.effects import EFFECTS
-from idealgas.scene.checks import piston, shear, vibration
+from idealgas.scene.checks import piston
 from idealgas.scene.checks.discs import permeable_issues, placement_issues, room_issues, species_issues
 from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
+from idealgas.scene.checks.sides import shear_issues, vibration_issues
 from idealgas.scene.checks.solids import solid_issues
 from idealgas.scene.sizes import wrong_radius
 from idealgas.toml.issues import Issue, Key
@@ -71,8 +72,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
     yield from piston.issues(scene, invalid)
     if not invalid:
         yield from _thermostat_issues(scene)
-        yield from vibration.issues(scene)
-        yield from shear.issues(scene)
+        yield from vibration_issues(scene)
+        yield from shear_issues(scene)
     if box is not None:
         yield from room_issues(scene, invalid)
         yield from placement_issues(scene)
