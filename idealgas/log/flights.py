@@ -254,12 +254,9 @@ class FlightReader:
         return Flights(*(cast(Any, columns[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
-        """Return uncut flights from the states of discs at their starts.
+        """Return uncut flights (n,) from the states at their starts and the times at which they end.
 
-        Args:
-            state: state (n,) at the start of each flight.
-            end: (n,), time at which each flight ends.
-            rows: the events at the ends of the flights; None if the flights are still open.
+        rows: the events at the ends of the flights; None if the flights are still open.
         """
         start, made = state["time"], self._made
         columns = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}

@@ -62,14 +62,9 @@ class Join:
         return before | {"disc": rows["disc"]}
 
     def _places(self, disc: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the indices of the states before and after event rows.
+        """Return the index (n,) of the state before each event row, the discs that have rows, and their last states.
 
-        Args:
-            disc: (n,), disc of each row.
-
-        Returns:
-            (n,), index of the state of the disc before each row; the discs that have rows; the index of the last state
-            of each of these discs.
+        disc: (n,), disc of each row. The last state of a disc is given by its index, too.
         """
         order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # a radix sort, in linear time
         ordered = disc[order]

@@ -35,14 +35,7 @@ class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
     """Times and values of the samples by name; each is read from the file when it is first accessed."""
 
     def __init__(self, file: LogFile, names: Sequence[str], times: Callable[[int], np.ndarray], step: int = 1) -> None:
-        """Take every `step`-th sample of a file.
-
-        Args:
-            file: file of the log.
-            names: names of the observables.
-            times: function that reads their common times, given the step.
-            step: number of samples in the file per sample taken.
-        """
+        """Take every `step`-th sample of the named observables; `times` reads their common times, given the step."""
         self._file, self._names, self._read_times, self._step = file, tuple(names), times, step
         self._read: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 

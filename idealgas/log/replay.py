@@ -75,12 +75,9 @@ class Checkpoints(Sequence[Checkpoint]):
     """The checkpoints of a log, each read from the file when it is indexed."""
 
     def __init__(self, file: LogFile, rows: int, check: Callable[[float, int], None]) -> None:
-        """Read the times and rows of the checkpoints.
+        """Read the times and rows of the checkpoints in the first `rows` event rows.
 
-        Args:
-            file: file of the log.
-            rows: number of event rows; later checkpoints are omitted.
-            check: function of a time and a row that raises LogError if they are inconsistent.
+        check: function of a time and a row that raises LogError if they are inconsistent.
         """
         self._file, self._check = file, check
         self.times = file.column("checkpoints/time")

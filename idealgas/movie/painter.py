@@ -111,22 +111,12 @@ class Painter:
         trails: Sequence[int] = (),
         dark: bool = False,
     ) -> None:
-        """Prepare what is the same in all frames.
+        """Prepare what is the same in all frames; the other arguments are described in `Look`.
 
-        Args:
-            scene: the scene.
-            gas: the discs at the start.
-            pistons: tracks of the pistons.
-            rms_speed: approximate largest root-mean-square speed in the film, length/time. Speeds are relative to a
-                conserved motion of the whole gas.
-            times: start and end of the film.
-            sample: states of the film, from which the range of the density panel is determined.
-            maxwell: whether to compare the speeds with the Maxwell-Boltzmann distribution.
-            size: see `Look`.
-            colouring: see `Look`.
-            panel: see `Look`.
-            trails: see `Look`.
-            dark: see `Look`.
+        gas: the discs at the start. rms_speed: approximate largest root-mean-square speed in the film, length/time,
+        relative to a conserved motion of the whole gas. times: start and end of the film. sample: states of the film,
+        from which the range of the density panel is determined. maxwell: whether to compare the speeds with the
+        Maxwell-Boltzmann distribution.
 
         Raises:
             UserError: if a disc with a trail does not exist.

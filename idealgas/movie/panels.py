@@ -40,12 +40,8 @@ class SpeedPanel:
     def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str | None, shades: np.ndarray | None) -> None:
         """Draw the axes.
 
-        Args:
-            axes: axes of the panel.
-            gas: the discs.
-            rms_speed: largest root-mean-square speed, length/time.
-            line: colour of the Maxwell-Boltzmann curve; None for no curve.
-            shades: (n, 4), colours of the discs along the axis of speeds; None if colours do not show speeds.
+        rms_speed: largest root-mean-square speed, length/time. line: colour of the Maxwell-Boltzmann curve; None for no
+        curve. shades: (n, 4), colours of the discs along the axis of speeds; None if colours do not show speeds.
         """
         self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0

@@ -103,11 +103,7 @@ def draw(figure: Figure, panel: Panel, size: tuple[float, float], key: str) -> t
 def _frame(figure: Figure, panel: Panel, size: tuple[float, float], legend: float) -> Frame:
     """Place a panel in its figure, with space for the texts of the vertical axis and for the legend below.
 
-    Args:
-        figure: the figure, whose size is set.
-        panel: the panel.
-        size: width and smallest height of the figure, points.
-        legend: height of the legend, points.
+    Sets the size of the figure. size: its width and smallest height, points. legend: height of the legend, points.
     """
     width, top, below = size[0], 1.8 * LINE, 2.8 * LINE + legend
     height = max(size[1], top + LEAST_HEIGHT + below)

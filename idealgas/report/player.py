@@ -167,14 +167,9 @@ def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
 
 
 def _events(log: Log, first: float, last: float, start: int, state: LogState) -> dict[str, np.ndarray]:
-    """Return the columns of the events in an interval.
+    """Return the columns of the events between two times.
 
-    Args:
-        log: the log.
-        first: start of the interval.
-        last: end of the interval.
-        start: number of the first event row.
-        state: state of all discs at the start.
+    start: number of the first event row. state: state of all discs at the first time.
     """
     names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks((*names, *(("kind",) if log.escapes else ())), start, log.row_at(last, "right")))
@@ -210,13 +205,8 @@ def _unreached(
     accuracy. Whenever the sum enters another cell, the position is stored, so that the deviation since the last stored
     position is less than the width of a cell.
 
-    Args:
-        log: the log.
-        state: state of all discs at the start of the player.
-        time: (n,), time of each event since the start, as the page computes it.
-        disc: (n,), disc of each event.
-        velocity: (n, 2), velocity of the disc after the event.
-        position: (n, 2), position of the disc.
+    state: state of all discs at the start of the player. time: (n,), time of each event since the start, as the page
+    computes it. disc: (n,). velocity, position: (n, 2), of the disc after the event.
     """
     ids = np.arange(len(log.discs))
     order = np.argsort(np.concatenate((ids, disc)), kind="stable")  # the start of each disc, followed by its events
