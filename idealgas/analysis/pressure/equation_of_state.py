@@ -1,4 +1,4 @@
-"""Equation of state Z(φ) from the pressures of many runs, compared with theory, and fitted virial coefficients."""
+"""Equation of state Z(φ) from the pressures of many runs, compared with theory, with fitted virial coefficients."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,12 +26,12 @@ FITTED = 0.25
 """Largest packing fraction in the fit of virial coefficients."""
 
 RESUMMED = "virial series, resummed"
-"""Name of the theory of a fluid."""
+"""Name of the theory for a fluid."""
 
 FREE_TERMS = 3
-"""Number of virial coefficients that are fitted, from B2 on; the higher ones are set to their known values.
+"""Number of virial coefficients that are fitted, starting with B2; higher coefficients have their known values.
 
-The fit requires one packing fraction more than that.
+The fit requires at least one more packing fraction than it has coefficients.
 """
 
 
@@ -40,17 +40,17 @@ class PressureState:
     """Compressibility factor Z (no unit) at one packing fraction and one number of discs.
 
     Attributes:
-        name: φ, N, seeds and kind of gas in words.
+        name: φ, N, seeds and kind of gas, in words.
         packing_fraction: packing fraction φ.
         number: number of discs.
         kind: kind of gas in words; empty if unknown.
         runs: number of runs.
         seeds: seeds of the runs.
-        compressibility_factor: mean of Z over the runs, with the theory for the same number of discs in the same box.
-        infinite: Z of an infinite gas up to φ = 0.62, extrapolated by the ratio of the theories and compared with the
-            resummed virial series. Above, or if the ratio is not known, Z as measured, compared with published
-            simulations or, for a crystal, with free-volume theory, if there is one.
-        source: name of the theory of `infinite`; None without one.
+        compressibility_factor: mean of Z over the runs, with the theory for this number of discs in this box.
+        infinite: up to φ = 0.62, Z of an infinite gas: the measured Z times the ratio of the theories for N → ∞ and for
+            this N, compared with the resummed virial series. At higher φ, or if the ratio is not known, Z as measured,
+            compared with published simulations or, for a crystal, with free-volume theory, if available.
+        source: name of the theory of `infinite`; None if there is no theory.
         virial: virial series to B10; None above φ = 0.62.
         henderson: equation of state of Henderson (1975); None above φ = 0.62.
     """
@@ -70,11 +70,11 @@ class PressureState:
 
 @dataclass(frozen=True)
 class EquationOfState(Result):
-    """Equation of state: states in order of φ, and fitted virial coefficients (no unit).
+    """Equation of state: states in order of φ, and the fitted virial coefficients (no unit).
 
     Attributes:
         states: compressibility factors in order of φ.
-        b2: B2 over the area of a disc, which is 2 by theory; None if there are too few states for the fit.
+        b2: B2 in units of the area of a disc; its exact value is 2. None if there are too few states for the fit.
         b3: B3/B2²; None if there are too few states for the fit.
     """
 
@@ -83,7 +83,7 @@ class EquationOfState(Result):
     b3: Annotated[Estimate | None, Key("B3")]
 
     def check(self) -> CheckResult:
-        """Check that Z agrees with theory in every state that has a theory."""
+        """Check that Z agrees with theory in every state for which theory is available."""
         several = len(self.kinds) > 1
         names = (f"φ = {s.packing_fraction:.5g}, N = {s.number}" + f", {s.kind}" * several for s in self.states)
         reason = f"no equation of state is known for a packing fraction of {self.states[0].packing_fraction:.5g}"
@@ -133,7 +133,7 @@ class EquationOfState(Result):
         return [states, estimates("Virial coefficients, fitted", fitted)]
 
     def summary(self) -> str:
-        """Return Z of the densest state and B2, and whether they agree with theory."""
+        """Return the headline: Z of the densest state and B2, and whether they agree with theory."""
         rows = [(f"φ = {state.packing_fraction:.5g}", state.infinite) for state in self.states]
         name, z = rows[-1]
         sentence = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
@@ -142,7 +142,7 @@ class EquationOfState(Result):
         return sentence
 
     def figure(self) -> "Figure":
-        """Draw Z against φ with the theories, and below it the deviation of each state from its theory."""
+        """Draw Z against φ with the theories and, in a second panel, the deviation of each state from theory."""
         from idealgas.presentation.style import BAND, COLOURS, GREY, panels
 
         figure, (above, below) = panels(2)
@@ -177,10 +177,10 @@ class EquationOfState(Result):
 
 
 def equation_of_state(results: Sequence[Pressure]) -> EquationOfState:
-    """Return the equation of state of many runs, averaged over runs of the same kind of gas, number of discs and φ.
+    """Return the equation of state from many runs, averaged over runs with the same kind of gas, number of discs and φ.
 
     Raises:
-        UserError: if one of the runs is of a mixture, or of a gas without an equation of state.
+        UserError: if the gas of a run is a mixture or has no equation of state.
     """
     if mixed := next((r.origin for r in results if r.origin and r.origin.mixture), None):
         raise UserError(
@@ -244,7 +244,7 @@ def _virial_coefficients(states: Sequence[PressureState]) -> tuple[Estimate | No
 
 
 def _draw_dense(ax: "Axes", most: float) -> None:
-    """Draw what is known above the range of the virial series: published points, freezing, and the crystal."""
+    """Draw the theory beyond the virial series: published points, the coexistence region, and the crystal."""
     from idealgas.presentation.style import COLOURS, GREY
 
     published, pressure = np.array(list(PUBLISHED)), np.array([value for value, _ in PUBLISHED.values()])

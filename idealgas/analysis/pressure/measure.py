@@ -1,9 +1,9 @@
-"""Pressure by walls and virial, and the compressibility factor Z = PA/NT with its error bar.
+"""Pressure from the walls and from the virial, and the compressibility factor Z = PA/NT with its standard error.
 
-By Clausius' virial theorem, 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ in equilibrium over a time τ, with pair collisions on the
-left and wall hits on the right. Each side gives Z from its own events; the two differ only by the change of Σ r·p
-between the start and the end. The force per length of a wall is larger than the pressure, as walls act on the centres
-of the discs one radius inside the box.
+By Clausius' virial theorem, 2E + Σ r_ij·Δp_ij/τ = -Σ r·Δp/τ in equilibrium over a time τ, where the sums run over the
+pair collisions on the left and over the wall hits on the right. Either side alone gives Z, from different events; the
+two values differ only by the change in Σ r·p between the start and the end. The force per length on a wall is larger
+than the pressure, because walls act on the centres of the discs, one radius inside the box.
 """
 
 import math
@@ -48,17 +48,19 @@ def pressure(
 ) -> Pressure:
     """Measure the pressure of a gas between two times of its log, and compare Z = PA/NT with theory.
 
-    The routes are the momentum given to each wall per time and length and, by Clausius' virial theorem, the momentum
-    given to all walls and that transferred in collisions of discs. Theory is that of hard discs in this box, see
-    `hard_disc_theories`. Collision rates and free paths come from the same events. Without events, the sums of
-    `log.pressure = true` give the same quantities from sample to sample, except the free paths.
+    The first route is the momentum that each wall receives per time and length. The other routes follow from Clausius'
+    virial theorem: one uses the momentum given to all walls, the other the momentum transferred in collisions between
+    discs. The theory is that of hard discs in this box, see `hard_disc_theories`. Collision rates and free paths are
+    measured from the same events. A log without events must contain the sums of `log.pressure = true`, which give the
+    same quantities except for the free paths.
 
-    Z is not defined if the virial theorem has further terms or no temperature is known: with gravity, wall segments, a
-    piston, collisions that lose energy or walls of two temperatures. The result then has the mechanical pressure on
-    every wall: the momentum that the wall receives per time and length.
+    Z is not defined if the virial theorem has further terms or if the temperature is not known: with gravity, wall
+    segments, a piston, collisions that lose energy or walls of two temperatures. The result then contains the
+    mechanical pressure on every wall, which is the momentum that the wall receives per time and length.
 
     Raises:
-        UserError: if no disc moves, or if there are no events or too few samples in the window.
+        UserError: if discs have no positions, if no disc moves, or if there are no events or too few samples in the
+            window.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: the pressure requires discs with positions")
@@ -101,7 +103,7 @@ def pressure(
 
 
 def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[str, ...]:
-    """Return caveats for a dense gas, which changes slowly or is ordered."""
+    """Return caveats for a dense gas, which changes slowly or may be ordered."""
     if gas.packing_fraction <= hard_discs.HIGHEST:
         return ()
     ordered = "At this density discs order, and a run may keep a single arrangement: the errors are those of it alone."
@@ -114,7 +116,7 @@ def _without_theory(
 ) -> Pressure:
     """Return the mechanical pressure of a gas without an equation of state.
 
-    A gas that never becomes stationary is averaged from the start of the log.
+    If the gas never becomes stationary and no start is given, the average starts at the beginning of the log.
     """
     gas = log.discs
     if start is None and nonstationary_reason(log):
@@ -150,14 +152,14 @@ def _without_theory(
 
 
 def _ends(log: Log) -> tuple[str, ...]:
-    """Return a caveat on walls inside the box if no events distinguish the ends of a wall from its faces."""
+    """Return a caveat if there are walls inside the box but no events to distinguish their ends from their faces."""
     if log.has_events or not walls_inside(log.scene):
         return ()
     return ("Without events the pressure on a face includes the momentum that discs give to the ends of its wall.",)
 
 
 def _chambers(log: Log, window: Window) -> tuple[str, ...]:
-    """Return a caveat for each inner wall that meets a side of the box with gas on both sides of the wall."""
+    """Return caveats on inner walls that meet a side of the box, with gas on both sides, and on empty chambers."""
     sentences, chambers = [], Chambers(log, window.end)
     for wall in walls_inside(log.scene):
         places = [(wall.start[axis_of(k)], wall.end[axis_of(k)]) for k in range(len(SIDES))]
@@ -176,7 +178,7 @@ def _chambers(log: Log, window: Window) -> tuple[str, ...]:
 
 
 def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[str, Theory]:
-    """Return Z at the packing fraction of a gas by the name of each theory that applies to it."""
+    """Return Z at the packing fraction of a gas according to each theory that applies, by the name of the theory."""
     phi = gas.packing_fraction
     theories = {IDEAL: Theory(1.0, 0.0, IDEAL)}
     if in_box.pairs:

@@ -15,10 +15,10 @@ from idealgas.tallies.walls import Face, WallGauge, wall_name
 from idealgas.theory.conserved import conserved_momentum
 
 SEGMENTS = 8
-"""Number of segments of the window that are averaged separately if the state of the gas changes all the time."""
+"""Number of segments of the window that are averaged separately if the state of the gas changes steadily."""
 
 SMOOTH = 1e-9
-"""Largest stress along a wall, relative to the pressure, that is attributed to rounding."""
+"""Largest tangential stress on a wall, relative to the pressure, that is attributed to rounding."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,10 @@ class WallPressure:
     """Pressure of the discs on one face of a wall.
 
     Attributes:
-        name: name of the wall; that of a wall segment is followed by the direction in which the face looks.
-        pressure: force per length of the discs that touch the face, while the wall is present; the theory of a piston
-            is the pressure that holds it from outside.
-        stress: force along the face per length, positive along the outward normal turned by 90°; None for a smooth
-            face.
+        name: name of the wall; for a wall segment, followed by the direction in which the face looks.
+        pressure: normal force per length that the discs exert on the face while the wall is present; for a piston, the
+            theoretical value is the external pressure that holds it.
+        stress: tangential force per length, positive along the outward normal turned by 90°; None for a smooth face.
     """
 
     name: Annotated[str, Key("wall")]
@@ -44,8 +43,8 @@ class WallForce:
 
     Attributes:
         name: name of the wall.
-        x: component along x; the theory of the force on all walls is the weight of the discs.
-        y: component along y, with the same theory.
+        x: component along x; for all walls together, theory predicts the weight of the discs.
+        y: component along y, with the same prediction.
     """
 
     name: Annotated[str, Key("wall")]
@@ -54,7 +53,7 @@ class WallForce:
 
     @property
     def large(self) -> dict[str, Estimate]:
-        """Components by axis that exceed rounding errors or have a theory."""
+        """Components, by axis, that exceed rounding errors or have a nonzero theoretical value."""
         both = {"x": self.x, "y": self.y}
         size = {axis: abs(component.value) + component.standard_error for axis, component in both.items()}
         return {
@@ -70,9 +69,9 @@ class Mechanical:
 
     Attributes:
         walls: pressure on every face.
-        forces: force on every wall, then on all walls together.
-        unsteady: why the gas never becomes stationary, as part of a sentence; None if it may. If it is set, the numbers
-            are means over a changing state.
+        forces: force on every wall, followed by the force on all walls together.
+        unsteady: why the gas never becomes stationary, as part of a sentence; None if it can become stationary. If a
+            reason is given, the numbers are means over a changing state.
     """
 
     walls: tuple[WallPressure, ...]
@@ -81,7 +80,7 @@ class Mechanical:
 
 
 def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
-    """Return the mechanical pressure on all walls of a log in a window, from a gauge whose tallies are filled."""
+    """Return the mechanical pressure on all walls in a window, given a gauge whose tallies have been filled."""
     used, why = slice(window.first, None), nonstationary_reason(log)
     present = (face for face in gauge.faces(window.edges) if face.exposed[used].any())
     faces = [(face, _external_pressure(gauge, face, window)) for face in present]
@@ -94,16 +93,16 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
 
 
 def _external_pressure(gauge: WallGauge, face: Face, window: Window) -> float | None:
-    """Return the pressure that holds a piston from outside; None for other walls."""
+    """Return the external pressure that holds a piston; None for other walls."""
     held = (piston.balance(window.start, window.end) for piston in gauge.moving if piston.wall == face.wall)
     return next(held, None)
 
 
 def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[Face, float | None]]) -> np.ndarray:
-    """Return the forces minus what balances them, (B, K): rates of change of the momentum of the discs or a piston.
+    """Return the rate of change of the momentum of the discs and of each piston in each block, (B, K).
 
-    If nothing but the walls stops the motion of the discs, all walls together carry their weight. A piston is held from
-    outside.
+    The rate for the discs is the force on all walls minus the weight of the discs, along axes along which only the
+    walls carry the weight. The rate for a piston is the force of the discs minus the external force that holds it.
     """
     forces = window.of(gauge.impulses.given).sum(axis=1) - _weight(log)
     held = [
@@ -115,7 +114,7 @@ def _balances(log: Log, gauge: WallGauge, window: Window, faces: Sequence[tuple[
 
 
 def _carried(log: Log) -> np.ndarray:
-    """Return whether walls alone balance the weight along x and y, (2,) bool; a heat bath would carry a part of it."""
+    """Return whether the walls alone carry the weight along x and y, (2,) bool; a heat bath would carry part of it."""
     return ~conserved_momentum(log.scene) & (log.scene.properties.bath is None)
 
 
@@ -137,16 +136,16 @@ def _pressure(face: Face, used: slice, balances: np.ndarray | None, holding: flo
 def _average(
     given: np.ndarray, exposed: np.ndarray, balances: np.ndarray | None, theory: float | None = None
 ) -> Estimate:
-    """Return the mean momentum given per exposed length; that of a changing state is averaged over segments.
+    """Return the mean momentum given to a wall per exposed length and time.
 
-    The change of the state is thereby not counted as a fluctuation.
+    For a changing state the window is averaged in segments, so that the change does not count as a fluctuation.
 
     Args:
-        given: momentum in each block, (B,).
-        exposed: length times time for which the wall was exposed in each block, (B,).
-        balances: see `_balances`; None for a changing state. The part of a force that follows the balances fluctuates
-            strongly, but its mean is off only by the change of the stored momentum.
-        theory: what balances the force.
+        given: momentum given in each block, (B,).
+        exposed: exposed length of the wall times time in each block, (B,).
+        balances: see `_balances`; None for a changing state. The part of a force that is correlated with the balances
+            fluctuates strongly, but it shifts the mean only by the change in the stored momentum.
+        theory: force per length that balances the force of the discs; None if unknown.
     """
     there = exposed > 0
     given, exposed = given[there], exposed[there]

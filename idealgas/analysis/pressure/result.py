@@ -1,4 +1,4 @@
-"""Pressure of one log by every route, or on every wall of a gas without an equation of state."""
+"""Result of a pressure measurement: Z by every route or, without an equation of state, P on every wall."""
 
 import math
 from collections.abc import Sequence
@@ -24,10 +24,10 @@ IDEAL = "ideal gas"
 """Name of the theory of the ideal gas, Z = 1."""
 
 CLEAR = 5.0
-"""Difference of two pressures, in units of their joint error, from which on the headline quotes both."""
+"""Difference between two pressures, in combined standard errors, above which the headline quotes both."""
 
 MOST_WALLS = 4
-"""Number of pressures above which the headline quotes only the lowest and the highest."""
+"""Largest number of pressures in the headline; if there are more, it quotes only the lowest and the highest."""
 
 WALLS_AND_VIRIAL = (
     "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
@@ -46,13 +46,13 @@ class Pressure(Result):
         window: window of time that was averaged.
         number: number of discs.
         area: area of the box, length²; without an equation of state the mean area of the gas.
-        temperature: temperature, energy (k_B = 1); without an equation of state the mean of m v²/2 over discs and time.
+        temperature: temperature, energy (k_B = 1); without an equation of state the mean m v²/2 of discs over time.
         packing_fraction: packing fraction, no unit.
         routes: pressure and Z by each route.
-        theories: Z by the name of each theory that applies.
-        theory_errors: standard deviation of the error of Z by the name of each theory that applies.
+        theories: Z according to each theory that applies, by the name of the theory.
+        theory_errors: standard error of each value of `theories`, by the name of the theory.
         collision_rates: collision rate of each pair of species.
-        free_paths: free path of each species; empty without events.
+        free_paths: mean free path and mean free time of each species; empty without events.
         tensor: components xx, yy and xy of the pressure tensor, energy/length².
         no_theory: why no theory applies to this gas in its box, as part of a sentence; None if one applies.
         mechanical: pressure on every wall of a gas without an equation of state; None for other gases.
@@ -76,7 +76,7 @@ class Pressure(Result):
         """Return the pressure by one route.
 
         Raises:
-            UserError: if the gas has no such route; with the reason, if it has none at all.
+            UserError: if there is no such route; if there are no routes at all, the message gives the reason.
         """
         if not self.routes:
             raise UserError(f"{self.origin.path}: {self.no_theory}" if self.origin else self.no_theory or "")
@@ -86,12 +86,12 @@ class Pressure(Result):
         return self.routes[names.index(name)]
 
     def check(self) -> CheckResult:
-        """Check that Z by the virial of the walls and by that of the pairs agrees with theory."""
+        """Check that Z from the virial of the walls and Z from the virial of the pairs agree with theory."""
         virials = (route for route in self.routes if route.name.startswith((WALLS, PAIRS)))
         return check_theory(((r.name, r.source, r.compressibility_factor) for r in virials), self.no_theory)
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of routes, theories and collisions, or of the pressure on every wall."""
+        """Return the tables of routes, theories and collisions, or the tables of the pressure on every wall."""
         if self.mechanical:
             return self._wall_tables(self.mechanical)
         gas = (f"N = {self.number}, A = {self.area:g}, φ = {self.packing_fraction:.5g}, T = {self.temperature:.6g}",)
@@ -118,7 +118,7 @@ class Pressure(Result):
         ]
 
     def _wall_tables(self, mechanical: Mechanical) -> list[Table]:
-        """Return the tables of the mechanical pressure on every wall, and of the forces on the walls."""
+        """Return the tables of the mechanical pressure on every wall and of the forces on the walls."""
         ideal = self.number * self.temperature / self.area
         notes = [
             str(self.window),
@@ -141,9 +141,9 @@ class Pressure(Result):
         ]
 
     def summary(self) -> str:
-        """Return Z beside the ideal gas and hard discs, or the pressure on walls without an equation of state.
+        """Return the headline: Z compared with the ideal gas and hard discs, or the pressure on the walls.
 
-        If the external pressure on a wall is known, only such walls are named.
+        If the external pressure on some walls is known, only these walls are named.
         """
         ideal = self.number * self.temperature / self.area
         if self.mechanical:
@@ -162,7 +162,7 @@ class Pressure(Result):
         return f"P A = {format_estimate(z)} N T: {beside}; {agreement([(PAIRS, z)], theory, self.no_theory)}."
 
     def figure(self) -> "Figure":
-        """Draw Z by every route beside its theory for the gas in its box, or the pressure on every wall."""
+        """Draw Z by every route with the theory for this gas in its box, or the pressure on every wall."""
         from idealgas.presentation.style import BLACK, COLOURS, GREY, LINES, name_rows, panels
 
         if self.mechanical:
@@ -191,7 +191,7 @@ class Pressure(Result):
         return figure
 
     def _wall_figure(self, pressures: Mechanical) -> "Figure":
-        """Draw the mechanical pressure on every wall, and the external pressure on a piston."""
+        """Draw the mechanical pressure on every wall and the external pressure on pistons."""
         from idealgas.presentation.style import BLACK, COLOURS, name_rows, panels
 
         figure, (ax,) = panels(1)
@@ -209,7 +209,7 @@ class Pressure(Result):
 
 
 def _unlike(walls: Sequence[WallPressure]) -> list[WallPressure]:
-    """Return the first wall that was hit, and each further wall whose pressure clearly differs from those before it."""
+    """Return the first wall that was hit, and each further wall whose pressure clearly differs from all before it."""
     unlike: list[WallPressure] = []
     for wall in (wall for wall in walls if not math.isnan(wall.pressure.standard_error)):
         p = wall.pressure
@@ -230,7 +230,7 @@ def _place(name: str) -> str:
 def _on_walls(walls: Sequence[WallPressure], shown: Sequence[WallPressure]) -> str:
     """Return the pressures on the shown walls as part of a sentence; if there are many, the lowest and the highest.
 
-    Walls that stand for other faces inside the box are followed by the number of these faces.
+    If further faces inside the box have nearly the same pressures, their number is appended.
     """
     many = len(shown) > MOST_WALLS
     by_pressure = sorted(shown, key=lambda wall: wall.pressure.value)

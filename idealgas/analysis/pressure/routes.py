@@ -1,7 +1,7 @@
 """Pressure and Z of a uniform gas by each route.
 
-Momentum flows through the bulk of the gas to its walls, so that the bulk determines how well the force on a wall is
-known.
+Momentum flows through the bulk of the gas to its walls, so that the flux through the bulk determines the standard error
+of the force on a wall.
 """
 
 import math
@@ -24,8 +24,8 @@ from idealgas.theory.values import BoxTheory, Theory
 WALLS, PAIRS = "walls, virial", "pairs, virial"
 """Beginnings of the names of the routes that `Pressure.check` compares with theory.
 
-If only one axis is periodic, the pressures along the two axes differ, and the names of the virials along one axis end
-with it; PAIRS alone is the mean over both axes.
+If only one axis is periodic, the pressures along the two axes differ, and the name of a virial along one axis ends with
+the name of the axis; PAIRS alone is the mean over both axes.
 """
 
 
@@ -37,7 +37,7 @@ class PressureRoute:
         name: name of the route.
         pressure: pressure.
         compressibility_factor: Z.
-        source: name of the theory of both; None without one.
+        source: name of the theory of both quantities; None if there is no theory.
     """
 
     name: Annotated[str, Key("route")]
@@ -47,12 +47,12 @@ class PressureRoute:
 
 
 class Bulk(NamedTuple):
-    """Momentum that reaches the walls through the bulk of a gas, in B blocks of time; None if unknown.
+    """Momentum flux to the walls, calculated from the bulk of a gas, in B blocks of time; None if unknown.
 
     Attributes:
         sides: (4, B), force on each side of the box, mass·length/time².
-        virial: (B,), virial of all walls by Clausius' theorem: the kinetic energy and Σ r·Δp of all other events,
-            energy.
+        virial: (B,), virial of all walls according to Clausius' theorem, energy: the kinetic term plus Σ r·Δp per time
+            of all events other than wall hits.
     """
 
     sides: np.ndarray | None
@@ -60,7 +60,7 @@ class Bulk(NamedTuple):
 
 
 def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moments: Moments, impacts: Impacts) -> Bulk:
-    """Return the momentum that discs carry to the walls and that collisions and the thermostat transfer."""
+    """Return the flux of the momentum that discs carry to the walls and that collisions and the thermostat transfer."""
     flights = window.of(moments.flights)[:, :, 1:3]
     first = np.unique(gas.species, return_index=True)[1]
     carried = (flights / _reach(gas)[first]).sum(axis=1)
@@ -71,10 +71,10 @@ def bulk_in_events(gas: Gas, periodic: tuple[bool, bool], window: Window, moment
 def bulk_in_samples(
     gas: Gas, periodic: tuple[bool, bool], window: Window, impacts: SampledImpacts, has_thermostat: bool
 ) -> Bulk:
-    """Return the same from the sums in samples, with one mean free length for discs of several radii.
+    """Return the same fluxes from the sums in samples, using a mean over the discs if their radii differ.
 
-    It is unknown for discs in a heat bath. The force is also unknown beside walls that drag discs along. Both would
-    require the position of each disc at that time.
+    Neither flux is known for discs in a heat bath, and the force on the sides is not known if walls drag discs along:
+    both would require the position of each disc at the time of the event.
     """
     if has_thermostat:
         return Bulk(None, None)
@@ -94,7 +94,7 @@ def routes_of(
     impacts: Impacts | SampledImpacts,
     tensor: dict[str, Estimate],
 ) -> tuple[PressureRoute, ...]:
-    """Return the pressure by the momentum given to each wall, by the virial of all walls and by that of the pairs."""
+    """Return the pressure from the momentum given to each wall, the virial of all walls and the virial of the pairs."""
     ideal = len(gas) * temperature / gas.area
     sides = [k for k in range(len(SIDES)) if not periodic[axis_of(k)]]
     push = (window.of(impacts.impulse[:, : len(SIDES)]) * np.array(OUTWARD)).sum(axis=2).T
@@ -128,17 +128,17 @@ def routes_of(
 def _wall(
     name: str, flux: np.ndarray, bulk: np.ndarray, unit: float, stored: float, ideal: float, theory: Theory | None
 ) -> PressureRoute:
-    """Return the pressure by a momentum flux to walls, with the error that follows from the flux through the bulk.
+    """Return the pressure from a momentum flux to walls, with the error that follows from the flux through the bulk.
 
     Args:
         name: name of the route.
         flux: momentum flux in each block, (n,).
         bulk: momentum flux through the bulk in each block, (n,).
-        unit: flux at a pressure of one `ideal`.
-        stored: variance of the momentum that the gas stores on the way. In equilibrium the momenta of discs are
+        unit: flux that corresponds to the pressure `ideal`.
+        stored: variance of the momentum that is on its way to the walls. In equilibrium the momenta of the discs are
             independent of each other and of the positions. The variance is then the sum of m T over the discs, times
-            the mean square of the share of the momentum that has reached a wall, which grows linearly from 0 at one
-            wall to 1 at the other.
+            the mean square of the fraction of a momentum that counts as having reached a wall; this fraction grows
+            linearly from 0 at one wall to 1 at the other.
         ideal: pressure of the ideal gas, energy/length².
         theory: theory of Z.
     """
@@ -150,12 +150,12 @@ def _wall(
 
 
 def _of(name: str, z: Estimate, ideal: float, theory: Theory | None) -> PressureRoute:
-    """Return the route with Z and with the pressure, which is Z times that of the ideal gas."""
+    """Return the route with Z and with the pressure, which is Z times the pressure of the ideal gas."""
     return PressureRoute(name, z.times(ideal), z, theory.source if theory else None)
 
 
 def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
-    """Return the weighted mean of theories whose errors are shared; None if one of them has no value."""
+    """Return the weighted mean of theories with fully correlated errors; None if one of them is not available."""
     known = [(theory, weight) for theory, weight in parts if theory]
     if not known or len(known) < len(parts):
         return None
@@ -164,15 +164,15 @@ def _average(parts: Sequence[tuple[Theory | None, float]]) -> Theory | None:
 
 
 def _reach(gas: Gas) -> np.ndarray:
-    """Return the length that the centre of each disc can move along x and y, (N, 2)."""
+    """Return the lengths of the box along x and y that the centre of each disc can reach, (N, 2), length."""
     return np.asarray(np.array(gas.box) - 2 * gas.radius[:, None])
 
 
 def _across(flow: np.ndarray, periodic: tuple[bool, bool]) -> np.ndarray:
-    """Return the sum (B,) of a flow along x and y, (B, 2), over the axes that have walls."""
+    """Return the sum (B,) of a flux (B, 2), given along x and y, over the axes that have walls."""
     return np.asarray(flow[:, ~np.array(periodic)].sum(axis=1))
 
 
 def _on_sides(along: np.ndarray) -> np.ndarray:
-    """Return the force on each side of the box, (4, B), from that along x and y, (B, 2)."""
+    """Return the force on each side of the box, (4, B), from the forces along x and y, (B, 2)."""
     return np.array([along[:, axis_of(k)] for k in range(len(SIDES))])

@@ -1,8 +1,8 @@
 """Measure density, temperature, flow and pressure in strips along an axis, and the heat given by walls.
 
-Theory predicts a uniform gas in a closed or periodic box and, for a dilute gas, the barometric law under gravity.
+Theory predicts a uniform gas in a closed or periodic box and, if the gas is dilute, the barometric law under gravity.
 Between two thermal sides T^(3/2) is linear in the position, with temperature jumps at the sides, and n T Z is constant.
-A flow that gravity drives along periodic sides is compared with Poiseuille flow (`flow`).
+A flow that gravity drives along periodic sides is compared with Poiseuille flow.
 """
 
 import math
@@ -41,27 +41,29 @@ BINS = 20
 """Default number of strips."""
 
 DILUTE = 0.02
-"""Largest packing fraction of a strip for theories of a dilute gas; n and T are then off by about 4 %."""
+"""Largest packing fraction in a strip for theories of a dilute gas; the errors of n and T are then about 4 %."""
 
 LAYERED = 0.02
-"""Fraction by which layers at walls may raise the density of the strips there without a caveat."""
+"""Largest fraction by which layering at the walls may raise the density of the strips there without a caveat."""
 
 CLEAR = 5.0
-"""Difference of two strips, in standard errors, above which the summary reports it."""
+"""Difference between two strips, in standard errors, above which the summary reports it."""
 
 SHEARED = "Errors of the pressure in strips of a sheared gas may be up to 1.4 times too small."
-"""Caveat of a profile between sheared sides, from 50 runs of 50 discs."""
+"""Caveat of a profile between sheared sides; the factor was measured in 50 runs of 50 discs."""
 
 
 @dataclass(frozen=True)
 class SpeciesProfile:
     """Profiles of one species, with one value for each strip.
 
-    species: name of the species. density: discs per area, 1/length². temperature: mean m v²/2 per disc, relative to the
-    flow, energy. spin: mean I ω² per disc, energy; None without spin. velocity: mass-weighted velocity of the flow that
-    gravity drives, length/time; None without a flow. gradient: slope of a straight line through the temperatures, each
-    weighted with its number of discs, energy/length; None with fewer than two temperatures. density_test,
-    temperature_test: tests of all strips together; None unless the gas is uniform by theory.
+    Attributes:
+        species, density: name of the species, and its number density, 1/length².
+        temperature: mean m v²/2 of a disc, relative to the flow, energy.
+        spin: mean I ω² of a disc, energy; None without spin.
+        velocity: mass-weighted velocity of the flow that gravity drives, length/time; None without a flow.
+        gradient: slope of a line fitted to the temperatures, weighted by the number of discs, energy/length, or None.
+        density_test, temperature_test: tests of all strips together; None unless theory predicts a uniform gas.
     """
 
     species: str
@@ -85,11 +87,11 @@ class Profile(Result):
         edges: (K + 1,), edges of the strips, length.
         strip: area of one strip, length².
         frames: number of averaged frames.
-        law: name of the theory; None without one.
+        law: name of the theory; None if theory is not available.
         species: profiles of each species.
         pressure: components "xx", "yy" and "xy" of the pressure tensor relative to the flow, (K,) each, energy/length².
-        heat: energy per time that each wall gives to the discs, by the name of the wall; sheared sides count as one.
-        heat_flow: heat per time from the lower to the higher thermal side; None unless their temperatures differ.
+        heat: energy per time that each wall gives to the discs, by its name; the sheared sides form one entry.
+        heat_flow: heat per time between two thermal sides, along the axis; None unless their temperatures differ.
     """
 
     window: Window
@@ -110,7 +112,7 @@ class Profile(Result):
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of density, temperature and pressure in every strip, and of the heat given by walls."""
+        """Return the tables of density, temperature and pressure in every strip, and of the heat given by the walls."""
         axis, edges = self.axis, self.edges
         strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
         tables = []
@@ -139,7 +141,7 @@ class Profile(Result):
         return [replace(tables[0], notes=notes), *tables[1:]]
 
     def summary(self) -> str:
-        """Return density and temperature of the first and last known strip, and the agreement of all with theory."""
+        """Return the headline: values in the first and last known strips, and whether all strips agree with theory."""
         middles = [f"{self.axis} = {x:.4g}" for x in self.middles]
         sentences: list[str] = []
         rows: list[tuple[str, Estimate | PValue]] = []
@@ -152,7 +154,7 @@ class Profile(Result):
                 if not known:
                     continue
                 (x0, first), (x1, last) = known[0], known[-1]
-                if name == "velocity":  # between sides the flow is fastest in the middle
+                if name == "velocity":  # the flow is fastest midway between the sides
                     x1, last = max(known, key=lambda entry: abs(entry[1].value - known[0][1].value))
                 if abs(first.value - last.value) > CLEAR * np.hypot(first.standard_error, last.standard_error):
                     ends = f"{format_estimate(first)} at {x0} and {format_estimate(last)} at {x1}"
@@ -166,7 +168,7 @@ class Profile(Result):
         return f"{' '.join(sentences) or same} In strips: {agreement(rows, law)}."
 
     def figure(self) -> "Figure":
-        """Draw density, temperature, pressure and flow, theory dashed, the spin temperature as crosses."""
+        """Draw density, temperature, pressure and flow; theory is dashed, and spin temperatures are crosses."""
         from idealgas.presentation.style import BLACK, Strips, curve_style, panels
 
         def draw(ax: "Panel", column: tuple[Estimate, ...], **style: Any) -> None:
@@ -232,14 +234,14 @@ class ProfileAnalysis(Analysis):
         end: float | None = None,
         progress: ReadProgress | None = None,
     ) -> Profile:
-        """Measure density, temperature and pressure in strips across an axis, and the heat of walls, between two times.
+        """Measure density, temperature and pressure in strips along an axis, and the heat given by walls.
 
-        Averages are taken over states that are at least one event per disc apart. Theory, if it is available, is a
-        uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille flow. With a flow,
-        temperatures are relative to it.
+        Averages are taken over states that are at least one event per disc apart. Where theory is available, it
+        predicts a uniform gas, the barometric law, Fourier's law between two thermal walls, or Poiseuille flow. If the
+        gas flows, temperatures are relative to the flow.
 
         Raises:
-            UserError: without events or positions, or if the window is empty.
+            UserError: if the log has no events or its discs have no positions, or if the window is empty.
         """
         if not log.has_positions:
             raise UserError(f"{log.path}: a profile requires discs with positions")
@@ -269,7 +271,7 @@ class ProfileAnalysis(Analysis):
 
 
 def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:
-    """Yield the name of each quantity of a species that has a theory, with the test of all of its strips."""
+    """Yield the name of each quantity of a species for which all strips were tested together, and the test."""
     for entry in result.species:
         for name, test in (("density", entry.density_test), ("temperature", entry.temperature_test)):
             if test is not None:
@@ -277,7 +279,7 @@ def _tests(result: Profile) -> Iterator[tuple[str, StripTest]]:
 
 
 def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
-    """Yield a caveat for each species that is too rare in some strips."""
+    """Yield a caveat for each species that is too rare in some strips to have a temperature there."""
     for entry in species:
         if missing := sum(np.isnan(estimate.value) for estimate in entry.temperature):
             yield (
@@ -289,7 +291,7 @@ def _unknown_strips(species: Sequence[SpeciesProfile]) -> Iterator[str]:
 def _limits(
     log: Log, axis: int, width: float, species: Sequence[SpeciesProfile], expected: Expected | None
 ) -> Iterator[str]:
-    """Yield a caveat if a law of dilute gases, or of gases without layers at walls, fails; width: of a strip."""
+    """Yield a caveat if a theory of dilute gases, or of gases without layering at the walls, does not hold here."""
     if expected is None:
         return
     density = np.array([[estimate.value for estimate in entry.density] for entry in species])
@@ -312,7 +314,7 @@ def _of_species(
     flow: Sequence[Theory] | None,
     memory: float,
 ) -> SpeciesProfile:
-    """Return the profiles of one species from its sums (F, K, 5); strip: area of a strip, length²."""
+    """Return the profiles of species s from its sums (F, K, 5), see `collect`; strip: area of a strip, length²."""
     strips = range(sums.shape[1])
 
     def per_disc(k: int, column: int, by: int = 0, theory: Theory | None = None) -> Estimate:
@@ -323,7 +325,7 @@ def _of_species(
         return ratio(sums[:, k, column], sums[:, k, by], theory, memory)
 
     density_test = temperature_test = None
-    if expected is not None and not expected.dilute:  # χ² would detect the errors of a dilute-gas law
+    if expected is not None and not expected.dilute:  # with a dilute-gas law, χ² would mainly test the error of the law
         number = strip * expected.density[s]
         density, warmth = ([of(s, k) for k in strips] for of in (expected.of_density, expected.of_temperature))
         excess = sums[..., 1] - [estimate.value for estimate in warmth] * sums[..., 0]

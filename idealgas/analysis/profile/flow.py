@@ -1,4 +1,4 @@
-"""Theory of the flow that gravity drives along periodic sides between two thermal sides: Poiseuille flow with slip."""
+"""Theory of Poiseuille flow with slip, which gravity drives along the periodic axis between two thermal sides."""
 
 import math
 from collections.abc import Iterator
@@ -17,38 +17,45 @@ LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
 """Name of the law."""
 
 SLIP, SLIP_ERROR = 1.016, 0.031
-"""Velocity at a thermal side to which the flow far away from it extrapolates, over its gradient times ℓ.
+"""Slip length in units of ℓ, and its error.
 
-SLIP_ERROR is its difference from that of hard spheres, and ℓ is η √(2T/m)/nT of a dilute gas with the same mean free
-path. Source: the BGK equation, Albertoni, Cercignani & Gotusso, Phys. Fluids 6, 993 (1963), which is the same in two
-dimensions; hard spheres have 0.985: Sharipov, Proc. EuroSimE, 243 (2004).
+The slip length is the velocity of the flow at a thermal side, extrapolated from far away, divided by the gradient of
+the velocity. The unit ℓ is η √(2T/m)/nT of a dilute gas with the same mean free path. The value follows from the BGK
+equation and is the same in two dimensions: Albertoni, Cercignani & Gotusso, Phys. Fluids 6, 993 (1963). The error is
+the difference from the value for hard spheres, 0.985: Sharipov, Proc. EuroSimE, 243 (2004).
 """
 
 SECOND_ORDER, LAYER = 0.77, 0.31
-"""Corrections to first-order slip, which are counted as errors.
+"""Corrections to first-order slip; they are not applied but counted as errors.
 
-The BGK equation adds 0.77 ℓ² times the second derivative, and next to a side the gas is slower by 0.31 ℓ times the
-gradient: Cercignani, J. Math. Anal. Appl. 10, 93 (1965).
+According to the BGK equation, the slip velocity has a second-order term, 0.77 ℓ² times the second derivative of the
+velocity, and next to a side the gas is slower by 0.31 ℓ times the gradient: Cercignani, J. Math. Anal. Appl. 10, 93
+(1965).
 """
 
 LARGEST_ERROR = 0.1
-"""Largest error relative to the velocity in the middle; above it the gap is too narrow or the flow heats the gas."""
+"""Largest error relative to the velocity in the middle; if it is exceeded, there is no theory.
+
+The gap is then too narrow, or the flow heats the gas too much.
+"""
 
 STEADY, LEAST_WINDOW = 4.0, 10.0
-"""Time after which a flow is steady to 2 %, and shortest length of a window, in relaxation times."""
+"""Time after which a flow is steady to within 2 %, and smallest length of the window, in relaxation times."""
 
 
 class Flow(NamedTuple):
-    """Flow by theory.
+    """Theoretical flow.
 
-    velocity: velocity along the other axis, in each strip. relaxation: relaxation time H²/π²ν for the gap H.
+    Attributes:
+        velocity: velocity along the other axis in each strip, length/time.
+        relaxation: relaxation time H²/π²ν, where H is the gap and ν the kinematic viscosity.
     """
 
     velocity: list[Theory]
     relaxation: float
 
     def caveats(self, window: Window) -> Iterator[str]:
-        """Yield a caveat if the flow still develops in the window, or if the window is too short for the errors."""
+        """Yield a caveat if the flow is still developing in the window, or if the window is too short for errors."""
         if window.start < STEADY * self.relaxation or window.duration < LEAST_WINDOW * self.relaxation:
             yield (
                 f"The flow relaxes in t = {self.relaxation:.3g}: it is steady from {STEADY * self.relaxation:.3g} on, "
@@ -59,9 +66,10 @@ class Flow(NamedTuple):
 def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
     """Return the velocity along the other axis in strips between edges (K + 1,) along an axis; None if unknown.
 
-    The stress carries the weight of the gas of density ρ: u = ρg/2η (y (H - y) + sH), where y goes from 0 to H over the
-    range of the centres and s is the slip length. This holds for equal elastic discs without spin. LARGEST_ERROR
-    requires a wide gap and a slow flow, as viscous heating raises the temperature between the sides and with it η.
+    The viscous stress balances the weight of the gas: u = ρg/2η (y (H - y) + sH), where ρ is the mass density, s the
+    slip length, and y runs from 0 to H over the positions that the centres can reach. This holds for equal elastic
+    discs without spin. The bound LARGEST_ERROR requires a wide gap and a slow flow, because viscous heating raises the
+    temperature between the sides and thereby η.
     """
     properties, gas = log.scene.properties, log.discs
     emits = [properties.emits[side] for side in sides_across(axis)]

@@ -1,4 +1,4 @@
-"""Energy that walls give to the discs, and the heat that flows from one thermal side to the other."""
+"""Energy that walls give to the discs, and heat that flows from one thermal side to the other."""
 
 import math
 
@@ -14,13 +14,14 @@ from idealgas.theory import hard_discs
 from idealgas.theory.values import Theory, enskog_error
 
 SHEARED_SIDES = "bottom and top"
-"""Name of both sheared sides together, as only the sum of their energies has a meaning."""
+"""Name of the two sheared sides together; only the sum of their energies is meaningful."""
 
 
 def heat_of_walls(log: Log, window: Window) -> dict[str, Estimate]:
-    """Return the energy per time that each wall gave to the discs, by its name, from the samples in the window.
+    """Return the energy per time that each wall gave to the discs, by the name of the wall, from the logged samples.
 
-    Sheared sides count as one: a disc that crosses them receives energy from both, and its division is a convention.
+    The two sheared sides form one entry, because a disc that crosses them receives energy from both, and how this
+    energy is divided between them is a convention.
     """
     steps, gains = _gains(log, window)
     heat = {wall.name: gains[:, k] for k, wall in enumerate(log.walls[: gains.shape[1]]) if gains[:, k].any()}
@@ -30,10 +31,10 @@ def heat_of_walls(log: Log, window: Window) -> dict[str, Estimate]:
 
 
 def heat_flow(log: Log, axis: int, window: Window) -> Estimate | None:
-    """Return the heat per time from the lower to the higher thermal side across an axis.
+    """Return the heat per time that flows from the lower to the upper of the two thermal sides across an axis.
 
-    It is the mean of the heat that one side gives and the heat that the other side takes. Theory is Fourier's law with
-    Enskog's conductivity. The result is None unless the two sides have different temperatures.
+    It is the mean of the heat that one side gives and the heat that the other side takes, and it is compared with
+    Fourier's law with Enskog's conductivity. The result is None unless the two sides have different temperatures.
     """
     sides = sides_across(axis)
     temperatures = [log.scene.properties.emits[side] for side in sides]
@@ -45,7 +46,7 @@ def heat_flow(log: Log, axis: int, window: Window) -> Estimate | None:
 
 
 def _fourier(log: Log, axis: int) -> Theory | None:
-    """Return the heat per time by Fourier's law.
+    """Return the heat per time according to Fourier's law; None if theory is not available.
 
     The conductivity is proportional to √T, so that T^(3/2) is linear in the position.
     """
@@ -61,7 +62,7 @@ def _fourier(log: Log, axis: int) -> Theory | None:
 
 
 def _gains(log: Log, window: Window) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times (n,) between samples in the window, and the energy (n, walls) that each wall gave in them."""
+    """Return the time steps (n,) between samples in the window, and the energy (n, walls) that walls gave in each."""
     if "wall_energy" not in log.observables:
         return np.empty(0), np.empty((0, 0))
     time, given = log.observables["wall_energy"]

@@ -1,4 +1,4 @@
-"""Pressure tensor in strips: the momentum that discs carry and that collisions transfer."""
+"""Pressure tensor in strips: the flux of the momentum that discs carry and that collisions transfer."""
 
 import numpy as np
 
@@ -20,20 +20,21 @@ def pressure_of_strips(
 ) -> dict[str, tuple[Estimate, ...]]:
     """Return the components xx, yy and xy of the pressure tensor in strips between edges (K + 1,), energy/length².
 
-    xy is the flux, along the axis, of the momentum component perpendicular to it. Between walls, the component along
-    the axis is the force through a line across the box over the width of the box. Smooth walls perpendicular to the
-    axis transfer no tangential momentum. The perpendicular momentum that has gone through a line is then exactly what
-    the gas on one side of it has lost.
+    The component xy is the flux, along the axis, of the momentum component perpendicular to the axis. Between walls,
+    the component along the axis is the force across a line through the box, divided by the length of the line. Smooth
+    walls perpendicular to the axis transfer no tangential momentum. The tangential momentum that has crossed a line is
+    then exactly what the gas on one side of the line has lost.
 
     Args:
         log: log of the gas.
         axis: axis of the strips, 0 for x or 1 for y.
         edges: edges of the strips, length.
         times: (F,), times of the frames.
-        carried: (F, K, 3), parts of xx, yy and xy that the discs of each frame carry, energy.
-        stored: (F, K), momentum perpendicular to the axis of the discs below a line, averaged over the lines of a
-            strip.
-        progress: called with the numbers of rows read and of all rows.
+        carried: (F, K, 3), kinetic contributions of the discs in each frame to xx, yy and xy, times the area of a
+            strip, energy.
+        stored: (F, K), total momentum, perpendicular to the axis, of the discs below a line, averaged over all lines in
+            a strip.
+        progress: called as progress(done, total) while the log is read.
     """
     passed_on = PassedOn(axis, edges, log.periodic, log.scene.properties.shear)
     stream(log, times, [passed_on], progress)
@@ -44,6 +45,6 @@ def pressure_of_strips(
     components = {name: tuple(mean(pressure[:, k, c]) for k in strips) for c, name in enumerate(("xx", "yy", "xy"))}
     if not log.periodic[axis] and conserved_momentum(log.scene)[1 - axis]:
         lost = -np.diff(stored, axis=0) / np.diff(times)[:, None] / log.box[1 - axis]
-        shear = pressure[..., 2]  # minus the loss, only the scatter of single instants remains
+        shear = pressure[..., 2]  # after the loss is subtracted, only the scatter of single instants remains
         components["xy"] = tuple(mean_of_flux(shear[:, k], shear[:, k] - lost[:, k]) for k in strips)
     return components

@@ -1,4 +1,4 @@
-"""Sums over the discs of each strip, the slope of the temperature, and a test of all strips against theory."""
+"""Sums over the discs in each strip, the slope of the temperature, and a test of all strips against theory."""
 
 from dataclasses import dataclass
 
@@ -13,10 +13,10 @@ from idealgas.theory.conserved import centre_of_mass_velocity
 from idealgas.theory.values import Theory
 
 FEWEST_FRAMES = 32
-"""Smallest number of frames with a disc in a strip for which its temperature is estimated."""
+"""Smallest number of frames in which a strip must contain a disc for its temperature to be estimated."""
 
 LEAST_VISITS = 50.0
-"""Expected number of discs in a strip, summed over all frames, below which it is not normally distributed."""
+"""Smallest expected number of discs in a strip, summed over all frames, that is nearly normally distributed."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class StripTest:
     """χ² test of all strips of a profile against theory.
 
     Attributes:
-        chi_squared: sum of the squares of normal deviates, one for each wave (no unit).
+        chi_squared: sum of the squares of the normal deviates of the waves (no unit).
         waves: number of waves.
-        p_value: probability of at least this sum by chance, given the errors of theory.
+        p_value: probability that chance alone gives at least this sum, given the errors of the theory.
     """
 
     chi_squared: float
@@ -37,16 +37,16 @@ class StripTest:
 def collect(
     log: Log, axis: int, flow: int | None, times: np.ndarray, edges: np.ndarray, progress: ReadProgress | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sum the discs of each strip at F times.
+    """Return sums over the discs in each strip at F times.
 
-    The velocity v is relative to the mean flow of the strip if there is one, and between sheared sides to their flow; u
-    is the velocity along the axis `flow`.
+    The velocity v is relative to the mean flow in the strip if gravity drives a flow and, between sheared sides, to the
+    shear flow; u is the velocity along the axis `flow`.
 
     Returns:
-        sums: (F, S, K, 5), sums of 1, m v²/2, I ω², m u and m over the discs of each species and strip.
-        carried: (F, K, 3), sums of m vx², m vy² and m vx vy over the discs of each strip.
-        stored: (F, K), momentum perpendicular to the axis of the discs below a line, averaged over the lines of a
-            strip.
+        sums: (F, S, K, 5), sums of 1, m v²/2, I ω², m u and m over the discs of each species in each strip.
+        carried: (F, K, 3), sums of m vx², m vy² and m vx vy over the discs in each strip.
+        stored: (F, K), total momentum, perpendicular to the axis, of the discs below a line, averaged over all lines in
+            a strip.
     """
     gas, frame = log.discs, centre_of_mass_velocity(log.scene, log.discs)
     shape = (len(gas.species_names), len(edges) - 1)
@@ -84,20 +84,21 @@ def collect(
 
 
 def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory: float = 0.0) -> StripTest | None:
-    """Test a series (F, K) over K strips whose deviations from theory are 0 on average; None with few discs.
+    """Test whether a series (F, K) over K strips agrees with theory; return None if there are too few discs.
 
-    The strips of one gas fluctuate together, as discs are conserved and long waves decay slowly. The test therefore
-    uses waves across the gas, each with the error of its own time series. The waves w have increasing order in the
-    fraction of the discs below a position, with Σ weight w w' = 0 for any two of them and for each with a constant. The
-    instantaneous amplitudes of independent discs are then exactly uncorrelated, and they relax nearly like modes of the
-    gas. Each amplitude over its error is converted to a normal deviate by Student's distribution.
+    The strips of one gas fluctuate together, because the number of discs is conserved and long waves decay slowly. The
+    test therefore uses waves across the gas, each with the standard error of its own time series. The waves w are
+    cosines of increasing order, as functions of the fraction of the discs below a position, which are made orthogonal
+    to each other and to a constant: Σ weight w w' = 0. For independent discs the amplitudes at one instant are then
+    exactly uncorrelated, and they relax nearly like modes of the gas. Student's distribution converts the ratio of each
+    amplitude to its standard error into a normal deviate.
 
     Args:
-        series: values of each frame and strip, whose mean by theory is the weight times a constant, or 0.
-        weight: (K,), mean number of discs in a strip by theory.
-        error: (K,), error of theory of the mean of the series; in each wave the errors of strips add up in the worst
-            way.
-        memory: number of frames per independent frame, if it is known.
+        series: values in each frame and strip; according to theory their mean is the weight times a constant, or 0.
+        weight: (K,), theoretical mean number of discs in each strip.
+        error: (K,), error of the theoretical mean of the series; in each wave the errors of all strips are assumed to
+            add up.
+        memory: number of frames per independent frame, if it is known; otherwise 0.
     """
     from scipy import special
 
@@ -121,10 +122,10 @@ def strip_test(series: np.ndarray, weight: np.ndarray, error: np.ndarray, memory
 def gradient(
     counts: np.ndarray, energies: np.ndarray, middles: np.ndarray, expected: Expected | None, s: int, memory: float
 ) -> Estimate | None:
-    """Return the slope of the temperature from counts and energies (F, K) of the discs in strips.
+    """Return the slope of the temperature, given the counts and energies (F, K) of the discs in strips.
 
-    The slope is linear in the temperatures. Theory may be too high at one end and too low at the other. memory: number
-    of frames per independent frame.
+    The slope is a linear function of the temperatures. The error of its theoretical value assumes that theory is too
+    high at one end and too low at the other. memory: number of frames per independent frame.
     """
     known = np.count_nonzero(counts, axis=0) >= FEWEST_FRAMES
     if np.count_nonzero(known) < 2:

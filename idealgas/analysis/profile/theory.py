@@ -1,4 +1,4 @@
-"""Profiles of density and temperature by theory, for gases of discs that are small compared with a strip."""
+"""Theoretical profiles of density and temperature, for discs that are small compared with a strip."""
 
 import math
 from dataclasses import dataclass
@@ -17,47 +17,48 @@ UNIFORM = "uniform"
 """Name of the law of a uniform gas."""
 
 LEAST = 1e-100
-"""Density and temperature, relative to those at the bottom, at heights that the energy of no disc reaches: nearly 0."""
+"""Density and temperature, relative to the bottom, at heights that no disc has enough energy to reach: nearly 0."""
 
 POINTS = 64
-"""Number of points in a strip over which theory is averaged."""
+"""Number of points in each strip over which the theoretical profiles are averaged."""
 
 MOST_KINDS = 16
-"""Largest number of kinds of discs in the theory of a column of fixed energy, whose cost grows as its square."""
+"""Largest number of kinds of discs in the theory of a column at fixed energy; its cost grows as their square."""
 
 JUMP = 2.7
-"""Length over which the gradient extends beyond a side that accommodates discs completely, in mean free paths.
+"""Temperature jump at a side with complete accommodation, over the temperature gradient, in mean free paths.
 
-It was fitted to temperatures in ten strips of boxes 2.8 to 23 mean free paths wide, with walls of temperatures 1 and 2,
-or 1 and 4.
+It was fitted to the temperatures in ten strips of boxes 2.8 to 23 mean free paths wide, with walls at temperatures of 1
+and 2, or 1 and 4.
 """
 
 JUMP_ERROR = 0.3
-"""Root mean square deviation from this law, relative to the mean jump; measured values are 0.17 to 0.28."""
+"""Root-mean-square error of the jump law, relative to the mean jump; measured values are 0.17 to 0.28."""
 
 LEAST_INSIDE = 0.4
-"""Smallest fraction of the temperature difference that remains in the gas; narrower boxes follow another law."""
+"""Smallest fraction of the temperature difference between the walls that lies in the gas, for the law to hold."""
 
 ROUNDS, STEP = 200, 0.25
-"""Number of iterations for the pressure and for the temperatures beside the sides, and step size of the latter."""
+"""Number of iterations for the pressure and for the temperatures at the sides, and relaxation factor of the latter."""
 
 GRID = 4097
-"""Number of points in the tables of the density between two sides and of the equation of state."""
+"""Number of points in the tables of the density between the sides and of the equation of state."""
 
 
 @dataclass(frozen=True)
 class Expected:
-    """Profiles by theory for S species and K strips.
+    """Theoretical profiles of S species in K strips.
 
     Attributes:
         law: name of the law.
-        dilute: whether the law is restricted to dilute gases, at least for the temperature.
-        density: (S, K), mean number density of each strip, 1/length².
-        temperature: (S, K), mean temperature of each strip, energy.
-        share: (S,), mean m v²/2 of a disc over the temperature, without a conserved motion of the whole gas; no unit.
-        error: error of temperatures, energy.
-        layers: (2,), fraction by which layers at walls may raise the density of the first and the last strip, (1 - 1/Z)
-            R/width. Measured values at φ = 0.1 and 0.5, with ten and twenty strips, are 0.7 to 0.9 times that.
+        dilute: whether the law holds only for dilute gases, at least for the temperature.
+        density: (S, K), mean number density in each strip, 1/length².
+        temperature: (S, K), mean temperature in each strip, energy.
+        share: (S,), ratio of the mean m v²/2 of a disc, relative to a conserved motion of the whole gas, to the
+            temperature (no unit).
+        error: error of the temperatures, energy.
+        layers: (2,), fraction by which layering at the walls may raise the density in the first and in the last strip,
+            (1 - 1/Z) R/width. At φ = 0.1 and 0.5, with ten and twenty strips, 0.7 to 0.9 times this was measured.
     """
 
     law: str
@@ -69,11 +70,11 @@ class Expected:
     layers: np.ndarray
 
     def of_density(self, s: int, k: int) -> Theory:
-        """Return the density of species s in strip k; the errors of all temperatures change the common pressure."""
+        """Return the density of species s in strip k; its error includes that of the common pressure."""
         density, cold = self.density[s], self.error / self.temperature[s]
         last = len(density) - 1
         low, high = self.layers
-        layers = low if k == 0 else high if k == last else (low + high) / (last - 1)  # inner strips lack these discs
+        layers = low if k == 0 else high if k == last else (low + high) / (last - 1)  # missing in inner strips
         error = math.hypot(cold[k], density @ cold / density.sum(), layers)
         return Theory(float(density[k]), float(density[k] * error), self.law)
 
@@ -87,15 +88,16 @@ class Expected:
 
 
 def flow_axis(log: Log) -> int | None:
-    """Return the axis along which gravity drives a flow, 0 for x or 1 for y; None without one."""
+    """Return the axis along which gravity drives a flow, 0 for x or 1 for y; None if there is no flow."""
     falls = log.scene.properties.free_fall_axes
     return falls.index(True) if any(falls) else None
 
 
 def natural_axis(log: Log) -> int:
-    """Return the axis across a flow, of gravity, or of two thermal sides of different temperatures, else x.
+    """Return the axis along which the profiles vary, 0 for x or 1 for y.
 
-    0 stands for x and 1 for y.
+    It is the axis perpendicular to a flow, the axis of gravity, or the axis between two thermal sides at different
+    temperatures; x if there are none of these.
     """
     if (along := flow_axis(log)) is not None:
         return 1 - along
@@ -106,7 +108,7 @@ def natural_axis(log: Log) -> int:
 
 
 def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Expected | None:
-    """Return the profiles by theory in strips between edges (K + 1,), for a gas from a time on; None if unknown."""
+    """Return theoretical profiles in strips between edges (K + 1,) for a window from time `start`; None if unknown."""
     properties, discs = log.scene.properties, classes(log.discs)
     if (
         properties.shear
@@ -139,11 +141,11 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
 
 
 Curve = tuple[str, np.ndarray, np.ndarray, float]
-"""Name of the law, relative density and temperature at coordinates (S, K, P), and the error of temperatures."""
+"""Name of the law, relative density and temperature at coordinates (S, K, P), and error of the temperatures."""
 
 
 def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve | None:
-    """Return the law, density and temperature at the coordinates `places` (S, K, P); None if unknown."""
+    """Return the law and its density and temperature at coordinates `places` (S, K, P); None if there is no theory."""
     ones = np.ones_like(places)
     properties = log.scene.properties
     low, high = (properties.emits[side] for side in sides_across(axis))
@@ -164,9 +166,9 @@ def _curve(log: Log, axis: int, places: np.ndarray, discs: Composition) -> Curve
 
 
 def _fixed_energy(log: Log, axis: int, places: np.ndarray, discs: Composition, mean: float) -> Curve:
-    """Return the barometric law at fixed energy: the higher a disc is, the less energy remains for all discs.
+    """Return the barometric law at fixed energy: the higher a disc is, the less kinetic energy remains for all discs.
 
-    mean: temperature of the whole column, energy.
+    mean: temperature of the whole column, averaged over the discs, energy.
     """
     low = places if log.gravity[axis] < 0 else log.box[axis] - places
     profiles = column_profiles(log, axis)
@@ -179,9 +181,9 @@ def _fixed_energy(log: Log, axis: int, places: np.ndarray, discs: Composition, m
 
 
 def conduction(log: Log, axis: int) -> "Conduction | None":
-    """Return the temperatures beside two thermal sides across an axis.
+    """Return the temperatures of the gas at two thermal sides across an axis.
 
-    The result is None unless equal discs without spin get heat from these sides only.
+    The result is None unless the discs are equal and have no spin, and these sides are the only source of heat.
     """
     properties, gas = log.scene.properties, log.discs
     low, high = (properties.emits[side] for side in sides_across(axis))
@@ -195,7 +197,7 @@ def conduction(log: Log, axis: int) -> "Conduction | None":
 
 
 def _conduction(log: Log, axis: int, places: np.ndarray) -> Curve | None:
-    """Return Fourier's law between two thermal sides across an axis."""
+    """Return Fourier's law between two thermal sides across an axis; None if there is no theory."""
     gas, ends = log.discs, conduction(log, axis)
     if ends is None:
         return None
@@ -216,9 +218,9 @@ def _conduction(log: Log, axis: int, places: np.ndarray) -> Curve | None:
 
 
 def _equal_pressure(temperature: np.ndarray, mean_fraction: float) -> np.ndarray | None:
-    """Return the packing fractions of hard discs at temperatures (n,) with a common pressure n T Z.
+    """Return the packing fractions of hard discs at temperatures (n,) for which the pressure n T Z is the same.
 
-    The result is None beyond the fluid.
+    The result is None if a packing fraction lies beyond the fluid.
     """
     fraction = np.linspace(0.0, hard_discs.HIGHEST, GRID)
     pressure = fraction * hard_discs.compressibility_factor(fraction)  # over T, in units of 1/πR²
@@ -230,7 +232,7 @@ def _equal_pressure(temperature: np.ndarray, mean_fraction: float) -> np.ndarray
 
 
 class Conduction(NamedTuple):
-    """Temperatures of the gas at the lower and the higher side, and the error of temperatures, energy."""
+    """Temperatures of the gas at the lower and at the upper side, and the error of temperatures, energy."""
 
     low: float
     high: float
@@ -238,16 +240,16 @@ class Conduction(NamedTuple):
 
 
 def conduct(low: float, high: float, size: float, density: float, diameter: float) -> Conduction | None:
-    """Return the temperatures of a gas at its sides of temperatures low and high; None if the jumps are too large.
+    """Return the temperatures of a gas at two sides with temperatures low and high; None if the jumps are too large.
 
-    T^(3/2) is linear from side to side, as the conductivity is proportional to √T, and nT is the same everywhere. No
-    disc comes from behind a thermal side. The gas next to it is therefore not at its temperature: T differs by the
-    gradient times JUMP mean free paths. Source: Maxwell, Phil. Trans. 170, 231 (1879).
+    T^(3/2) is linear from side to side, because the conductivity is proportional to √T, and nT is the same everywhere.
+    The gas at a side does not have the temperature of the side, because half of the discs there arrive from inside the
+    gas: T differs by the gradient times JUMP mean free paths. Source: Maxwell, Phil. Trans. 170, 231 (1879).
 
     Args:
         low: temperature of the lower side, energy.
-        high: temperature of the higher side, energy.
-        size: distance of the sides, length.
+        high: temperature of the upper side, energy.
+        size: distance between the sides, length.
         density: mean number density, 1/length².
         diameter: diameter of a disc, length.
     """
