@@ -1,4 +1,4 @@
-"""Numbers of results as rows of one table, each named by an identifier with dots, such as pressure.temperature."""
+"""Numbers in results as rows of one table, each named by an identifier with dots, such as pressure.temperature."""
 
 import csv
 import io
@@ -12,18 +12,18 @@ from idealgas.fields import INLINE, OMITTED, Key, reported_properties
 from idealgas.statistics.estimates import Estimate
 
 ESTIMATE = ("value", "standard_error", "independent_samples", "theory", "theory_error", "deviation")
-"""Numbers of an estimate; other quantities have only a value."""
+"""Numbers of which an estimate consists; other quantities have only a value."""
 
 ANY = "*"
 """Placeholder for the name of a group, such as a species, a wall or a route, in the name of a quantity."""
 
 
 class QuantityRow(NamedTuple):
-    """A number of a result.
+    """A number in a result.
 
     Attributes:
         quantity: name of the quantity.
-        group: group to which it belongs, in words; empty if the result has only one.
+        group: group to which the number belongs, in words; empty if the result has only one group.
         entry: index in a series; None for a single number.
         values: values by the names in ESTIMATE.
     """
@@ -35,7 +35,7 @@ class QuantityRow(NamedTuple):
 
 
 def rows(values: Any, name: str) -> Iterator[QuantityRow]:
-    """Yield the numbers in the plain values of a result; name: name of the analysis."""
+    """Yield the numbers in a result that was converted to plain values; name: name of the analysis."""
     return _rows(values, (name,), (), None)
 
 
@@ -61,12 +61,12 @@ def _rows(part: Any, path: tuple[str, ...], group: tuple[str, ...], index: int |
 
 
 def identifier(text: str) -> str:
-    """Return a text as a part of the name of a quantity."""
+    """Return text as a component of the name of a quantity."""
     return re.sub(r"\W+", "_", text).strip("_")
 
 
 def as_csv(values: Any, name: str) -> str:
-    """Return the numbers in the plain values of a result as CSV text, a row for each, with all digits.
+    """Return the numbers in a result that was converted to plain values as CSV text: one row each, with all digits.
 
     name: name of the analysis.
     """
@@ -79,7 +79,7 @@ def as_csv(values: Any, name: str) -> str:
 
 
 def names(kind: Any, path: tuple[str, ...]) -> Iterator[str]:
-    """Yield the names of the single numbers in results of a class; ANY stands for a group."""
+    """Yield the names of the single numbers that results of a class contain; ANY stands for a group."""
     origin, parameters = get_origin(kind), get_args(kind)
     if kind is Estimate or kind in (int, float, bool):
         yield ".".join(path)

@@ -1,4 +1,4 @@
-"""Common style of all figures: colours that colour-blind readers can distinguish, and panels."""
+"""Common style of all figures: panels, and colours that colour-blind readers can distinguish."""
 
 import io
 import os
@@ -26,7 +26,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Palette for colour-blind readers: Okabe & Ito, Color Universal Design (2008)."""
 
 LINES, MARKERS = ("-", "--", "-.", ":"), ("o", "s", "^", "D")
-"""Line styles and markers that distinguish curves of one colour."""
+"""Line styles and markers that distinguish curves of the same colour."""
 
 BLACK, GREY = "#000000", "#767676"
 GRID = "#dddddd"
@@ -37,36 +37,36 @@ WIDTH, HEIGHT = 5.2, 3.2
 """Size of a panel, inches."""
 
 BELOW = 30
-"""Distance of a legend from the axis above it, points."""
+"""Distance between a legend and the axis above it, points."""
 
 LONG_LABEL = 30
-"""Number of characters above which the labels of a legend are in a single column."""
+"""Number of characters above which the labels of a legend are placed in a single column."""
 
 LEGEND_ROWS = 8
-"""Largest number of rows of a legend; many more would leave no room for the panel above it."""
+"""Largest number of rows in a legend; many more would leave no room for the panel above."""
 
 LABEL_CHARACTERS = 48
 """Number of characters after which a label is continued on the next line."""
 
 DPI = 200
 TITLE_CHARACTERS, TITLE_LINES = 10, 2
-"""Number of characters of a title per inch, and largest number of its lines."""
+"""Number of characters per inch in a title, and largest number of its lines."""
 
 
 def curve_style(k: int) -> tuple[str, str, str]:
-    """Return colour, line style and marker of curve k; if a colour is used again, its line style and marker differ."""
+    """Return the colour, line style and marker of curve k; curves of one colour differ in line style and marker."""
     again, colour = divmod(k, len(COLOURS))
     return COLOURS[colour], LINES[again % len(LINES)], MARKERS[again % len(MARKERS)]
 
 
 @dataclass(frozen=True)
 class Strips:
-    """Strips of a panel that shows the density of discs.
+    """Strips of the box in a panel that shows the density of discs.
 
     Attributes:
-        axis: 0 for x or 1 for y.
-        first: first edge, length.
-        last: last edge, length.
+        axis: axis perpendicular to the strips, 0 for x or 1 for y.
+        first: position of the first edge, length.
+        last: position of the last edge, length.
         number: number of strips.
         area: area of one strip, length².
     """
@@ -79,10 +79,10 @@ class Strips:
 
 
 class Panel(Axes):
-    """One panel of a figure, with the label of its vertical axis above it and its legend below it.
+    """Panel of a figure, with the label of its vertical axis above it and its legend below it.
 
     Attributes:
-        in_time: whether its horizontal axis is the time of a run, so that a page can mark an instant in it.
+        in_time: whether the horizontal axis is the time of the run, so that a page can mark an instant on it.
         strips: strips in which a page can show the density at an instant; None for other panels.
     """
 
@@ -94,13 +94,13 @@ class Panel(Axes):
         return self.set_title(ylabel, loc="left", fontsize="medium")
 
     def get_ylabel(self) -> str:
-        """Return the label of the vertical axis that `set_ylabel` has set."""
+        """Return the label of the vertical axis that was set with `set_ylabel`."""
         return self.get_title(loc="left")
 
     def entries(self) -> tuple[dict[str, Any], int]:
-        """Return the entries of a legend, each label once, and its number of columns; a long legend is cut.
+        """Return the entries of the legend, without repeated labels, and its number of columns; long legends are cut.
 
-        An entry is what matplotlib shows of a curve, by its label.
+        An entry is the matplotlib artist of a curve; the keys are the labels.
         """
         entries: dict[str, Any] = {}
         for handle, label in zip(*self.get_legend_handles_labels(), strict=True):
@@ -128,10 +128,10 @@ class Panel(Axes):
         self, x: Any, value: Any, error: Any = 0.0, label: str | None = "theory", color: str = BLACK,
         linestyle: str = "--", marker: str = "",
     ) -> None:  # fmt: skip
-        """Draw a theory as a line in a band of its error (one standard deviation).
+        """Draw a theoretical curve as a line within a band of its error (one standard deviation).
 
-        x: positions of the values, or None for a constant. marker: marker of the values, if the line between them is
-        not the theory.
+        x: positions of the values, or None for a constant. marker: marker of the values, for use if the line between
+        them is not theory.
         """
         if x is None:
             self.axhline(value, color=color, linestyle="--", linewidth=0.9, label=label, zorder=3)
@@ -143,7 +143,7 @@ class Panel(Axes):
             self.fill_between(x, value - error, value + error, color=color, alpha=BAND, linewidth=0)
 
     def theory_of_row(self, row: int, estimate: "Estimate", label: str | None = "theory") -> None:
-        """Draw the theory of an estimate, if it has one, in its row of a list, in a band of its error."""
+        """Draw the theoretical value of an estimate, if it has one, and its error band in the row of this estimate."""
         if estimate.theory is None:
             return
         ends, error = [row - 0.35, row + 0.35], estimate.theory_error
@@ -153,13 +153,13 @@ class Panel(Axes):
         )
 
     def time_axis(self) -> None:
-        """Declare that the horizontal axis is the time of a run."""
+        """Declare that the horizontal axis is the time of the run."""
         self.in_time = True
         self.set_xlabel("t (time)")
 
 
 class Picture(Figure):
-    """A figure that notebooks display whether or not pyplot is in use."""
+    """Figure that notebooks display whether or not pyplot is in use."""
 
     def _repr_png_(self) -> bytes:
         """Return the figure as PNG."""
@@ -170,7 +170,7 @@ class Picture(Figure):
 
 
 def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> None:
-    """Write a figure in the format given by the ending of its path; an existing file is replaced only with `force`.
+    """Write a figure in the format given by the extension of its path; an existing file is replaced only with `force`.
 
     Raises:
         OutputError: if the file cannot be written.
@@ -184,12 +184,12 @@ def save(figure: Figure, path: str | os.PathLike[str], force: bool = False) -> N
 
 
 def name_rows(ax: Axes, names: Sequence[str], **options: Any) -> None:
-    """Write names at 0, 1, … of the vertical axis."""
+    """Write names at 0, 1, … on the vertical axis."""
     ax.set_yticks(range(len(names)), list(map(plain, names)), **options)
 
 
 def disable_mathtext(figure: Figure) -> None:
-    """Show every text of a figure literally: `$` and control characters in names have no meaning."""
+    """Show all text of a figure literally, so that `$` and control characters in names have no special meaning."""
     for text in figure.findobj(Text):
         text.set_text("\n".join(map(plain, text.get_text().split("\n"))))
         if "$" in text.get_text():
@@ -214,15 +214,17 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
         ax.spines[["bottom", "left"]].set_in_layout(False)  # tick labels extend beyond them
-        ax.yaxis.set_label_coords(0, 0)  # fixed, as the position of the absent label would be computed repeatedly
+        ax.yaxis.set_label_coords(0, 0)  # or its position would be computed repeatedly, without a label
     return figure, axes
 
 
 def block_figure(names: Mapping[tuple[tuple[float, float], ...], str], length: float, unit: str) -> Figure:
-    """Draw errors by blocks over the stated error; where they still rise, slower fluctuations are not resolved.
+    """Draw errors estimated from blocks, divided by the stated errors, against the length of the blocks.
 
-    names: names of estimates by their `Estimate.blocks`. length: length of the series that the blocks are fractions of.
-    unit: unit of this length.
+    Where a curve still rises, slower fluctuations are not resolved.
+
+    names: names of estimates by their `Estimate.blocks`. length: length of the series of which the block lengths are
+    fractions. unit: unit of this length.
     """
     figure, axes = panels(-(-len(names) // 2), min(len(names), 2))
     for ax, (blocks, name) in zip(axes, names.items(), strict=False):

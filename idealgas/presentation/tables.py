@@ -1,4 +1,4 @@
-"""Tables of results: the same rows for the terminal, notebooks and the report page; histograms in characters."""
+"""Tables of results, with the same rows for the terminal, notebooks and the report page; histograms in characters."""
 
 import html
 import math
@@ -22,7 +22,7 @@ class Number(NamedTuple):
         value: the number; None if there is none.
         digits: format of the number.
         absent: text that is shown if there is no value.
-        instead: text that is shown instead of the value.
+        instead: text that is shown in place of the value.
     """
 
     value: float | None
@@ -41,15 +41,15 @@ Cell = str | Number
 
 @dataclass(frozen=True)
 class Table:
-    """A table of a result.
+    """A table in a result.
 
     Attributes:
-        title: heading of the table.
+        title: title of the table.
         heads: headings of the columns; the first column names the rows.
         rows: cells, row by row.
         notes: lines that are printed before the rows.
-        most: largest number of rows that are shown, evenly chosen from all rows; None for all rows.
-        estimates: estimates of the rows, if the rows are estimates.
+        most: largest number of rows that are shown, chosen at even spacing from all rows; None for all rows.
+        estimates: estimates in the rows, if the rows are estimates.
     """
 
     title: str
@@ -61,7 +61,7 @@ class Table:
 
     @property
     def shown(self) -> list[list[str]]:
-        """Cells, as text, of the rows that are shown on the terminal and in the report."""
+        """Text of the cells in the rows that are shown on the terminal and in the report."""
         rows, last = self.rows, len(self.rows) - 1
         if self.most is not None and last >= self.most:
             rows = [rows[round(last * k / (self.most - 1))] for k in range(self.most)]
@@ -71,19 +71,20 @@ class Table:
 ESTIMATE_HEADS = ("", "value", "± s.e.", "samples", "theory", "deviation (σ)")
 
 MOST_DIGITS = 9
-"""Largest number of digits before and after the decimal point."""
+"""Largest number of digits on either side of the decimal point."""
 
 SHOWN_ROWS = 9
-"""Number of instants of a series that the terminal and the report show."""
+"""Number of instants in a time series that the terminal and the report show."""
 
 THEORY_ERROR = "± theory"
-"""Heading of the error of theory, a column of the tables in which a theory has an error."""
+"""Heading of the column with the error of the theoretical value, in tables where theory has an error."""
 
 
 def digits(error: float, *shown: float | None) -> str:
-    """Return the format of numbers in which an error has two digits, and the numbers `shown` as many decimals.
+    """Return the format of numbers in which `error` has two digits and the numbers `shown` have as many decimals.
 
-    Powers of ten are used if there are too many decimals, or beyond MOST_DIGITS. Without an error there are six digits.
+    Powers of ten are used if there would be too many decimals, and beyond MOST_DIGITS. Without an error there are six
+    digits.
     """
     if not (math.isfinite(error) and error > 0):
         return ".6g"
@@ -95,13 +96,13 @@ def digits(error: float, *shown: float | None) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> tuple[Number, Number]:
-    """Return the cells of a number and of its error: two digits of the error, and the number to match."""
+    """Return the cells of a number and its error: the error with two digits, and the number with as many decimals."""
     form = digits(math.nan if error is None else error, value)
     return Number(value, form), Number(error, form if "e" not in form else ".1e")
 
 
 def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequence[str] = ()) -> Table:
-    """Return a table of named estimates: value, standard error, samples, theory, its error and deviation."""
+    """Return a table of named estimates: value, standard error, samples, theory, error of theory and deviation."""
     rows = list(rows)
     rough = any(estimate.theory_error > 0 for _, estimate in rows)
 
@@ -125,7 +126,7 @@ def estimates(title: str, rows: "Iterable[tuple[str, Estimate]]", notes: Sequenc
 
 
 def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
-    """Return the table of the components of the pressure tensor, by their names."""
+    """Return the table of the components of the pressure tensor, given by name."""
     return estimates(
         "Pressure tensor (energy/length²)", [(f"P {name}", component) for name, component in tensor.items()]
     )
@@ -134,7 +135,7 @@ def pressure_table(tensor: "Mapping[str, Estimate]") -> Table:
 def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: Sequence[str] = ()) -> Table:
     """Return a table with a column for each series (n,) that is not None; the terminal shows SHOWN_ROWS of its rows.
 
-    Values that are not finite give empty cells. A column whose name begins with ± contains the errors of the column
+    Cells with values that are not finite are empty. A column whose name begins with ± contains the errors of the column
     before it.
     """
     shown = {name: values.tolist() for name, values in columns.items() if values is not None}
@@ -146,7 +147,7 @@ def time_series(title: str, columns: Mapping[str, "np.ndarray | None"], notes: S
 
 
 def as_text(tables: Iterable[Table]) -> str:
-    """Return tables as plain text, each after its notes: columns aligned, numbers to the right."""
+    """Return tables as plain text, each after its notes, with aligned columns and right-aligned numbers."""
     lines: list[str] = []
     for table in tables:
         lines += table.notes
@@ -168,12 +169,12 @@ def format_estimate(estimate: "Estimate") -> str:
 
 
 def escape(text: str) -> str:
-    """Return a text as HTML that shows it literally, in an element or in an attribute."""
+    """Return text as HTML that is displayed literally, in an element or in an attribute."""
     return html.escape(plain(text))
 
 
 def html_table(table: Table) -> str:
-    """Return the rows of a table that are shown, with its title as caption; its notes are not included."""
+    """Return the displayed rows of a table as HTML, with its title as caption and without its notes."""
     heads = [escape(head) for head in table.heads]
     head = "".join(f"<th>{head}</th>" if head else "<td></td>" for head in heads)
     head = f"<tr>{head}</tr>" if any(heads) else ""
@@ -182,13 +183,13 @@ def html_table(table: Table) -> str:
 
 
 def _cells(heads: Iterable[str], cells: Iterable[str]) -> Iterator[str]:
-    """Yield the cells of a row, each with the heading of its column, for pages that are too narrow for rows."""
+    """Yield the cells of a row, each with the heading of its column, for pages that are too narrow for table rows."""
     for head, cell in zip(heads, cells, strict=True):
         yield f'<td data-head="{head}">{escape(cell)}</td>' if head else f"<td>{escape(cell)}</td>"
 
 
 def html_tables(tables: Iterable[Table]) -> str:
-    """Return tables one below another, each after its notes, as a notebook displays them."""
+    """Return tables one below the other, each after its notes, as a notebook displays them."""
     parts = []
     for table in tables:
         parts += [f"<p>{escape(note)}</p>" for note in table.notes]
@@ -197,16 +198,16 @@ def html_tables(tables: Iterable[Table]) -> str:
 
 
 BAR_WIDTH = 50
-"""Number of characters of the longest bar of a histogram."""
+"""Number of characters in the longest bar of a histogram."""
 
 
 def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] | None) -> str:
-    """Return a line for each bin: its lower edge, a bar as long as its density, and a mark at the density of a law.
+    """Return a line for each bin: its lower edge, a bar of length proportional to the density, and a mark for theory.
 
     Args:
         lows: lower edges of the bins.
-        density: density of each bin, 1/unit.
-        law: density of each bin by a law; None without one.
+        density: density in each bin, 1/unit.
+        law: theoretical density in each bin; None if theory is not available.
     """
     highest = max(*density, *(law or ())) or 1.0
     names = _aligned([f"{low:.3g}" for low in lows])
@@ -221,7 +222,7 @@ def bars(lows: Sequence[float], density: Sequence[float], law: Sequence[float] |
 
 
 def _aligned(numbers: list[str]) -> list[str]:
-    """Return numbers with as many decimals as the number with most decimals, unless any has a power of ten."""
+    """Return numbers with the same number of decimals, unless any is written with a power of ten."""
     decimals = max(len(number.partition(".")[2]) for number in numbers)
     return (
         numbers if any("e" in number for number in numbers) else [f"{float(number):.{decimals}f}" for number in numbers]

@@ -1,15 +1,16 @@
-"""Error of the mean and statistical inefficiency of a correlated series, from autoregressive models.
+"""Standard error of the mean and statistical inefficiency of a correlated series, from autoregressive models.
 
 A model of order p predicts a sample from the p samples before it, x_t = Σ a_k x_{t-k} + noise of variance s. Its
 spectrum at frequency 0, s/(1 - Σ a_k)², is the variance of the mean times the number of samples. Unlike a truncated sum
-of autocorrelations, or batches of a fixed length, it accounts for positive and negative correlations of any length that
+of autocorrelations or batches of a fixed length, it accounts for positive and negative correlations of any length that
 the series can resolve.
 
-The coefficients are from Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral Analysis for
-Physical Applications, 1993, chapter 9). Several series of one process share their coefficients: all sums run over all
-of them (de Waele & Broersen, The Burg algorithm for segments, IEEE Trans. Signal Process. 48, 2876 (2000)). Orders are
-not chosen but averaged with the weights of Akaike's corrected criterion (Burnham & Anderson, Model Selection and
-Multimodel Inference, 2002), so that the error includes the uncertainty of the order of a short series.
+The coefficients are computed with Burg's method, by the lattice recursion of Levinson (Percival & Walden, Spectral
+Analysis for Physical Applications, 1993, chapter 9). Several series of the same process share their coefficients, and
+all sums run over all series (de Waele & Broersen, The Burg algorithm for segments, IEEE Trans. Signal Process. 48, 2876
+(2000)). Instead of selecting an order, the results of all orders are averaged with the weights of Akaike's corrected
+criterion (Burnham & Anderson, Model Selection and Multimodel Inference, 2002), so that the error of a short series
+includes the uncertainty of the order.
 """
 
 import math
@@ -23,23 +24,23 @@ import numpy as np
 from idealgas.jit import njit
 
 LEAST_WEIGHT = 1e-3
-"""Weight, relative to the largest one, below which orders are left out."""
+"""Weight, relative to the largest one, below which orders are omitted."""
 
 BLOCKS = 256
-"""Number of blocks into which a long series is divided; it may be up to twice as large."""
+"""Number of blocks into which a long series is divided; the actual number may be up to twice as large."""
 
 FEWEST = 8
-"""Smallest number of blocks to which a known correlation time shortens a series; an error is then known to 27 %."""
+"""Smallest number of blocks that are formed with a known correlation time; the error is then known to 27 %."""
 
 NOISE = 1e-12
 """Fraction of the variance below which the residual of a model is attributed to rounding."""
 
 LEAST = 1e-150
-"""Change of a series, in its own unit, whose square may be rounded to 0."""
+"""Change in a series, in its own unit, whose square may be rounded to 0."""
 
 
 FEW = 2**14
-"""Number of samples up to which NumPy fits the models in much less time than numba takes to load."""
+"""Number of samples up to which fitting the models with NumPy takes much less time than loading numba."""
 
 
 class Model(NamedTuple):
@@ -60,7 +61,7 @@ class Model(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """Standard error of the mean of a series, and the number of independent samples with an equally precise error."""
+    """Standard error of the mean of a series, and the number of independent samples that would give it as precisely."""
 
     error: float
     samples: float
@@ -68,20 +69,20 @@ class Spread(NamedTuple):
 
 @dataclass(frozen=True)
 class AutoregressiveProcess:
-    """Stationary process behind one or several series of one length: models with their weights."""
+    """Stationary process from which one or several series of equal length are drawn: models with their weights."""
 
     models: tuple[Model, ...]
     weights: np.ndarray
     length: int
 
     def covariances(self, length: int) -> np.ndarray:
-        """Return autocovariances (length,) from lag 0 on, averaged over the models."""
+        """Return the autocovariances (length,) at lags 0, 1, …, averaged over the models."""
         return np.asarray(
             sum(w * each for w, each in zip(self.weights, self.covariances_of_models(length), strict=True))
         )
 
     def covariances_of_models(self, length: int) -> np.ndarray:
-        """Return autocovariances (models, length) from lag 0 on by each model."""
+        """Return the autocovariances (models, length) of each model at lags 0, 1, …."""
         covariances = np.zeros((len(self.models), length))
         for model, row in zip(self.models, covariances, strict=True):
             known = model.covariance[:length]
@@ -97,7 +98,7 @@ class AutoregressiveProcess:
         """Return the standard error of the mean of `number` successive samples, by default of the whole series.
 
         If the spectrum at frequency 0 is known as precisely as from ν independent samples, subtracting the mean has
-        used up one of them: Bessel's correction contains ν in place of n.
+        used up one of these samples, so that Bessel's correction contains ν instead of n.
         """
         logs = np.log(variance_of_mean(self.covariances_of_models(number or self.length))[:, -1])
         middle = float(self.weights @ logs)
@@ -115,17 +116,19 @@ def variance_of_mean(covariance: np.ndarray) -> np.ndarray:
 def error_of_mean(series: np.ndarray, number: int | None = None, memory: float = 0.0) -> Spread:
     """Return the standard error of the mean of a stationary series (n,).
 
-    The result is nan for fewer than two samples, or if the series changes but the squares of the changes are 0.
+    The result is nan for fewer than two samples, and if the series changes by so little that the squares of the changes
+    are 0.
 
-    A long series is first averaged in blocks, as slow fluctuations determine the error and may be too small to be
-    visible beside the fast ones. If the slowest fluctuations are known, the blocks are a quarter of `memory`, about
-    their correlation time, provided that FEWEST blocks remain. The error then has no more degrees of freedom than slow
-    fluctuations allow.
+    A long series is first averaged in blocks, because the error is determined by slow fluctuations, which may be too
+    small to be visible beside fast ones. If the slowest fluctuations are known, the block length is a quarter of
+    `memory`, about their correlation time, provided that at least FEWEST blocks remain. The error then has no more
+    degrees of freedom than slow fluctuations allow.
 
     Args:
         series: (n,), values.
-        number: number of successive samples that are averaged, if not all; their fluctuations are those of the series.
-        memory: number of samples per independent sample by the slowest fluctuations, if it is known, else 0.
+        number: number of successive samples that are averaged, by default all; their fluctuations are those of the
+            series.
+        memory: number of samples per independent sample of the slowest fluctuations if known, otherwise 0.
     """
     n = len(series)
     if n < 2:
@@ -134,25 +137,25 @@ def error_of_mean(series: np.ndarray, number: int | None = None, memory: float =
         return Spread(math.nan if changes(series) else 0.0, float(n))
     block, unit = max(n // BLOCKS, min(int(memory / 4), n // FEWEST), 1), unit_of(series)
     coarse = (series[n % block :] / unit).reshape(-1, block).mean(axis=1)
-    if is_constant(coarse):  # all changes are in the samples that do not fill a block
+    if is_constant(coarse):  # all changes are in the last samples, which do not fill a block
         block, coarse = 1, series / unit
     spread = process_of(coarse - coarse.mean()).spread(None if number is None else max(number // block, 1))
     return Spread(spread.error * unit, spread.samples)
 
 
 def inefficiency(series: np.ndarray) -> float:
-    """Return the statistical inefficiency g ≥ 1 of a stationary process: successive samples per independent one.
+    """Return the statistical inefficiency g ≥ 1 of a stationary process: samples per independent sample.
 
-    g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first one at which the autocorrelation ρ of the models is not
+    g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first lag at which the autocorrelation ρ of the models is not
     positive (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007), who estimate ρ without a model). Later negative
-    values are not subtracted: samples that are g apart are decorrelated even if the series oscillates. The error of a
-    mean, which does decrease by anticorrelation, comes from `error_of_mean`.
+    values are not subtracted: samples that are g apart are decorrelated even if the series oscillates. For the error of
+    a mean, which anticorrelation does reduce, use `error_of_mean`.
 
     Args:
         series: (n,), one series, or (n, M), series of M members with a common mean, such as the discs of a species.
 
     Returns:
-        g; 1 for fewer than 4 samples and for a constant, n if the members differ but never change.
+        g; 1 for fewer than 4 samples and for a constant series, n if the members differ but never change.
     """
     n = len(series)
     if n < 4 or is_constant(series):
@@ -167,27 +170,28 @@ def inefficiency(series: np.ndarray) -> float:
 
 
 def unit_of(series: np.ndarray) -> float:
-    """Return the power of two of the magnitude of a series.
+    """Return the order of magnitude of a series as a power of two.
 
-    In this unit the squares of large numbers are finite, and the digits are unchanged.
+    In this unit the squares of large numbers are finite, and the digits do not change.
     """
     return float(np.ldexp(1.0, np.frexp(np.abs(series).max())[1] - 1))
 
 
 def is_constant(series: np.ndarray) -> bool:
-    """Return whether a series changes by rounding only, or so little that squares of the changes are 0."""
+    """Return whether a series changes only by rounding, or by so little that the squares of the changes are 0."""
     return not (changes(series) and np.ptp(series) > LEAST)
 
 
 def changes(series: np.ndarray) -> bool:
-    """Return whether a series changes by more than rounding."""
+    """Return whether a series changes by more than rounding errors."""
     return bool(np.ptp(series) > NOISE * np.abs(series).max())
 
 
 def process_of(series: np.ndarray) -> AutoregressiveProcess:
-    """Return the process behind a series (n,) of mean 0 that is not constant, or behind several of them (n, M); n ≥ 2.
+    """Return the process of a series (n,) of mean 0, or of several such series (n, M).
 
-    The models have orders from 0 to n/8 or, if the series are long, 20 log₁₀ n.
+    The series must not be constant, and n ≥ 2. The orders of the models are 0 to n/8 or, for long series, 0 to 20 log₁₀
+    n.
     """
     global _fitted
     _fitted += series.size
@@ -213,16 +217,17 @@ _fitted = 0
 
 
 def _is_worth_loading() -> bool:
-    """Return whether compiled functions are used, whose results are bit-identical."""
+    """Return whether compiled functions are used; their results are bit-identical."""
     return _fitted > FEW or "numba" in sys.modules
 
 
 @njit
 def _fit(forward, backward, coefficients, noise, covariance, doubt):
-    """Fit models to M series, given twice as (n, M) and overwritten; return the number of orders that have a model.
+    """Fit models to M series and return the number of orders for which there is a model.
 
-    The arrays are filled by order. coefficients: (P + 1, P), of order p in row p. noise, covariance: (P + 1,). doubt:
-    (P + 1,), mean square error of Σ a_k in units of (1 - Σ a_k)²/(n M).
+    The series are passed twice, as (n, M), and overwritten. The other arrays are filled by order. coefficients: (P + 1,
+    P), row p for order p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of Σ a_k in units of (1 - Σ
+    a_k)²/(n M).
     """
     n, members = forward.shape
     left = 0.0
@@ -265,7 +270,7 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
 
 @njit
 def _go_on(coefficients, covariance):
-    """Fill in the autocovariances (n,) of a model of order p, of which the first p + 1 are known."""
+    """Fill in the autocovariances (n,) of a model of order p, of which the first p + 1 are given."""
     p = coefficients.shape[0]
     for k in range(p + 1, covariance.shape[0]):
         total = 0.0
@@ -308,8 +313,8 @@ def _fit_in_numpy(
 
 
 def _go_on_together(coefficients: Sequence[np.ndarray], covariance: np.ndarray) -> None:
-    """Do the same as `_go_on` for several models with their autocovariances (models, n)."""
-    orders = np.array([*map(len, coefficients), 0])  # NumPy adds rows of two columns or more in their order
+    """Do the same as `_go_on` for several models and their autocovariances (models, n)."""
+    orders = np.array([*map(len, coefficients), 0])  # NumPy adds rows in order if they have at least two columns
     most, n = int(orders.max()), covariance.shape[1]
     weights = np.zeros((most, len(orders)))
     padded = np.zeros((most + n, len(orders)))  # with zeros before lag 0

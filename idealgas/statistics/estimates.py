@@ -1,6 +1,6 @@
 """Estimates with error bars from correlated series.
 
-A series is an observable averaged over consecutive blocks of time. The error of its mean, and the distance of
+A series is an observable averaged over consecutive blocks of time. The error of its mean, and the spacing of
 decorrelated samples, come from autoregressive models (`autoregression`).
 """
 
@@ -17,38 +17,38 @@ from idealgas.statistics.rounding import with_last_digits
 from idealgas.theory.values import Theory
 
 ENOUGH_REPLICATES = 20
-"""Smallest number of runs whose scatter gives the error of their mean; with fewer runs, their own errors do."""
+"""Smallest number of runs for which the error of the mean is taken from their scatter, not from their errors."""
 
 RESAMPLES = 2000
-"""Number of samples of a bootstrap."""
+"""Number of bootstrap samples."""
 
 LEAST_DOUBT = 1e-4
-"""Inverse number of degrees of freedom below which an error counts as exactly known."""
+"""Inverse number of degrees of freedom below which an error is treated as exact."""
 
 FEWEST_BLOCKS = 8
-"""Smallest number of blocks whose scatter gives an error, which is then known to 27 %."""
+"""Smallest number of blocks from whose scatter an error is estimated; the error is then known to 27 %."""
 
 FEWEST_EVENTS = 8
-"""Smallest number of events whose mean has an error, which is then known to 27 %."""
+"""Smallest number of events for which the mean has an error; the error is then known to 27 %."""
 
 FULL = 40.0
-"""Time, in relaxation times of a store, after which its change has reached its limit to the last bit."""
+"""Time, in relaxation times of a stored quantity, after which its mean square change has converged to the last bit."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A measured number with its error bar.
+    """A measured value with its standard error.
 
     Attributes:
         value: measured value, in the unit of the quantity.
-        standard_error: its standard error in the same unit; nan if there are too few samples.
-        independent_samples: number of independent samples that would give the standard error as precisely, one more
-            than its degrees of freedom; inf if the standard error is known by a law, or 0 because the quantity is
-            known.
-        theory: value expected by theory, in the same unit; None if no theory applies.
-        theory_error: standard deviation of the error of that value, in the same unit.
-        blocks: lengths of blocks as fractions of the series, and the error by blocks of this length over standard_error
-            (`errors_by_blocks`); empty if it is not from a series.
+        standard_error: its standard error, in the same unit; nan if there are too few samples.
+        independent_samples: number of independent samples that would give the standard error with the same precision,
+            one more than its degrees of freedom; inf if the standard error follows from theory, or is 0 because the
+            value is exact.
+        theory: theoretical value, in the same unit; None if theory is not available.
+        theory_error: standard deviation of the error of `theory`, in the same unit.
+        blocks: block lengths as fractions of the series, each with the error estimated from blocks of this length over
+            standard_error (`errors_by_blocks`); empty if the estimate is not from a series.
     """
 
     value: float
@@ -63,7 +63,7 @@ class Estimate:
     def deviation(self) -> float | None:
         """Deviation value - theory in units of √(standard_error² + theory_error²).
 
-        None without theory or without an error bar.
+        None if there is no theoretical value or no error bar.
         """
         if self.theory is None or not self.standard_error > 0:
             return None
@@ -80,9 +80,9 @@ class Estimate:
         )
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Return the confidence interval at a level (0 to 1), by Student's t.
+        """Return the confidence interval at a given level (0 to 1), from Student's t distribution.
 
-        It has independent_samples - 1 degrees of freedom.
+        The number of degrees of freedom is independent_samples - 1.
         """
         from scipy import special
 
@@ -91,7 +91,7 @@ class Estimate:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, float | None]) -> "Estimate":
-        """Restore an estimate from the values of `as_dict`."""
+        """Restore an estimate from the dictionary that `as_dict` returns."""
         value, error, samples = (values[name] for name in ("value", "standard_error", "independent_samples"))
         return cls(
             math.nan if value is None else value,
@@ -102,13 +102,13 @@ class Estimate:
         )
 
     def __str__(self) -> str:
-        """Return the value with its error, theory, and deviation: "1.1092(8), theory 1.10954, −0.4σ"."""
+        """Return the value with its error, theoretical value and deviation: "1.1092(8), theory 1.10954, −0.4σ"."""
         theory = "" if self.theory is None else f", theory {self.theory:.6g}"
         deviation = "" if self.deviation is None else f", {self.deviation:+.1f}σ".replace("-", "−")
         return f"{with_last_digits(self.value, self.standard_error)}{theory}{deviation}"
 
     def as_dict(self) -> dict[str, float | None]:
-        """Return fields and deviation by name, ready for JSON; None for numbers that are not finite."""
+        """Return the fields and the deviation by name, ready for JSON; numbers that are not finite are None."""
         return as_dict(self)
 
 
@@ -117,13 +117,14 @@ def estimate(
 ) -> Estimate:
     """Return the estimate of function(means of the series), with linear propagation of their joint fluctuations.
 
-    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. Examples: a mean is
-    `estimate(lambda a: a, a)`, a ratio `estimate(lambda a, b: a / b, a, b)`. memory: see `error_of_mean`.
+    The sum of ∂f/∂x_k (x_k - ⟨x_k⟩) is a single correlated series that contains all covariances. For example, the mean
+    of a is `estimate(lambda a: a, a)`, and a ratio is `estimate(lambda a, b: a / b, a, b)`. memory: see
+    `error_of_mean`.
     """
     columns = np.array(series, float)
     means = columns.mean(axis=1)
     influence = np.zeros(columns.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):  # 0/0, if no event was counted, gives nan
+    with np.errstate(divide="ignore", invalid="ignore"):  # if no event was counted, 0/0 gives nan
         for k, column in enumerate(columns):
             step = 1e-3 * (column.std() or np.ptp(column))  # the standard deviation of tiny numbers may be 0
             if step > 0 and changes(column):
@@ -137,10 +138,10 @@ def estimate(
 
 
 def errors_by_blocks(series: np.ndarray, error: float) -> tuple[tuple[float, float], ...]:
-    """Return lengths of blocks, as fractions of a series (n,), and its error as if such blocks were independent.
+    """Return block lengths, as fractions of a series (n,), and the errors if blocks of each length were independent.
 
-    The errors are relative to a given error. They grow with the length of the blocks until this exceeds the slowest
-    fluctuation: Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
+    The errors are relative to a given error. They grow with the block length until this exceeds the correlation time of
+    the slowest fluctuations: Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
     """
     n, length, errors = len(series), 1, []
     while error > 0 and n // length >= FEWEST_BLOCKS:
@@ -151,19 +152,19 @@ def errors_by_blocks(series: np.ndarray, error: float) -> tuple[tuple[float, flo
 
 
 def parts_of(theory: Theory | float | None) -> tuple[float | None, float]:
-    """Return the value and the error of a theory; the error of a plain number is 0."""
+    """Return a theoretical value and its error; a plain number has error 0."""
     return (theory.value, theory.error) if isinstance(theory, Theory) else (theory, 0.0)
 
 
 def mean(series: np.ndarray, theory: Theory | float | None = None, memory: float = 0.0) -> Estimate:
-    """Return the estimate of the mean of one correlated series; memory: see `error_of_mean`."""
+    """Return the estimate of the mean of a correlated series; memory: see `error_of_mean`."""
     return estimate(lambda a: a, series, theory=theory, memory=memory)
 
 
 def mean_of_part(series: np.ndarray, part: np.ndarray) -> Estimate:
-    """Return the estimate of the mean of a few successive samples, with the fluctuations of the whole series.
+    """Return the estimate of the mean of some successive samples, with the fluctuations of the whole series.
 
-    series: (n,). part: (n,), whether a sample belongs to the part.
+    series: (n,). part: (n,), whether each sample is included.
     """
     error, samples = error_of_mean(series, int(part.sum()))
     return Estimate(float(series[part].mean()), error, samples)
@@ -174,16 +175,16 @@ def mean_of_flux(
 ) -> Estimate:
     """Return the estimate of the mean of a flux through a boundary, such as the force on a wall.
 
-    The flux through the boundary of a gas differs from the flux through its bulk only by the rate of change of a
-    bounded quantity that the gas stores, such as its momentum. This rate fluctuates strongly, as sound travels back and
-    forth in the box, but it nearly cancels in the mean. The error is therefore composed of that of the bulk and that of
-    the change of the store between two instants.
+    The flux through the boundary of a gas and the flux through its bulk differ only by the rate of change of a bounded
+    quantity that is stored in the gas, such as momentum. This rate fluctuates strongly, because sound travels back and
+    forth in the box, but it nearly cancels in the mean. The error is therefore computed from the error of the bulk flux
+    and the change in the stored quantity between the start and the end.
 
     Args:
         flux: (n,), flux through the boundary.
         bulk: (n,), flux through the bulk.
-        theory: theory of the mean.
-        stored: variance of the store, in units of (flux x samples)², if a law gives it.
+        theory: theoretical value of the mean.
+        stored: variance of the stored quantity, in units of (flux x samples)², if it is known from theory.
     """
     error, samples = error_of_mean(bulk)
     change, known = _change_of_store(flux - bulk, stored)
@@ -197,20 +198,21 @@ def mean_of_flux(
 
 
 def _samples_of(doubt: float) -> float:
-    """Return the number of independent samples for an error from several parts, by Welch and Satterthwaite.
+    """Return the number of independent samples for an error with several terms, after Welch and Satterthwaite.
 
-    doubt: sum of (fraction of the variance)²/(degrees of freedom) over the parts.
+    doubt: sum of (fraction of the variance)²/(degrees of freedom) over the terms.
     """
     return math.inf if doubt < LEAST_DOUBT else 1 + 1 / doubt
 
 
 def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, float]:
-    """Return the mean square change of a store over all samples, from its rates (n,), and its degrees of freedom.
+    """Return the mean square change in a stored quantity from its rates (n,), and its degrees of freedom.
 
-    In the limit it is twice the variance. If a law gives the variance, the change approaches this limit as in an
-    Ornstein-Uhlenbeck process, and initially grows as the sum of the squared rates, to which a few large ones may
-    contribute most. Otherwise it is the mean square of the store relative to its start: the variance plus the square of
-    the initial deviation from the mean, which need not be a typical fluctuation.
+    The change is that between the start and the end of the series. In the limit of long times it is twice the variance.
+    If the variance is known from theory, the change approaches this limit as in an Ornstein-Uhlenbeck process;
+    initially it grows as the sum of the squared rates, to which a few large rates may contribute most. Otherwise it is
+    the mean square of the stored quantity relative to its initial value: the variance plus the square of the initial
+    deviation from the mean, which need not be a typical fluctuation.
     """
     if stored is None:
         store = np.cumsum(rates)
@@ -219,7 +221,7 @@ def _change_of_store(rates: np.ndarray, stored: float | None) -> tuple[float, fl
     if not (total := float(squares.sum())) > 0:
         return 0.0, math.inf
     reached = min(total / (2 * stored), FULL)
-    share = reached / math.expm1(reached)  # dependence of the change on the rates
+    share = reached / math.expm1(reached)  # weight of the rates in the change
     effective = total * (total / float((squares**2).sum()))
     return -2 * stored * math.expm1(-reached), 2 * effective / share**2
 
@@ -232,10 +234,10 @@ def ratio(
 
 
 def of_events(estimate: Estimate, number: float) -> Estimate:
-    """Return an estimate from blocks of time in which `number` events happened, with no more samples than events.
+    """Return an estimate from blocks of time that contain `number` events, with no more samples than events.
 
-    Blocks without an event do not improve the knowledge of an error. With fewer than FEWEST_EVENTS there is no error,
-    as the scatter of a few values of an unknown distribution is not conclusive.
+    Blocks without an event do not make an error more precise. With fewer than FEWEST_EVENTS events there is no error,
+    because the scatter of a few values from an unknown distribution is not conclusive.
     """
     if number < FEWEST_EVENTS:
         return replace(estimate, standard_error=math.nan, independent_samples=number, blocks=())
@@ -243,19 +245,20 @@ def of_events(estimate: Estimate, number: float) -> Estimate:
 
 
 def ks_distance(samples: np.ndarray, cdf: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Return the Kolmogorov-Smirnov distance: the largest difference between the distribution functions.
+    """Return the Kolmogorov-Smirnov distance: the largest difference between two distribution functions.
 
-    samples: (n,), values. cdf: distribution function of the law.
+    samples: (n,), values, which define the empirical distribution function. cdf: distribution function of theory.
     """
     law, steps = cdf(np.sort(samples)), np.arange(len(samples) + 1) / len(samples)
     return float(max((steps[1:] - law).max(), (law - steps[:-1]).max()))
 
 
 def ks_p_value(distance: float, samples: int) -> float:
-    """Return the probability of a Kolmogorov-Smirnov distance of at least this for independent samples of the law.
+    """Return the probability of a Kolmogorov-Smirnov distance of at least this size, for independent samples.
 
-    Vrbik's correction of the limit is used, Pioneer J. Theor. Appl. Stat. 15, 15 (2018). It is off by 0.0025 for 10
-    samples, by 0.0003 for 50, and by less for more. The exact function of SciPy takes half a second to load.
+    The samples are assumed to follow the theoretical distribution. The limiting distribution is used with Vrbik's
+    correction, Pioneer J. Theor. Appl. Stat. 15, 15 (2018), whose error is 0.0025 for 10 samples, 0.0003 for 50, and
+    smaller for more. Loading the exact function from SciPy takes half a second.
     """
     from scipy import special
 
@@ -265,10 +268,10 @@ def ks_p_value(distance: float, samples: int) -> float:
 
 
 def bootstrap(values: np.ndarray, theory: Theory | float | None = None) -> Estimate:
-    """Return the estimate of the mean of independent values (n,), with its error by bootstrap.
+    """Return the estimate of the mean of independent values (n,), with a bootstrap error.
 
-    The bootstrap variance is multiplied by n/(n - 1), as it underestimates the variance of n replicates by this factor:
-    Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
+    The bootstrap variance is multiplied by n/(n - 1), because it underestimates the variance of n replicates by this
+    factor: Efron & Tibshirani, An Introduction to the Bootstrap (1993), eq. 5.12.
     """
     n = len(values)
     picks = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
@@ -277,12 +280,12 @@ def bootstrap(values: np.ndarray, theory: Theory | float | None = None) -> Estim
 
 
 def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
-    """Return the mean of one quantity over independent runs.
+    """Return the mean of a quantity over independent runs.
 
-    The error is by bootstrap if there are enough runs, otherwise from the errors of the runs.
+    The error is estimated by bootstrap if there are enough runs, and otherwise from the errors of the runs.
     """
     values, expected = np.array([r.value for r in replicates]), mean_theory([r.theory for r in replicates])
-    shared = sum(r.theory_error for r in replicates) / len(replicates)  # the error of theory is common to all runs
+    shared = sum(r.theory_error for r in replicates) / len(replicates)  # all runs share this error
     theory = None if expected is None else Theory(expected, shared, "mean of runs")
     if len(values) >= ENOUGH_REPLICATES:
         return bootstrap(values, theory)
@@ -293,6 +296,6 @@ def mean_of_replicates(replicates: Sequence[Estimate]) -> Estimate:
 
 
 def mean_theory(theories: Sequence[float | None]) -> float | None:
-    """Return the mean of the theoretical values of all runs; None if one run has no theoretical value."""
+    """Return the mean of the theoretical values of all runs; None if a run has no theoretical value."""
     known = [theory for theory in theories if theory is not None]
     return sum(known) / len(known) if len(known) == len(theories) else None

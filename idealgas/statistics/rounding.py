@@ -4,9 +4,9 @@ import math
 
 
 def with_last_digits(value: float, error: float) -> str:
-    """Return a value with its standard error in units of its last digit, such as "1.1099(3)" for 1.1099 ± 0.0003.
+    """Return a value with its standard error in units of the last digit, such as "1.1099(3)" for 1.1099 ± 0.0003.
 
-    The error has one digit, or two if the first one is 1; a value without an error has six.
+    The error has one digit, or two if the first is 1; a value without an error has six digits.
     """
     if not (math.isfinite(value) and math.isfinite(error) and error > 0):
         return f"{value:.6g}"

@@ -1,1 +1,1 @@
-"""Theory of the gas, by formulas alone: no log is read here."""
+"""Theory of the gas as pure formulas; no log is read here."""

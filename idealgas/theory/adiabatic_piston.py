@@ -1,7 +1,7 @@
-"""Relaxation of two gases of equal pressure towards one temperature through a piston between them.
+"""Relaxation of two gases at equal pressure to a common temperature through the piston between them.
 
-The piston conducts no heat, but its velocity fluctuates: each gas drives its fluctuations towards the temperature of
-the gas (Gruber and Piasecki, Physica A 268, 412 (1999); Munakata and Ogawa, Phys. Rev. E 64, 036119 (2001)).
+The piston conducts no heat, but its velocity fluctuates, and each gas drives these fluctuations towards its own
+temperature (Gruber and Piasecki, Physica A 268, 412 (1999); Munakata and Ogawa, Phys. Rev. E 64, 036119 (2001)).
 """
 
 import math
@@ -12,15 +12,15 @@ import numpy as np
 def conductance(
     temperature: float | np.ndarray, of_piston: float, force: float | np.ndarray, m: float | np.ndarray, mass: float
 ) -> np.ndarray:
-    """Return the energy that gases give to a piston per time and temperature difference, 1/time.
+    """Return the energy that each gas gives to a piston per unit time and temperature difference, 1/time.
 
-    For Maxwellian velocities of discs and piston and uncorrelated hits it is 4 m M/(m + M)² F σ/(T √(2π)), where F is
-    the force of a gas of temperature T on the piston of temperature T_P, and σ² = T/m + T_P/M.
+    If the velocities of discs and piston are Maxwellian and hits are uncorrelated, it is 4 m M/(m + M)² F σ/(T √(2π)),
+    where F is the force of a gas of temperature T on the piston of temperature T_P, and σ² = T/m + T_P/M.
 
     Args:
-        temperature: temperatures of the gases, energy.
-        of_piston: temperature of the motion of the piston, energy.
-        force: force of each gas on the piston, energy/length.
+        temperature: temperature T of each gas, energy.
+        of_piston: temperature T_P of the motion of the piston, energy.
+        force: force F of each gas on the piston, energy/length.
         m: mass of a disc of each gas.
         mass: mass M of the piston.
     """
@@ -29,11 +29,13 @@ def conductance(
 
 
 def slowest_rate(conductance: np.ndarray, capacity: np.ndarray) -> float:
-    """Return the slowest rate at which the temperatures of gases in a row equalise, 1/time; 0 if no energy passes.
+    """Return the slowest rate at which the temperatures of gases in a row equalise; 0 if they exchange no energy.
+
+    The rate has unit 1/time.
 
     Args:
-        conductance: (K,), conductance of each piston between the gases, from one gas to the next, 1/time.
-        capacity: (K + 1,), heat capacities of the gases at constant pressure, no unit; 0 for a vacuum.
+        conductance: (K,), conductance of the piston between each gas and the next, 1/time.
+        capacity: (K + 1,), heat capacity of each gas at constant pressure, no unit; 0 for a vacuum.
     """
     rates = np.zeros((len(capacity), len(capacity)))
     scale = 1 / np.sqrt(np.maximum(capacity, 1.0))
@@ -42,15 +44,16 @@ def slowest_rate(conductance: np.ndarray, capacity: np.ndarray) -> float:
         both[k], both[k + 1] = scale[k], -scale[k + 1]
         rates += each * np.outer(both, both)
     eigenvalues = np.linalg.eigvalsh(rates)
-    rounding = 1e-9 * max(float(eigenvalues[-1]), np.finfo(float).tiny)  # of the eigenvalue 0 of equal temperatures
+    rounding = 1e-9 * max(float(eigenvalues[-1]), np.finfo(float).tiny)  # error of eigenvalue 0: equal temperatures
     slow = eigenvalues[eigenvalues > rounding]
     return float(slow.min(initial=math.inf)) if len(slow) else 0.0
 
 
 def heat_flow(temperature: np.ndarray, force: float, m: float, mass: float) -> np.ndarray:
-    """Return the energy that each of two gases receives from a piston without mean velocity, (2,), energy/time.
+    """Return the energy per time that each of two gases receives from a piston with zero mean velocity, (2,).
 
-    At its temperature T_P the piston receives as much from one gas as it gives to the other, by `conductance`.
+    The unit is energy/time. The temperature of the piston is such that the piston receives as much energy from one gas
+    as it gives to the other; both follow from `conductance`.
 
     Args:
         temperature: (2,), temperatures of the gases, energy.
@@ -68,10 +71,10 @@ def heat_flow(temperature: np.ndarray, force: float, m: float, mass: float) -> n
 def relaxation(
     first: np.ndarray, number: np.ndarray, m: float, mass: float, z: float, length: float, time: np.ndarray
 ) -> np.ndarray:
-    """Return the temperatures (2, F) of two gases of equal pressure at times (F,), the first of which is the start.
+    """Return the temperatures (2, F) of two gases at equal pressure at times (F,), the first of which is the start.
 
-    The force of each gas on the piston, Z E/L, depends only on the conserved total energy E. The piston moves as heat
-    expands one gas, and a fraction Z/(1 + Z) of the heat is returned as work.
+    The force of each gas on the piston, Z E/L, depends only on the conserved total energy E. As heat expands one gas,
+    the piston moves, and a fraction Z/(1 + Z) of the heat is returned as work.
 
     Args:
         first: (2,), initial temperatures, energy.
@@ -79,7 +82,7 @@ def relaxation(
         m: mass of a disc.
         mass: mass of the piston.
         z: compressibility factor Z of the gases.
-        length: total length that the centres of the discs of both gases have.
+        length: total length L available to the centres of the discs of both gases.
         time: (F,), times.
     """
     force = z * float(number @ first) / length

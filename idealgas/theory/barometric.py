@@ -1,7 +1,8 @@
 """A dilute gas in equilibrium under gravity along one axis: its temperature, collision rates and wall hits.
 
-The centres of the discs of a species, of mass m and radius R, are at heights h above the lowest one that they can
-reach. Their density is proportional to exp(-m g h/T) up to the length H of the box minus 2R.
+The height h of a disc of mass m and radius R is that of its centre above the lowest point that the centre can reach.
+The number density of its species is proportional to exp(-m g h/T) up to h = H - 2R, where H is the length of the box
+along the acceleration.
 """
 
 import math
@@ -13,15 +14,15 @@ from idealgas.physics.collision_rates import contact_value
 from idealgas.theory import hard_discs
 
 DENSEST = 0.2
-"""Largest packing fraction of the lowest layer for which the law of a dilute column is meaningful."""
+"""Largest packing fraction of the lowest layer for which a column is treated as dilute."""
 
 LAYERS = 2000
 
 HEIGHTS, POINTS = 257, 513
-"""Number of heights, and number of points of integration at each height, for a column of fixed energy."""
+"""Number of heights, and number of integration points for each height, for a column of fixed energy."""
 
 TOP = 60.0
-"""Number of scale heights above which there are no discs."""
+"""Height above which there are no discs, in scale heights T/mg of the lightest species."""
 
 
 def barometric_temperature(
@@ -30,19 +31,20 @@ def barometric_temperature(
     """Return the temperature (energy, k_B = 1) at which a dilute column has a given energy.
 
     Args:
-        energy: energy of motion, spin and height of all discs, which is 0 for all discs at rest at the lowest position.
-        freedom: number of degrees of freedom of motion and spin of all discs.
+        energy: kinetic, rotational and gravitational energy of all discs; it is 0 if all are at rest at the lowest
+            height.
+        freedom: number of degrees of freedom of translation and spin of all discs.
         mass: (S,), mass of a disc of each species.
         number: (S,), number of discs of each species.
         pull: magnitude of the acceleration, length/time².
-        height: (S,), length that the centres can reach along the acceleration.
+        height: (S,), length available to the centres along the acceleration.
     """
-    from scipy.optimize import brentq  # its import would take a tenth of the time of other commands
+    from scipy.optimize import brentq  # importing it at the top would slow other commands by a tenth
 
     def excess(t: float) -> float:
         x = mass * pull * height / t
         with np.errstate(over="ignore"):
-            above = height * (1 / x - 1 / np.expm1(x))  # mean of h with the weight exp(-x h/height)
+            above = height * (1 / x - 1 / np.expm1(x))  # mean of h weighted by exp(-x h/height)
         return freedom * t / 2 + float((number * mass * pull * above).sum()) - energy
 
     scale = max(energy, 1e-300) / float(number.sum())
@@ -50,12 +52,12 @@ def barometric_temperature(
 
 
 class ColumnProfile(NamedTuple):
-    """Relative density and temperature of a species at heights (H,) above its lowest position.
+    """Relative density and temperature of a species at heights (H,).
 
-    Both are 0 where the energy does not lift a disc.
+    Both are 0 at heights that a disc cannot reach with the available energy.
 
     Attributes:
-        above: heights, length.
+        above: heights above the lowest position of the species, length.
         density: density relative to that at the bottom.
         temperature: temperature, energy.
     """
@@ -70,14 +72,15 @@ def fixed_energy_column(
 ) -> list[ColumnProfile]:
     """Return the profile of each species of a dilute column at fixed energy.
 
-    With a disc at the height h, the other discs and all motion share the energy E' = E - m g h. Their density of states
-    G'(E') is the density of discs, and G/G' is the temperature. G is the inverse Laplace transform of Π z(β)/β^(D/2+1),
-    where z is the mean of exp(-β m g h) over the heights of each other disc. It is integrated through the saddle point,
-    at which 1/β is the temperature of a column of the energy E'. For N discs in a tall box, T = (E - m g h)/(D/2+N-1).
+    If a disc is at height h, the other discs and the motion of all discs share the energy E' = E - m g h. The density
+    of discs at h is proportional to the density of states G'(E'), and the temperature there is G/G'. G is the inverse
+    Laplace transform of Π z(β)/β^(D/2+1), where z is the mean of exp(-β m g h) over the heights available to each other
+    disc. The integration path passes through the saddle point, where 1/β is the temperature of a column of energy E'.
+    For N discs in a tall box, T = (E - m g h)/(D/2+N-1).
 
-    The arguments are those of `barometric_temperature`; dof is its freedom D.
+    The arguments are those of `barometric_temperature`; dof is the number D of degrees of freedom.
     """
-    # the integrand beyond the reach is below 1e-17, or 1e-6 if the reach is 1e3
+    # beyond `reach` the integrand is below 1e-17, or below 1e-6 if `reach` is limited to 1e3
     width, reach = math.sqrt(2 / dof), min(math.sqrt(10 ** (68 / dof) - 1), 1e3)
     u = np.linspace(0.0, math.asinh(reach / width), POINTS)
     step = width * np.cosh(u)
@@ -102,7 +105,7 @@ def fixed_energy_column(
 
 
 class ColumnRates(NamedTuple):
-    """Rates of a column in equilibrium, 1/time, by Enskog's theory with the local density in thin layers.
+    """Rates of a column in equilibrium, 1/time, from Enskog theory with the local density in thin layers.
 
     Attributes:
         per_disc: (S,), collisions of one disc of each species.
@@ -135,7 +138,7 @@ def column_rates(
         number: (S,), number of discs of each species.
         pull: magnitude of the acceleration, length/time².
         length: length of the box along the acceleration.
-        across: length of the box across it.
+        across: length of the box perpendicular to the acceleration.
     """
     length = min(length, TOP * temperature / (float(mass.min()) * pull) + 2 * float(radius.max()))
     layer, wide = length / LAYERS, across - 2 * radius
@@ -145,8 +148,8 @@ def column_rates(
     share = weight / weight.sum(axis=1, keepdims=True)  # fraction of the discs of a species in each layer
     density = number[:, None] * share / (wide[:, None] * layer)
     packing = math.pi * radius**2 @ density
-    met = (share * contact_value(np.minimum(packing, 0.5))) @ density.T  # sum over layers with their contact values
-    partners = np.maximum(number - np.eye(len(number)), 0) / number  # a disc does not meet itself
+    met = (share * contact_value(np.minimum(packing, 0.5))) @ density.T  # sum over layers, each with its contact value
+    partners = np.maximum(number - np.eye(len(number)), 0) / number  # a disc does not collide with itself
     rate = 2 * np.add.outer(radius, radius) * met * partners * hard_discs.mean_relative_speeds(temperature, mass)
     flux = hard_discs.mean_speed(temperature, mass) / math.pi
     floor = wide * density[np.arange(len(mass)), inside.argmax(axis=1)]

@@ -1,7 +1,7 @@
-"""Distribution of the number of collisions of a disc in a time, in a dilute gas.
+"""Distribution of the number of collisions of a disc within a given time, in a dilute gas.
 
-A disc collides at a rate that depends on its speed, and its speed changes in collisions, so that the number does not
-follow from a Poisson process. Visco, van Wijland & Trizac, J. Phys. Chem. B 112, 5412 (2008) and Phys. Rev. E 77,
+A disc collides at a rate that depends on its speed, and collisions change its speed. The number therefore does not
+follow a Poisson distribution: Visco, van Wijland & Trizac, J. Phys. Chem. B 112, 5412 (2008) and Phys. Rev. E 77,
 041117 (2008).
 """
 
@@ -11,16 +11,16 @@ from functools import cache, cached_property
 import numpy as np
 
 BASIS = 10
-"""Number of Laguerre polynomials of the energy; with 8 of them the variance differs by 4e-6."""
+"""Number of Laguerre polynomials of the energy; with only 8 polynomials the variance differs by 4e-6."""
 
 
 @cache
 def _operators() -> tuple[np.ndarray, np.ndarray]:
-    """Return matrices (BASIS, BASIS) of the gain K of a state by collisions and of the collision rate ν, over its mean.
+    """Return the matrices (BASIS, BASIS) of the collision gain K and of the collision rate ν, over the mean rate.
 
     Let s and w be the energies of the centre of mass and of the relative motion over T, and θ the angle between the two
-    velocities. Then m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns θ by χ, where |b|/σ = |cos(χ/2)| is
-    distributed uniformly from 0 to 1, so that the mean of cos kχ is -1/(4k² - 1).
+    velocities. Then m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns the relative velocity by χ, where |b|/σ =
+    |cos(χ/2)| is distributed uniformly from 0 to 1, so that the mean of cos kχ is -1/(4k² - 1).
     """
     from scipy import special
 
@@ -44,7 +44,7 @@ def _operators() -> tuple[np.ndarray, np.ndarray]:
 class CollisionCountLaw:
     """Distribution of the number of collisions of a disc, with mean `mean`, in a gas of equal discs.
 
-    The continuous distribution is that of the number plus a uniform deviate from -1/2 to 1/2.
+    To make the distribution continuous, a uniform deviate between -1/2 and 1/2 is added to the number.
     """
 
     mean: float
@@ -62,13 +62,13 @@ class CollisionCountLaw:
 
     @cached_property
     def cumulants(self) -> tuple[float, float]:
-        """Second and third cumulant over the mean; 1 for a Poisson process."""
+        """Second and third cumulants divided by the mean; both are 1 for a Poisson distribution."""
         n, mean = np.arange(len(self.probabilities)), self.mean
         second, third = (float(((n - mean) ** power) @ self.probabilities) / mean for power in (2, 3))
         return second, third
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the probability of the nearest whole number."""
+        """Return the probability density at x, which is the probability of the integer nearest to x."""
         n = np.rint(x).astype(int)
         inside = (n >= 0) & (n < len(self.probabilities))
         return np.where(inside, self.probabilities[np.where(inside, n, 0)], 0.0)

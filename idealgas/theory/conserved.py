@@ -1,6 +1,6 @@
-"""Conserved motion of a gas: total momentum, the motion of the whole gas, and states that are not reached.
+"""Conserved motion of a gas: total momentum, the motion of the gas as a whole, and states that it cannot reach.
 
-A condition that is not met is a caveat of every analysis; `caveats` returns the sentences.
+`caveats` returns a sentence for each assumption of the analyses that a gas violates.
 """
 
 import numpy as np
@@ -10,26 +10,27 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 
 CHANCE = 12.0
-"""Largest fraction of the kinetic energy, times the number of discs, that the centre of mass has by chance.
+"""Largest fraction of the kinetic energy, times the number N of discs, that the centre of mass has by chance.
 
-Its energy along one axis is T/2 on average, so that a fraction s occurs with a probability of about exp(-s N).
+The kinetic energy of the centre of mass along one axis is T/2 on average; its share of the energy exceeds s with a
+probability of about exp(-s N).
 """
 
 FIXED = 1e12
-"""Mass, in units of that of the lightest disc, above which a disc counts as fixed.
+"""Ratio of masses, to that of the lightest disc, above which a disc counts as fixed.
 
-Such a disc needs about as many collisions to acquire its share of the energy, more than any run has.
+Such a disc would need about as many collisions as this ratio to acquire its share of the energy, more than in any run.
 """
 
 SAID_FROM = 0.01
-"""Smallest fraction of the kinetic energy above which a conserved motion of the whole gas is mentioned."""
+"""Fraction of the kinetic energy above which a conserved motion of the gas as a whole causes a caveat."""
 
 
 def conserved_momentum(scene: Scene) -> np.ndarray:
     """Return whether the total momentum of the discs is conserved along x and y, (2,) bool.
 
-    Smooth walls conserve the component along them; thermal and rough walls do not. Discs of a method without positions
-    conserve both components.
+    Smooth walls conserve the component parallel to them; thermal and rough walls do not. Methods without positions of
+    the discs conserve both components.
     """
     without_positions = scene.run.method == "monte_carlo"
     return np.array((True, True) if without_positions else scene.properties.conserves_momentum)
@@ -38,8 +39,9 @@ def conserved_momentum(scene: Scene) -> np.ndarray:
 def centre_of_mass_velocity(scene: Scene, gas: Gas) -> np.ndarray:
     """Return the velocity of the centre of mass, (2,), length/time; 0 along axes where momentum is not conserved.
 
-    Between sheared sides it is relative to their flow, which is rate · (y − height/2) at the start. If momentum along y
-    is conserved, so is momentum along x relative to a flow that moves along y with the gas.
+    Between sheared sides the velocity is relative to their flow, which is rate · (y − height/2) at the start. If
+    momentum along y is conserved there, momentum along x is also conserved, relative to a flow that moves along y with
+    the gas.
     """
     conserved = conserved_momentum(scene)
     if scene.properties.shear:
@@ -54,30 +56,31 @@ def _mean_velocity(scene: Scene, gas: Gas) -> np.ndarray:
 
 
 def centre_of_mass_energy(scene: Scene, gas: Gas) -> float:
-    """Return the kinetic energy of the conserved motion of the whole gas, energy."""
+    """Return the kinetic energy of the conserved motion of the gas as a whole."""
     velocity = centre_of_mass_velocity(scene, gas)
     return float(gas.mass.sum() * (velocity @ velocity) / 2)
 
 
 def are_fixed(mass: np.ndarray) -> np.ndarray:
-    """Return whether discs, or species, of these masses are too heavy to take part in the motion of the lightest."""
+    """Return whether discs or species of these masses are too heavy to exchange energy with the lightest."""
     return mass >= FIXED * mass.min()
 
 
 def degrees_of_freedom(scene: Scene, gas: Gas) -> int:
-    """Return the number D of directions of motion of the discs that share energy.
+    """Return the number D of translational degrees of freedom of the discs that share energy.
 
-    Directions whose momentum is conserved do not count. Fixed discs take the momentum of the other discs.
+    Directions of conserved momentum do not count. Fixed discs absorb momentum, so that the momentum of the others is
+    not conserved.
     """
     fixed = int(are_fixed(gas.mass).sum())
     return 2 * (len(gas) - fixed) - (0 if fixed else int(conserved_momentum(scene).sum()))
 
 
 def motion_at_start(scene: Scene, gas: Gas) -> np.ndarray:
-    """Return the initial velocity of the whole gas that is not thermal, (2,), length/time.
+    """Return the non-thermal part of the initial velocity of the gas as a whole, (2,), length/time.
 
-    It consists of the conserved motion and, along the other axes, of a motion of the centre of mass that is too large
-    to be due to chance.
+    It consists of the conserved motion and, along the other axes, of the motion of the centre of mass if this is too
+    fast to be due to chance.
     """
     velocity = _mean_velocity(scene, gas)
     chance = [share_of_motion(gas, velocity * axis) * len(gas) <= CHANCE for axis in np.eye(2)]
@@ -97,7 +100,7 @@ def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
 
 
 def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
-    """Return the fraction of the kinetic energy in a motion of all discs at `velocity` (2,); 0 for a gas at rest."""
+    """Return the fraction of the kinetic energy in a common velocity (2,) of all discs; 0 for a gas at rest."""
     energy = gas.kinetic_energy
     return float(gas.mass.sum() * (velocity @ velocity) / 2 / energy) if energy > 0 else 0.0
 
@@ -105,10 +108,10 @@ def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
 def is_ergodic(scene: Scene, gas: Gas) -> bool:
     """Return whether a gas reaches all states of its energy.
 
-    A single disc does not: it keeps its speed along x and along y, or exchanges it between few motions at rough walls.
-    Neither do two equal discs without total momentum between walls. Their velocities remain equal in every component
-    except for signs, and as long as they collide with opposite velocities only, the sum of their positions, unfolded at
-    the walls, is conserved.
+    A single disc does not: it keeps its speeds along x and along y, or at rough walls exchanges energy between few
+    motions. Two equal discs between walls with zero total momentum do not either: each component of their velocities
+    remains equal up to sign, and as long as they collide only with opposite velocities, the sum of their positions,
+    unfolded at the walls, is conserved.
     """
     properties, walled = scene.properties, ~np.array(scene.properties.periodic)
     if len(gas) > 2 or not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
@@ -122,7 +125,7 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
 
 
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Return the caveats of every time average that follow from the initial state `gas`."""
+    """Return the caveats, valid for every time average, that follow from the initial state `gas`."""
     sentences = []
     if any(scene.properties.free_fall_axes):
         sentences.append(

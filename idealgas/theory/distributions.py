@@ -1,9 +1,9 @@
-"""Probability laws of a gas in equilibrium, each with `pdf`, `cdf` and `mean`.
+"""Probability distributions of a gas in equilibrium, each with `pdf`, `cdf` and `mean`.
 
-The velocity laws take `temperature`, the mean kinetic energy T of a disc (two degrees of freedom, k_B = 1), and `dof`,
-the number D of velocity degrees of freedom of a gas at fixed total energy. For D = ∞ they are Maxwell-Boltzmann
-distributions. Otherwise the kinetic energy of a disc, divided by its largest possible value TD/2, follows the
-distribution Beta(1, D/2 - 1), the projection of the uniform distribution on a sphere.
+The velocity distributions take `temperature`, the mean kinetic energy T of a disc (two degrees of freedom, k_B = 1),
+and `dof`, the number D of velocity degrees of freedom of a gas at fixed total energy. For D = ∞ they are
+Maxwell-Boltzmann distributions. Otherwise the kinetic energy of a disc, divided by its largest possible value TD/2,
+follows the distribution Beta(1, D/2 - 1), which is a projection of the uniform distribution on a sphere.
 """
 
 import math
@@ -18,14 +18,14 @@ from idealgas.theory.hard_discs import mean_speed
 
 
 class Law(Protocol):
-    """Continuous probability distribution of one quantity."""
+    """Continuous probability distribution of a quantity."""
 
     @property
     def mean(self) -> float:
         """Mean of the quantity, in its unit."""
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the probability density at x, of the shape of x, in 1/unit of the quantity."""
+        """Return the probability density at x in 1/unit of the quantity, with the shape of x."""
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
         """Return the probability of a value of at most x; same shape as x."""
@@ -33,11 +33,11 @@ class Law(Protocol):
 
 @dataclass(frozen=True)
 class MeanLaw:
-    """Mean of several distributions of one quantity: each value follows one of them, chosen at random.
+    """Mixture of several distributions of a quantity: each value follows one of them, chosen at random.
 
     Attributes:
         parts: the distributions.
-        weights: relative probability of each; None if they are equal.
+        weights: relative probability of each distribution; None if all are equal.
     """
 
     parts: tuple[Law, ...]
@@ -170,8 +170,12 @@ class ComponentLaw:
 def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -> np.ndarray:
     """Return the mean relative speed ⟨|v - u|⟩ of a disc of speed v and discs with thermal velocities u, length/time.
 
-    It is √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)] with x = m v²/2T, the mean of a Rice distribution. mass: mass
-    m of the discs with thermal velocities.
+    It is √(πT/2m) e^(-x/2) [(1 + x) I₀(x/2) + x I₁(x/2)] with x = m v²/2T, the mean of a Rice distribution.
+
+    Args:
+        speed: speeds v of the disc, length/time.
+        temperature: temperature T, energy.
+        mass: mass m of the discs with thermal velocities.
     """
     from scipy import special
 
@@ -182,7 +186,7 @@ def mean_relative_speed_at(speed: np.ndarray, temperature: float, mass: float) -
 
 @cache
 def _quadrature() -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes v √(m/2T) and weights of Gauss-Legendre quadrature from 0 to 7; exp(-7²) is negligible."""
+    """Return the nodes v √(m/2T) and weights of Gauss-Legendre quadrature from 0 to 7; exp(-7²) is negligible."""
     y, weight = np.polynomial.legendre.leggauss(120)
     return 3.5 * (y + 1), 3.5 * weight
 
@@ -191,10 +195,10 @@ def _quadrature() -> tuple[np.ndarray, np.ndarray]:
 class _FlightLaw(ABC):
     """Distribution of the free flights of a disc that collides with species j at the mean rate `rates[j]`.
 
-    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩ with thermal velocities w. After a
-    collision it has the speed density f(v) ν(v)/Γ, which by time reversal is that of discs before a collision. The law
-    assumes independent collisions: it is exact in the dilute limit (Boltzmann). In denser gases two discs may soon
-    collide again.
+    A disc of speed v collides at the rate ν(v) = Σ_j rate_j ⟨|v - u_j|⟩/⟨|w - u_j|⟩, where u_j and w are thermal
+    velocities. After a collision, its speed has the density f(v) ν(v)/Γ, because by time reversal this is the density
+    before a collision. Collisions are assumed to be independent, which is exact in the dilute limit (Boltzmann). In
+    denser gases two discs may soon collide again.
 
     Attributes:
         temperature: temperature T, energy.
@@ -210,7 +214,7 @@ class _FlightLaw(ABC):
 
     @cached_property
     def _nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Speed, probability weight of a flight and collision rate ν at the nodes of a quadrature over the speed."""
+        """Speed, probability weight of a flight, and collision rate ν at the nodes of a quadrature over speeds."""
         y, weight = _quadrature()
         speed = y * math.sqrt(2 * self.temperature / self.mass)
         rate = np.zeros_like(speed)
@@ -229,24 +233,24 @@ class _FlightLaw(ABC):
         return float((self._nodes[1] / self._decay()).sum())
 
     def pdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the probability density of the free times or paths x, 1/time or 1/length."""
+        """Return the probability density of the free times or path lengths x, 1/time or 1/length."""
         decay = self._decay()
         return np.exp(-np.multiply.outer(np.asarray(x, float), decay)) @ (self._nodes[1] * decay)
 
     def cdf(self, x: np.ndarray) -> np.ndarray:
-        """Return the probability of a free time or path of at most x."""
+        """Return the probability of a free time or path length of at most x."""
         return 1 - np.exp(-np.multiply.outer(np.maximum(x, 0.0), self._decay())) @ self._nodes[1]
 
 
 class FreeTimeLaw(_FlightLaw):
-    """Distribution of the time between two successive collisions of a disc with other discs; its mean is 1/Γ."""
+    """Distribution of the time between two collisions of a disc with other discs; its mean is 1/Γ."""
 
     def _decay(self) -> np.ndarray:
         return self._nodes[2]
 
 
 class FreePathLaw(_FlightLaw):
-    """Distribution of the path between two successive collisions of a disc with other discs; its mean is ⟨v⟩/Γ."""
+    """Distribution of the path length between two collisions of a disc with other discs; its mean is ⟨v⟩/Γ."""
 
     def _decay(self) -> np.ndarray:
         return self._nodes[2] / self._nodes[0]

@@ -1,7 +1,7 @@
 """Equilibrium of a gas from its conserved quantities: the temperature and the velocities of each species and axis.
 
-Total energy is conserved, and total momentum along the axes where nothing takes it. Angular momentum is never
-conserved, as sides and periodic images exert torques.
+Total energy is conserved, and so is total momentum along axes where no wall or heat bath changes it. Angular momentum
+is never conserved, as sides and periodic images exert torques.
 """
 
 import math
@@ -20,14 +20,14 @@ DIRECTIONS = 128
 
 
 CLASSES = 32
-"""Number of classes into which all discs of species with unlike discs are divided."""
+"""Total number of classes into which species of unlike discs are divided."""
 
 
 class Composition(NamedTuple):
-    """Names, radii, masses and numbers of the S kinds of discs of a gas: species, or parts of them.
+    """Names, radii, masses and numbers of the S kinds of discs of a gas; a kind is a species or a class of its discs.
 
     Attributes:
-        name: S names of the species.
+        name: species name of each kind.
         radius: (S,), radius of each kind, length.
         mass: (S,), mass of each kind.
         number: (S,), number of discs of each kind.
@@ -42,12 +42,12 @@ class Composition(NamedTuple):
 
     @property
     def members(self) -> np.ndarray:
-        """Whether a kind belongs to a species, (species, S), 1 or 0."""
+        """Whether each kind belongs to each species, (species, S), 1 or 0."""
         return (self.species == np.arange(self.species.max() + 1)[:, None]).astype(float)
 
     @property
     def shares(self) -> np.ndarray:
-        """Fraction of the discs of a species that are of a kind, (species, S)."""
+        """Fraction of the discs of each species that belongs to each kind, (species, S)."""
         numbers = self.members * self.number
         return numbers / numbers.sum(axis=1, keepdims=True)
 
@@ -58,21 +58,21 @@ class Composition(NamedTuple):
         return names if len(names) <= MOST_PAIRED else ("all",)
 
     def with_partners(self, rates: np.ndarray) -> np.ndarray:
-        """Return rates (species, G) of a disc of each species with groups of discs, from those (S, S) by kind."""
+        """Return rates (species, G) of a disc of each species with each group of discs, from rates (S, S) by kind."""
         first = np.flatnonzero(np.diff(self.species, prepend=-1))
         groups = first if len(first) <= MOST_PAIRED else [0]
         weight = self.number / np.add.reduceat(self.number, first)[self.species]
         return np.add.reduceat(weight[:, None] * np.add.reduceat(rates, groups, axis=1), first)
 
     def packing_fraction(self, density: np.ndarray) -> float:
-        """Return the packing fraction φ of a gas whose species have the number densities `density` (S,), 1/length²."""
+        """Return the packing fraction φ of a gas whose kinds have number densities `density` (S,), 1/length²."""
         return float(np.pi * (density * self.radius**2).sum())
 
     @property
     def mass_share_of_others(self) -> np.ndarray:
-        """Fraction 1 - m/M of the total mass M that is not in one disc of a species, (S,), no unit.
+        """Fraction 1 - m/M of the total mass M that belongs to discs other than one disc of each kind, (S,), no unit.
 
-        The other masses are added up, so that no digits are lost if one disc is far heavier than all others.
+        The masses of the other discs are summed, so that no digits are lost if one disc is far heavier than all others.
         """
         all_of = self.number * self.mass
         lower = np.append(0.0, np.cumsum(all_of[:-1]))
@@ -82,21 +82,22 @@ class Composition(NamedTuple):
 
 
 def composition(gas: Gas) -> Composition:
-    """Return the composition of a gas by species, with the mean radius and mass of a species whose discs differ."""
+    """Return the composition of a gas by species; unlike discs of a species are given their mean radius and mass."""
     return _kinds(gas, 1, 1.0)
 
 
 def classes(gas: Gas) -> Composition:
-    """Return the composition of a gas with unlike discs of a species divided into classes of equal numbers, by radius.
+    """Return the composition of a gas, with species of unlike discs divided by radius into classes of equal size.
 
-    Its packing fraction and masses are those of the gas. For K classes, a mean over classes differs from that over
-    discs by a fraction 1/K² of the squared spread of radii, for any number of discs.
+    It preserves the packing fraction and the total mass. With K classes, the mean of a function of the radius over the
+    classes differs from that over the discs by about 1/K² of the term due to the variance of the radii, for any number
+    of discs.
     """
     return _kinds(gas, CLASSES, 2.0)
 
 
 def _kinds(gas: Gas, most: int, power: float) -> Composition:
-    """Return the composition with up to `most` kinds of unlike discs; their radius is (mean R^power)^(1/power)."""
+    """Return the composition with up to `most` kinds of unlike discs, whose radius is (mean R^power)^(1/power)."""
     _, first, number = np.unique(gas.species, return_index=True, return_counts=True)
     species, unlike = np.arange(len(first)), gas.unlike
     if not unlike:
@@ -129,9 +130,10 @@ class Ensemble:
         dof: number D of degrees of freedom of translation and spin that share the energy; infinite in a heat bath.
         temperature: T = 2E/D, energy (k_B = 1).
         discs: kinds of discs, see `classes`.
-        of_axes: (S, 2), means of m vx² and m vy² of a disc of each species, energy. It is T if this component of
-            momentum is not conserved, and T(1 - m/M) for a disc of mass m if it is, with the mass M of all discs. It is
-            0 for fixed discs (`conserved.are_fixed`), which acquire their share of the energy in no run.
+        of_axes: (S, 2), means of m vx² and m vy² of a disc of each kind, energy. The mean is T along an axis where
+            momentum is not conserved, and T(1 - m/M) for a disc of mass m where it is, with M the total mass of all
+            discs. It is 0 for fixed discs (`conserved.are_fixed`), which do not acquire their share of the energy in
+            any run.
     """
 
     centre_of_mass_velocity: np.ndarray
@@ -156,10 +158,13 @@ class Ensemble:
         return self.discs.shares @ (1 / self.discs.mass)
 
     def variances(self, number: np.ndarray) -> np.ndarray:
-        """Return the variances at an instant of Σ|v| (length²/time²) and Σ m v² (energy²) over each species, (2, S).
+        """Return the variances at one instant of Σ|v| (length²/time²) and Σ m v² (energy²) over each species, (2, S).
 
-        They are those of Gaussian velocities; at fixed energy the part that the energy explains is subtracted, the
-        squared covariance with it over its own variance. number: (S,), numbers of discs.
+        The variances are those of Gaussian velocities. At fixed energy they are reduced by the part that is explained
+        by fluctuations of the energy, the squared covariance with the energy divided by the variance of the energy.
+
+        Args:
+            number: (S,), numbers of discs.
         """
         dof = number * self.of_axes.sum(axis=1) / self.temperature
         alone, shared = self.inverse_mass, (self.discs.shares @ self.discs.mass**-0.5) ** 2
@@ -167,10 +172,10 @@ class Ensemble:
         return np.array([speeds, 2 * self.temperature**2 * dof * (1 - dof / self.dof)])
 
     def of_directions(self, species: int) -> np.ndarray:
-        """Return temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy.
+        """Return the temperatures T(θ) = Tx cos² θ + Ty sin² θ of a species at evenly spaced angles, energy.
 
-        If all are equal, there is only one. Velocities are √(T(θ)/m) times an isotropic vector, so that distributions
-        of speeds are averages over θ.
+        If Tx = Ty, there is only one temperature. Velocities are √(T(θ)/m) times an isotropic vector, so that
+        distributions of speeds are averages over θ.
         """
         x, y = self.of_axes[species]
         if x == y:
@@ -181,7 +186,8 @@ class Ensemble:
     def velocity_law(self, quantity: str, species: int, dof: float | None = None) -> distributions.Law:
         """Return the distribution of vx, vy, speed or energy of a disc of a species.
 
-        dof: degrees of freedom D, by default those of the ensemble; infinite for the Maxwell-Boltzmann distribution.
+        `dof` is the number D of degrees of freedom, by default that of the ensemble; infinity gives the
+        Maxwell-Boltzmann distribution.
         """
         dof = self.dof if dof is None else dof
         if quantity in ("vx", "vy"):
@@ -202,12 +208,12 @@ class Ensemble:
 def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
     """Return the ensemble of a gas; None if its energy is neither conserved nor set by a single temperature.
 
-    The result is also None for a single disc whose momentum is conserved, as none of its energy is heat, and for one
-    whose spin has a part of the energy.
+    The result is also None for a single disc whose momentum is conserved, because none of its energy is heat, or whose
+    spin has some of the energy.
 
     Args:
         scene: scene of the gas.
-        gas: the gas at the start.
+        gas: initial state of the gas.
         spin_energy: initial energy of the spins of all discs, energy.
     """
     properties = scene.properties
@@ -216,15 +222,15 @@ def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
     dof, energy = _shared(scene, gas, spin_energy)
     if dof == 0 or (len(gas) == 1 and properties.isolated and properties.spins):
         return None
-    if properties.temperatures:  # a heat bath has unlimited energy
+    if properties.temperatures:  # a heat bath does not fix the energy
         return ensemble_at(scene, gas, min(properties.temperatures), math.inf)
     return ensemble_at(scene, gas, 2 * energy / dof, dof)
 
 
 def ensemble_at(scene: Scene, gas: Gas, temperature: float, dof: float) -> Ensemble:
-    """Return the ensemble of a gas of a known temperature T, energy, and number of degrees of freedom."""
+    """Return the ensemble of a gas of known temperature T (energy) and known number of degrees of freedom."""
     discs, kept = composition(gas), conserved.conserved_momentum(scene)
-    fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath heats them
+    fixed = conserved.are_fixed(discs.mass) & (scene.properties.bath is None)  # a heat bath heats fixed discs too
     share_of_others = discs.mass_share_of_others[:, None]
     share = np.where(kept, share_of_others, 1.0)
     share[fixed] = np.where(
@@ -237,8 +243,8 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
     """Return the equilibrium temperature (energy, k_B = 1) of a gas under gravity along `axis`, 0 for x or 1 for y.
 
     It is the temperature of thermal walls or of a thermostat. Without them, it is the temperature at which a dilute gas
-    has the conserved initial energy: kinetic energy, spin and height in the barometric distribution. The result is None
-    if other effects leave it unknown, and for a single disc, which cannot share its energy.
+    with the barometric distribution has the conserved initial energy (translation, spin and gravity). The result is
+    None if other effects make the temperature unpredictable, and for a single disc, which cannot share its energy.
     """
     properties = scene.properties
     if (
@@ -257,7 +263,7 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
 
 
 def column_profiles(scene: Scene, gas: Gas, spin_energy: float, axis: int) -> list[ColumnProfile]:
-    """Return density and temperature of each species of an isolated column."""
+    """Return the density and temperature profiles of each species of an isolated column."""
     return fixed_energy_column(*_column(scene, gas, spin_energy, axis))
 
 
@@ -274,7 +280,7 @@ def _column(
 
 
 def _shared(scene: Scene, gas: Gas, spin_energy: float) -> tuple[int, float]:
-    """Return the number D of degrees of freedom that share the energy of motion and spin, and this energy."""
+    """Return the number D of degrees of freedom that share the energy of translation and spin, and this energy."""
     dof = conserved.degrees_of_freedom(scene, gas)
     frame = conserved.centre_of_mass_velocity(scene, gas)
     energy = float(gas.mass @ ((gas.velocity - frame) ** 2).sum(axis=1)) / 2

@@ -1,4 +1,4 @@
-"""Forecast of a run by kinetic theory: collision rates, number of events and size of the log."""
+"""Forecast of a run from kinetic theory: collision rates, number of events and size of the log."""
 
 import math
 from dataclasses import dataclass
@@ -18,23 +18,23 @@ from idealgas.theory.ensemble import Composition, classes, column_temperature, e
 from idealgas.theory.values import SOLID, box_theory, crystal
 
 BYTES_A_ROW = {"gzip": 38, "none": 49}
-"""Bytes per event row in the log, by the kind of compression."""
+"""Bytes per event row in the log, by type of compression."""
 
 MORE_BYTES = {"angular_velocity": {"gzip": 7, "none": 8}, "image": {"gzip": 2, "none": 8}}
-"""Bytes that each further column adds to an event row, by the kind of compression."""
+"""Bytes that each additional column adds to an event row, by type of compression."""
 
 BYTES_A_SNAPSHOT, BYTES_A_DISC = 800, {"gzip": 31, "none": 36}
-"""Bytes of a snapshot in the log, and of each disc in it, by the kind of compression."""
+"""Bytes per snapshot in the log, and per disc in a snapshot, by type of compression."""
 
 
 @dataclass(frozen=True)
 class SpeciesForecast:
-    """One species: its discs at the start, and its collision rate in equilibrium.
+    """Initial discs of a species and its collision rate in equilibrium.
 
     name: name of the species. number: number of its discs. radius: mean radius, length. polydispersity: standard
     deviation of the radius over its mean. mass: mean mass. packing_fraction: area of its discs over the area of the
-    box. temperature: initial mean kinetic energy of its discs, energy, without the motion of the whole gas.
-    collision_rate: collisions of one disc with other discs, 1/time; None without theory.
+    box. temperature: initial mean kinetic energy of its discs relative to the motion of the gas as a whole, energy.
+    collision_rate: collisions of one disc with other discs, 1/time; None if theory is not available.
     """
 
     name: str
@@ -51,17 +51,17 @@ class SpeciesForecast:
 class Forecast:
     """Expected state of the gas in equilibrium, and expected length and size of the run.
 
-    Theory describes a uniform gas of constant energy or in a heat bath, and a dilute column under gravity. Values
-    without theory are None.
+    Theory describes a uniform gas of constant energy or in a heat bath, and a dilute column under gravity. Values for
+    which theory is not available are None.
 
-    number: number of discs. packing_fraction: area of the discs over the area of the box. beyond: effects of the scene
+    number: number of discs. packing_fraction: area of the discs over the area of the box. beyond: effects in the scene
     that theory does not include. temperature: temperature in equilibrium, energy. collision_rate: collisions of one
     disc with other discs per time. pair_collision_rate, wall_hit_rate, thermostat_collision_rate: pair collisions, wall
     hits and thermostat collisions of the whole gas per time. duration: simulated time at the end of the run. events:
     number of events. rows: number of event rows in the log. bytes: size of the log. species: forecast of each species.
-    rough: why the rates and their consequences, or the temperature if no rates are known, are approximate; empty if
-    their error is below 2 %. caveats: caveats of time averages that follow from the initial state and the method.
-    rest: behaviour of discs that have come to rest; None if no disc can.
+    rough: why the rates and the values that depend on them are approximate, or the temperature if no rates are known;
+    empty if their error is below 2 %. caveats: caveats of time averages that follow from the initial state and the
+    method. rest: behaviour of discs that have come to rest; None if this cannot happen.
     """
 
     number: int
@@ -83,18 +83,18 @@ class Forecast:
 
 
 KNOWN = ("uniform", "conserves_energy")
-"""Properties that theory requires of a scene, besides heat sources of at most one temperature."""
+"""Properties of a scene that theory requires, apart from heat sources of at most one temperature."""
 
 PARTED = "walls inside the box may divide the gas, and each part then keeps its own temperature"
 
 SLOW_BATH = 10.0
-"""Number of thermostat collisions of a disc in a run below which a forecast reports a slow heat bath."""
+"""Number of thermostat collisions per disc in a run below which the heat bath is reported as slow."""
 
 NEARLY = 0.05
-"""Relative difference of the initial temperature from that of a slow heat bath below which there is no caveat."""
+"""Relative deviation of the initial temperature from that of a slow heat bath below which there is no caveat."""
 
 ROUGH = 0.02
-"""Relative error of rates above which a forecast is marked as approximate."""
+"""Relative error of the rates above which a forecast is marked as approximate."""
 
 
 class _Rates(NamedTuple):
@@ -119,9 +119,9 @@ class _Rates(NamedTuple):
 
 
 def forecast(scene: Scene, gas: Gas) -> Forecast:
-    """Forecast a run: rates by Enskog's theory at the equilibrium temperature, and the end by the first stop rule.
+    """Forecast a run from the Enskog rates at the equilibrium temperature, up to the first stop rule that is met.
 
-    For a gas under gravity the rates are those of a dilute column.
+    For a gas under gravity, the rates are those of a dilute column.
     """
     heated = ("isolated",) if len(scene.properties.temperatures) > 1 else ()
     beyond, temperature = scene.lacking(*KNOWN, *heated), _temperature(scene, gas)
@@ -129,7 +129,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
     if temperature is not None:
         rates = _column(scene, gas, temperature) if beyond else _rates(scene, gas, temperature)
     if rates is None and any(scene.properties.acceleration) and scene.properties.isolated:
-        temperature = None  # the law of a dilute column does not hold
+        temperature = None  # the column is not dilute
     parted = "" if rates or temperature is None or scene.properties.empty else PARTED
     duration = _duration(scene, len(gas), rates)
     events = rows = None
@@ -165,7 +165,7 @@ def forecast(scene: Scene, gas: Gas) -> Forecast:
 
 
 def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...]:
-    """Return a caveat if the heat bath takes much of the run to bring the gas to its temperature."""
+    """Return a caveat if the heat bath needs much of the run to bring the gas to its temperature."""
     rate, bath = scene.properties.thermostat_rate, scene.properties.bath
     if bath is None or duration is None or rate * duration > SLOW_BATH:
         return ()
@@ -184,7 +184,7 @@ def _has_room(gas: Gas, periodic: tuple[bool, bool]) -> bool:
 
 
 def _bytes(scene: Scene, number: int, rows: float | None, duration: float | None) -> float | None:
-    """Return the size of the log from its rows and snapshots; None if their number is unknown."""
+    """Return the size of the log from the numbers of rows and snapshots; None if these are unknown."""
     every = scene.log.snapshot_every
     if rows is None or (every and duration is None):
         return None
@@ -216,7 +216,7 @@ def _spin_energy(scene: Scene) -> float:
 
 
 def _temperature(scene: Scene, gas: Gas) -> float | None:
-    """Return the temperature in equilibrium; None if it is not known."""
+    """Return the temperature in equilibrium; None if it is unknown."""
     properties, spin_energy = scene.properties, _spin_energy(scene)
     if not any(properties.acceleration):
         ensemble = equilibrium(scene, gas, spin_energy)
@@ -238,7 +238,7 @@ def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     per_disc = hard_discs.mixture_collision_rate(discs.radius, discs.mass, number, gas.area, temperature)
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     if len(number) == 1 and SOLID <= (phi := gas.packing_fraction) < hard_discs.CLOSE_PACKING:
-        per_disc *= (crystal(phi).value - 1) / (2 * phi * contact_value(phi))  # of equal discs Z = 1 + 2φχ, exactly
+        per_disc *= (crystal(phi).value - 1) / (2 * phi * contact_value(phi))  # for equal discs Z = 1 + 2φχ exactly
     hits = _wall_hit_rate(gas, discs, temperature, periodic)
     rough = _why_rough(gas, discs, temperature, periodic, per_disc)
     thermostat = len(gas) * scene.properties.thermostat_rate
@@ -264,25 +264,25 @@ def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
 def _why_rough(
     gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool], per_disc: np.ndarray
 ) -> str:
-    """Return why Enskog's rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
+    """Return why Enskog rates are approximate, as part of a sentence; empty if their error is below ROUGH."""
     theory = box_theory(discs.radius, discs.number, gas.box, periodic)
     if theory.reason:
         return theory.reason
     expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)
     known = expected.sum(axis=1)
-    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # terms of 1/N too
+    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # and 1/N
     relative = float((off[known > 0] / known[known > 0]).max(initial=0.0))
     return f"Enskog's theory is off by up to {relative:.0%} for this gas and box" if relative > ROUGH else ""
 
 
 def _rates_without_positions(scene: Scene, gas: Gas, temperature: float, discs: Composition) -> _Rates:
-    """Return the rates of a gas without positions, whose trials occur at the rate of the fastest possible pair."""
+    """Return the rates of a gas without positions; its trials occur at the rate of the fastest possible pair."""
     contacts = hard_discs.contacts_without_positions(discs.radius, discs.number, gas.box)
     per_disc = (contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)).sum(axis=1)
     v_ref = reference_speed(scene.run, float(np.hypot(*gas.velocity.T).max()))
     reach = float(np.sort(gas.radius)[-2:].sum())
     trials = 1 / mean_trial_time(len(gas), gas.area, gas.packing_fraction, reach, v_ref)
-    speeds = len(gas) + (scene.run.trials or 0)  # number of speeds in a run, any of which may be the largest
+    speeds = len(gas) + (scene.run.trials or 0)  # number of speeds drawn in a run, each of which may be the largest
     fastest = math.sqrt(2 * temperature * math.log(speeds) / discs.mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
     rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
@@ -323,7 +323,7 @@ def _wall_hit_rate(gas: Gas, discs: Composition, temperature: float, periodic: t
 
 
 def _duration(scene: Scene, number: int, rates: _Rates | None) -> float | None:
-    """Return the simulated time at which the first stop rule is met; None without theory or if no rule is ever met."""
+    """Return the simulated time at which the first stop rule is met; None if this is unknown or never happens."""
     run = scene.run
     if rates is None:
         return run.until if {run.events, run.collisions_per_disc, run.trials} == {None} else None

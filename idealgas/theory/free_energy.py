@@ -1,4 +1,4 @@
-"""Free energy of few discs in a box: exact for one and two, by the second virial coefficient for more."""
+"""Free energy of few discs in a box: exact for one and two, from the second virial coefficient for more."""
 
 import math
 
@@ -9,18 +9,19 @@ from idealgas.theory import two_discs
 from idealgas.theory.values import Theory
 
 THIRD = 0.391
-"""Half of B₃/B₂², which gives the third virial term of the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
+"""Half of B₃/B₂², the coefficient of the third virial term of the free energy: Tonks, Phys. Rev. 50, 955 (1936)."""
 
 
 MOST_RADII = 32
-"""Largest number of different radii; the integrals over pairs of more radii would take seconds."""
+"""Largest number of different radii; integrals over pairs of more radii would take seconds."""
 
 
 def log_configurations(gas: Gas, box: tuple[float, float], periodic: tuple[bool, bool]) -> Theory | None:
     """Return the logarithm ln Q of the volume of all configurations of the discs of a gas in a box.
 
-    The result is None if the discs have no room, or for more than MOST_RADII different radii. Pairs are exact, so that
-    Q is exact for two discs. Correlations of three and more discs are neglected and counted as the error.
+    The result is None if the discs do not fit, or if there are more than MOST_RADII different radii. Pairs are treated
+    exactly, so that Q is exact for two discs. The estimated error is the neglected contribution of correlations of
+    three or more discs.
     """
     single, pairs = 0.0, 0.0
     radii, numbers = np.unique(gas.radius, return_counts=True)

@@ -1,7 +1,7 @@
 """Hard-disc kinetic theory and equation of state, as plain formulas (two dimensions, k_B = 1).
 
-Symbols: disc diameter σ, number density n, packing fraction φ = nπσ²/4, temperature T, mass m, velocity degrees of
-freedom D (2N for discs between reflecting walls, where momentum is not conserved).
+Symbols: disc diameter σ, number density n, packing fraction φ = nπσ²/4, temperature T, mass m, and number D of velocity
+degrees of freedom (2N for discs between reflecting walls, where momentum is not conserved).
 """
 
 import math
@@ -18,7 +18,7 @@ VIRIAL = (1.0, 1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114873, 0.064993, 
 """Virial coefficients B_k/B_2^(k-1) for k = 1 to 10 (no unit): Clisby & McCoy, J. Stat. Phys. 122, 15 (2006)."""
 
 HIGHEST = 0.62
-"""Packing fraction up to which the resummed virial series holds; the fluid freezes at 0.70."""
+"""Packing fraction up to which the resummed virial series is accurate; the fluid freezes at 0.70."""
 
 CLOSE_PACKING = math.pi / math.sqrt(12)
 """Packing fraction of a triangular lattice of discs that all touch their neighbours."""
@@ -32,17 +32,17 @@ _PRESSURE = Polynomial([0.0, 1.0]) * _RESUMMED  # φZ (1 - φ)²
 
 
 def virial_series(packing_fraction: ArrayLike) -> np.ndarray:
-    """Return Z = PA/NT by the virial series with the coefficients `VIRIAL`."""
+    """Return Z = PA/NT from the virial series with coefficients `VIRIAL`."""
     return _SERIES(np.asarray(packing_fraction, float))
 
 
 def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf) -> np.ndarray:
-    """Return Z = PA/NT of the hard-disc fluid: virial series to B10, resummed with 1/(1 - φ)².
+    """Return Z = PA/NT of the hard-disc fluid from the virial series to B10, resummed with 1/(1 - φ)².
 
     The coefficients of the polynomial over (1 - φ)² decrease quickly, so that the neglected ones are unimportant up to
-    φ = 0.5, where it was compared with simulations; from there to freezing it is an extrapolation. For a closed system
-    of `number` discs, to first order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′: Lebowitz & Percus, Phys. Rev. 124, 1673
-    (1961). At low density this is the factor 1 - 1/N in the number of pairs.
+    φ = 0.5, where the formula was compared with simulations; between there and freezing it is an extrapolation. For a
+    closed system of `number` discs, to first order in 1/N, Z_N = Z - (φ/2N) (φZ)″/(φZ)′: Lebowitz & Percus, Phys. Rev.
+    124, 1673 (1961). At low density this amounts to a factor 1 - 1/N in Z - 1, from the number of pairs.
     """
     phi = np.asarray(packing_fraction, float)
     if math.isinf(number):
@@ -53,7 +53,7 @@ def compressibility_factor(packing_fraction: ArrayLike, number: float = math.inf
 
 
 def inverse_compressibility(packing_fraction: ArrayLike) -> np.ndarray:
-    """Return d(φZ)/dφ = (∂P/∂n)/T of the hard-disc fluid by the resummed virial series (no unit), 1/S(k → 0)."""
+    """Return d(φZ)/dφ = (∂P/∂n)/T = 1/S(k → 0) of the hard-disc fluid from the resummed series (no unit)."""
     phi = np.asarray(packing_fraction, float)
     return _PRESSURE.deriv()(phi) / (1 - phi) ** 2 + 2 * _PRESSURE(phi) / (1 - phi) ** 3
 
@@ -67,13 +67,13 @@ def henderson_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
 def free_volume_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
     """Return Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
 
-    Free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950). It is exact near close packing, φcp.
+    This is free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950). It is exact near close packing, φcp.
     """
     return np.asarray(1 / (1 - np.sqrt(np.asarray(packing_fraction, float) / CLOSE_PACKING)))
 
 
 def fluid_contact_value(packing_fraction: float, number: float = math.inf) -> float:
-    """Return the contact value χ = (Z - 1)/2φ of `number` equal discs by the resummed virial series."""
+    """Return the contact value χ = (Z - 1)/2φ of `number` equal discs from the resummed virial series."""
     return float((compressibility_factor(packing_fraction, number) - 1) / (2 * packing_fraction))
 
 
@@ -83,7 +83,7 @@ def mixture_contact_value(
     """Return contact values χ_ij (S, S) of a mixture: Santos, Yuste & López de Haro, J. Chem. Phys. 117, 5785 (2002).
 
     χ_ij = 1/(1 - φ) + [χ - 1/(1 - φ)] (⟨R⟩/⟨R²⟩) 2 R_i R_j/(R_i + R_j), where χ is the contact value of equal discs,
-    `equal(φ)`. With Henderson's value it is that of Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
+    `equal(φ)`. With Henderson's χ, this is the result of Jenkins & Mancini, J. Appl. Mech. 54, 27 (1987).
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     square = (number * radius**2).sum()
@@ -95,7 +95,7 @@ def mixture_contact_value(
 def mixture_compressibility_factor(radius: ArrayLike, number: ArrayLike, area: float) -> float:
     """Return Z = (1 - ξ)/(1 - φ) + ξ Z₁(φ) of a mixture of discs, with ξ = ⟨R⟩²/⟨R²⟩.
 
-    Z₁ is that of equal discs, `compressibility_factor`: Santos, Yuste & López de Haro, Mol. Phys. 96, 1 (1999). The
+    Z₁ is the `compressibility_factor` of equal discs: Santos, Yuste & López de Haro, Mol. Phys. 96, 1 (1999). The
     second virial coefficient is exact, and the contact values of `mixture_contact_value` give the same Z.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
@@ -115,8 +115,8 @@ def likeness(radius: ArrayLike, number: ArrayLike) -> float:
 def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density: float) -> np.ndarray:
     """Return g(r) of equal discs to first order in the number density n (1/length²), at distances r >= σ.
 
-    g(r) = 1 + n A(r), where A is the common area of two circles of radius σ: Hansen & McDonald, Theory of Simple
-    Liquids, section 4.6, in two dimensions. The next order is about 2 φ² at contact.
+    g(r) = 1 + n A(r), where A is the common area of two circles of radius σ whose centres are r apart: Hansen &
+    McDonald, Theory of Simple Liquids, section 4.6, in two dimensions. The next order is about 2 φ² at contact.
     """
     half = np.minimum(np.asarray(distance, float) / (2 * diameter), 1.0)
     return 1 + number_density * 2 * diameter**2 * (np.arccos(half) - half * np.sqrt(1 - half**2))
@@ -127,12 +127,12 @@ def confinement(
 ) -> np.ndarray:
     """Return the factor (S, S) by which walls change the number of contacts of species i and j.
 
-    Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts, and a disc near a
-    wall has neighbours on one side only, which decreases it. The factor is the average part of the contact circle that
-    lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas to first order in the
-    density; `values.ERRORS` contains its errors from simulations. Periodic axes have no walls and give the factor 1.
-    With an `axis`, contacts are weighted with the part of the pair virial along it, which the walls across this axis
-    balance.
+    Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts; and a disc near a
+    wall has neighbours on one side only, which decreases it. The factor is the average fraction of the contact circle
+    that lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas it is of first
+    order in density; its errors, from simulations, are in `values.ERRORS`. Periodic axes have no walls and contribute a
+    factor 1. With an `axis`, contacts are weighted by the term of the pair virial along it, which is balanced by the
+    walls across this axis.
     """
     radius = np.asarray(radius, float)
     along_x, along_y = (_room_along(radius, *side) for side in zip(box, periodic, strict=True))
@@ -150,10 +150,10 @@ def confinement(
 
 
 def _room_along(radius: np.ndarray, side: float, is_periodic: bool) -> list[tuple[np.ndarray, ...]]:
-    """Return the length available to a pair in contact along an axis, relative to that of random discs.
+    """Return the length available to a pair in contact along an axis, relative to the length for two random discs.
 
     It is a function of the component c = 0 to 1 of r̂ and consists of pieces a + b c for least < c < most, given as (a,
-    b, least, most), each (S, S): first as for the larger disc, then decreasing with c, then zero.
+    b, least, most), each (S, S): first the length for the larger disc, then a decrease with c, then zero.
     """
     none, all_of = np.zeros((len(radius), len(radius))), np.ones((len(radius), len(radius)))
     if is_periodic:
@@ -191,7 +191,7 @@ def box_contacts(
     """Return the collision rate over relative speed, 2 σ_ij n_j χ_ij (S, S), of species i with species j, 1/length.
 
     A disc does not collide with itself, and walls confine the discs (`confinement`). Equal discs have the contact value
-    (Z - 1)/2φ of the resummed virial series for this number of discs, and mixtures have those that follow from it by
+    (Z - 1)/2φ of the resummed virial series for this number of discs; those of mixtures are derived from it with
     `mixture_contact_value`. The result is nan above φ = 0.62.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
@@ -205,7 +205,7 @@ def box_contacts(
         return 2 * sigma * number / area * alone * confinement(radius, box, periodic)
     n = float(number.sum())
     chi = mixture_contact_value(radius, number, area, lambda phi: fluid_contact_value(phi, n))
-    partners = (number - np.eye(len(number))) * n / (n - 1)  # a disc does not meet itself
+    partners = (number - np.eye(len(number))) * n / (n - 1)  # a disc does not collide with itself
     return 2 * sigma * partners / area * chi * confinement(radius, box, periodic)
 
 
@@ -223,7 +223,7 @@ def contacts_without_positions(radius: ArrayLike, number: ArrayLike, box: tuple[
 def box_compressibility_factor(
     radius: ArrayLike, number: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
-    """Return Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box, the expected value of both virials.
+    """Return Z = 1 + (π/4N) Σ N_i σ_ij (contacts)_ij in a box, the expected value from both virials.
 
     The contacts are those of `box_contacts`.
     """
@@ -236,11 +236,11 @@ def box_compressibility_factor(
 
 
 def finite_speed_factor(dof: float) -> float:
-    """Return the mean speed at fixed total energy over its Maxwell-Boltzmann value, about 1 + 1/4D.
+    """Return the ratio of the mean speed at fixed total energy to its Maxwell-Boltzmann value, about 1 + 1/4D.
 
-    It is √(D/2) Γ(D/2)/Γ(D/2 + 1/2), where dof is the number D of degrees of freedom that share the energy. The factor
-    holds for relative speeds too: both are lengths of two-dimensional projections of a uniform distribution on a sphere
-    in D dimensions.
+    It is √(D/2) Γ(D/2)/Γ(D/2 + 1/2), where dof is the number D of degrees of freedom that share the energy. Relative
+    speeds have the same ratio, because both are lengths of two-dimensional projections of a uniform distribution on a
+    sphere in D dimensions.
     """
     if math.isinf(dof):
         return 1.0
@@ -257,7 +257,7 @@ def mean_speed(temperature: float, mass: float | np.ndarray, dof: float = math.i
 
 
 def mean_relative_speed(temperature: float, mass: float) -> float:
-    """Return the mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of one mass, length/time."""
+    """Return the mean relative speed ⟨|v₁ - v₂|⟩ = √(πT/m) of discs of equal mass, length/time."""
     return math.sqrt(2) * float(mean_speed(temperature, mass))
 
 
@@ -270,7 +270,7 @@ def mean_relative_speeds(temperature: float, mass: ArrayLike, dof: float = math.
 def collision_rate(
     diameter: float, number_density: float, temperature: float, mass: float, packing_fraction: float
 ) -> float:
-    """Return the collision rate Γ = 2σnχ√(πT/m) of one disc with other discs, 1/time, by Enskog's theory.
+    """Return the Enskog collision rate Γ = 2σnχ√(πT/m) of one disc with other discs, 1/time.
 
     χ is Henderson's contact value. The gas has NΓ/2 pair collisions per time.
     """
@@ -281,9 +281,9 @@ def collision_rate(
 def mixture_collision_rate(
     radius: ArrayLike, mass: ArrayLike, number: ArrayLike, area: float, temperature: float
 ) -> np.ndarray:
-    """Return collision rates Γ_ij (S, S) of one disc of species i with the discs of species j, 1/time.
+    """Return the collision rates Γ_ij (S, S) of one disc of species i with the discs of species j, 1/time.
 
-    Γ_ij = 2σ_ij n_j χ_ij √(πT/2μ_ij) with the reduced mass μ_ij. radius, mass, number: (S,).
+    Γ_ij = 2σ_ij n_j χ_ij √(πT/2μ_ij), where μ_ij is the reduced mass. radius, mass, number: (S,).
     """
     radius, number = (np.asarray(values, float) for values in (radius, number))
     sigma, speed = radius[:, None] + radius, mean_relative_speeds(temperature, mass)
@@ -301,15 +301,16 @@ def effusion_flux(number_density: float, temperature: float, mass: float) -> flo
 
 
 def enskog_diffusion(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return D = T/mΓ = √(T/πm)/(2σnχ) in the first approximation of Enskog's theory, length²/time.
+    """Return the diffusion coefficient D = T/mΓ = √(T/πm)/(2σnχ) from Enskog theory, length²/time.
 
-    In this approximation the velocity correlation decays as exp(-Γt). Source: Gass, J. Chem. Phys. 54, 1898 (1971).
+    This is the first approximation, in which the velocity correlation decays as exp(-Γt). Source: Gass, J. Chem. Phys.
+    54, 1898 (1971).
     """
     return math.sqrt(temperature / (math.pi * mass)) / (2 * diameter * number_density * chi)
 
 
 def enskog_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the shear viscosity η₀ (1/χ + y + 0.8729 χy²) by Enskog's theory, mass/time.
+    """Return the shear viscosity η₀ (1/χ + y + 0.8729 χy²) from Enskog theory, mass/time.
 
     y = πnσ²/2 and η₀ = 1.022 √(mT/π)/2σ: Gass, J. Chem. Phys. 54, 1898 (1971).
     """
@@ -319,17 +320,17 @@ def enskog_viscosity(diameter: float, number_density: float, temperature: float,
 
 
 def enskog_bulk_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ by Enskog's theory, mass/time; y = πnσ²/2.
+    """Return the bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ from Enskog theory, mass/time; y = πnσ²/2.
 
-    It is exact within this theory, which describes collisions of discs that are distributed as in equilibrium. Gass, J.
-    Chem. Phys. 54, 1898 (1971), writes 1.246 times the η₀ of `enskog_viscosity`.
+    It is exact within Enskog theory, which describes collisions of discs whose positions are distributed as in
+    equilibrium. Gass, J. Chem. Phys. 54, 1898 (1971), writes it as 1.246 times the η₀ of `enskog_viscosity`.
     """
     y = math.pi * number_density * diameter**2 / 2
     return 4 / math.pi * chi * y * y * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
 
 
 def enskog_conductivity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) by Enskog's theory, 1/time; y = πnσ²/2.
+    """Return the thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) from Enskog theory, 1/time; y = πnσ²/2.
 
     λ₀ = 1.029 (2/σ) √(T/πm): Gass, J. Chem. Phys. 54, 1898 (1971).
     """
@@ -339,7 +340,7 @@ def enskog_conductivity(diameter: float, number_density: float, temperature: flo
 
 
 def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
-    """Return the velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at late times t (no unit).
+    """Return the velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at long times t (no unit).
 
     Sources: Alder & Wainwright, Phys. Rev. A 1, 18 (1970); Ernst, Hauge & van Leeuwen, Phys. Rev. Lett. 25, 1254
     (1970).

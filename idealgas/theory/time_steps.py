@@ -1,4 +1,4 @@
-"""Caveat of gases that are simulated with time steps."""
+"""Caveat for gases that are simulated with time steps."""
 
 import math
 
@@ -8,9 +8,9 @@ from idealgas.theory import conserved
 
 
 def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
-    """Return a caveat on the length of time steps, by the relative displacement of two discs per step in `gas`.
+    """Return a caveat on the time step, based on the relative displacement of two discs per step.
 
-    `gas` is the initial state; for discs that start at rest the displacement is unknown.
+    `gas` is the initial state; for discs that start at rest, the displacement is unknown.
     """
     if scene.run.method != "time_driven" or scene.run.dt is None:
         return ()

@@ -1,16 +1,16 @@
-"""Exact pressure of two discs in a box: every side reflecting or periodic, radii equal or not.
+"""Exact pressure of two discs of equal or unequal radii in a box, each axis of which is reflecting or periodic.
 
 The volume of the configurations of the two discs without overlap is Q = ∬ g_x(x) g_y(y) dx dy over all separations (x,
-y) longer than σ = R₁ + R₂, where g is the length along an axis over which the pair may be shifted. Between reflecting
-walls g is ½(a₁ + a₂) - |x|, at most the smaller of a₁ and a₂, where a_i = L - 2R_i is the length that the centre of
-disc i can reach; along a periodic axis it is L, for |x| ≤ L/2. If D degrees of freedom share a fixed energy, T = 2E/D
-and a force is T ∂lnQ/∂(length), exactly; the same holds at the temperature of thermal walls. For equal radii between
+y) longer than σ = R₁ + R₂, where g is the length along an axis over which the pair can be shifted. Between reflecting
+walls g is ½(a₁ + a₂) - |x|, but at most the smaller of a₁ and a₂, where a_i = L - 2R_i is the length available to the
+centre of disc i; along a periodic axis it is L, for |x| ≤ L/2. If D degrees of freedom share a fixed energy, T = 2E/D,
+and a force is exactly T ∂lnQ/∂(length); the same is true at the temperature of thermal walls. For equal radii between
 reflecting walls and σ ≤ min(a, b), Q = a²b² - πσ²ab + (4/3)σ³(a + b) - σ⁴/2. In a periodic box with σ ≤ min(Lx, Ly)/2,
 Q = A(A - πσ²).
 
-Z = PA/NT is that of the measurement, with N = 2 and T = 2E/D for any D: 4 between reflecting walls, 3 if one axis is
-periodic and 2 if both are, as the total momentum along a periodic axis is conserved and the motion of the centre of
-mass does not count.
+Z = PA/NT is defined as in the measurements, with N = 2 and T = 2E/D for any D: 4 between reflecting walls, 3 if one
+axis is periodic and 2 if both are, because the total momentum along a periodic axis is conserved and the motion of the
+centre of mass does not count.
 """
 
 import math
@@ -23,14 +23,14 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 class TwoDiscs(NamedTuple):
-    """Z = PA/2T by each route; None without such a wall.
+    """Z = PA/2T from each route; None for a route that requires walls where there are none.
 
     Attributes:
-        pairs: by the virial of the pair.
-        walls: by the virial of all walls. It differs from `pairs` if one axis is periodic, as walls then give the
-            pressure along the other axis only.
-        sides: (x, y), by the force on the left or right and on the bottom or top wall over the whole length of the
-            side.
+        pairs: from the virial of the pair.
+        walls: from the virial of all walls. It differs from `pairs` if one axis is periodic, because walls then measure
+            the pressure along the other axis only.
+        sides: (x, y), from the force on the left or right wall and on the bottom or top wall, divided by the whole
+            length of the side.
     """
 
     pairs: float
@@ -39,7 +39,7 @@ class TwoDiscs(NamedTuple):
 
 
 class _Axis(NamedTuple):
-    """g of one axis: `most` for |x| up to `kink`, then decreasing with slope -1 to 0 at `reach`, or at once."""
+    """g along an axis: `most` for |x| up to `kink`; then it falls to 0 at `reach`, with slope -1 or abruptly."""
 
     length: float
     periodic: bool
@@ -48,13 +48,13 @@ class _Axis(NamedTuple):
     reach: float
 
     def shifts(self, separation: np.ndarray) -> np.ndarray:
-        """Return g, the length over which a pair of this separation can be shifted."""
+        """Return g, the length over which a pair with this separation can be shifted."""
         inside = np.abs(separation) < self.reach
         room = self.most if self.periodic else np.clip(self.reach - np.abs(separation), 0.0, self.most)
         return np.where(inside, room, 0.0)
 
     def allowed(self, separation: np.ndarray) -> np.ndarray:
-        """Return ∂g/∂L of reflecting walls: 1 if the pair has room."""
+        """Return ∂g/∂L between reflecting walls: 1 if there is room for the pair, otherwise 0."""
         return np.where(np.abs(separation) < self.reach, 1.0, 0.0)
 
     @property
@@ -66,10 +66,9 @@ class _Axis(NamedTuple):
 def two_discs(
     radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> TwoDiscs | None:
-    """Return the exact Z of two discs of radii R₁, R₂ in a box, by every route.
+    """Return the exact Z of two discs of radii R₁ and R₂ in a box, from every route.
 
-    The result is None if no configuration without overlap is left, or if the discs are larger than a periodic box
-    allows.
+    The result is None if the discs do not fit without overlap, or if they are too large for a periodic box.
     """
     x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
     sigma = radius[0] + radius[1]
@@ -79,7 +78,7 @@ def two_discs(
         return None
     states = _outside(sigma, x, y, x.shifts, y.shifts)
     contact = sigma**2 / states
-    along_x = contact * _around(sigma, x, y, lambda c, s: c**2)  # virial of the pair over T, by axis
+    along_x = contact * _around(sigma, x, y, lambda c, s: c**2)  # virial of the pair over T, along each axis
     along_y = contact * _around(sigma, x, y, lambda c, s: s**2)
     sides = (
         None if x.periodic else x.length * _outside(sigma, x, y, x.allowed, y.shifts) / states / 2,
@@ -93,7 +92,7 @@ def two_discs(
 def configurations(
     radius: Sequence[float], box: tuple[float, float], periodic: tuple[bool, bool] = (False, False)
 ) -> float:
-    """Return the volume Q of the configurations of two discs without overlap in a box, length⁴; 0 if there are none."""
+    """Return the volume Q of the configurations of two discs without overlap in a box, length⁴; 0 if none exist."""
     x, y = (_axis(radius, length, around) for length, around in zip(box, periodic, strict=True))
     return _outside(radius[0] + radius[1], x, y, x.shifts, y.shifts) if min(x.most, y.most) > 0 else 0.0
 
@@ -108,10 +107,10 @@ def _axis(radius: Sequence[float], length: float, periodic: bool) -> _Axis:
 def _outside(
     sigma: float, x: _Axis, y: _Axis, along: Callable[[np.ndarray], np.ndarray], up: Callable[[np.ndarray], np.ndarray]
 ) -> float:
-    """Return ∬ along(x) up(y) dx dy over the separations longer than σ, by Gauss-Legendre quadrature between all kinks.
+    """Return ∬ along(x) up(y) dx dy over separations longer than σ, by Gauss-Legendre quadrature between all kinks.
 
-    The integration is by columns x = σ sin t, whose heights √(σ² - x²) = σ cos t are smooth in t; beyond σ columns are
-    whole.
+    The area is divided into columns at x = σ sin t that start at the height √(σ² - x²) = σ cos t, which is smooth in t;
+    for x > σ the columns start at 0.
     """
     top = max(y.reach, sigma)
 
@@ -119,7 +118,7 @@ def _outside(
         start = np.minimum(height, y.reach)
         inner = np.clip(y.kink, start, y.reach)
         total = np.zeros_like(height)
-        for low, high in ((start, inner), (inner, np.full_like(height, y.reach))):  # a polynomial of degree 1 in each
+        for low, high in ((start, inner), (inner, np.full_like(height, y.reach))):  # linear in each interval
             total += (high - low) * up((low + high) / 2)
         return total
 
@@ -147,7 +146,7 @@ def _angle(separation: float, sigma: float) -> float:
 
 
 def _nodes(edges: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return points and weights that integrate exactly any function that is smooth between the edges."""
+    """Return points and weights that integrate any function that is smooth between the edges, to rounding error."""
     ends = np.unique(edges)
     half = np.diff(ends)[:, None] / 2
     return (ends[:-1, None] + half * (1 + _NODES)).ravel(), (half * _WEIGHTS).ravel()

@@ -1,16 +1,16 @@
-"""Theory with its own error and range: the pressure and the collision rates of hard discs in a box.
+"""Theoretical values with errors and ranges: the pressure and the collision rates of hard discs in a box.
 
-Outside its range a theory has no value, only a reason. Errors are standard deviations, to be combined with those of a
+Outside its range a theory gives no value, only a reason. Errors are standard deviations, to be combined with those of a
 measurement as √(s.e.² + error²).
 
-The resummed virial series (`hard_discs.compressibility_factor`) is accurate to 1.5e-4 of Z - 1 up to φ = 0.5 and 2.5e-4
-at 0.6, by molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and by this engine. At higher φ the
-error grows by a factor e every 0.0166 in φ: with 870 discs it is 8e-4 at 0.62, 3e-3 at 0.64 and 1.7 % at 0.67. Above
-0.62 there is no value.
+The resummed virial series (`hard_discs.compressibility_factor`) is accurate to 1.5e-4 of Z - 1 up to φ = 0.5 and to
+2.5e-4 at 0.6, as measured with molecular dynamics (Erpenbeck & Luban, Phys. Rev. A 32, 2920 (1985)) and with this
+engine. At higher φ the error grows by a factor e for every 0.0166 in φ: with 870 discs it is 8e-4 at 0.62, 3e-3 at 0.64
+and 1.7 % at 0.67. Above 0.62 there is no value.
 
-For finite gases (`hard_discs.box_compressibility_factor`) theory is of first order in 1/N and in the walls. Its error
-is from simulations of 3 to 400 discs (ERRORS; tests/physics/test_theory_errors.py repeats them); if it exceeds a tenth
-of Z - 1 there is no value. Two discs are exact.
+For finite gases (`hard_discs.box_compressibility_factor`), the theory is of first order in 1/N and in the effect of the
+walls. Its error was determined from simulations of 3 to 400 discs (ERRORS; tests/physics/test_theory_errors.py repeats
+them); if the error exceeds a tenth of Z - 1, there is no value. The result for two discs is exact.
 """
 
 import math
@@ -24,13 +24,13 @@ from idealgas.theory import hard_discs
 from idealgas.theory.two_discs import two_discs
 
 THINNEST = 1e-12
-"""Smallest packing fraction for which theory has a value; Z - 1 still has four digits there."""
+"""Smallest packing fraction for which there is a theoretical value; Z - 1 still has four digits there."""
 
 LARGEST_ERROR = 0.1
-"""Largest relative error of Z - 1 for which a formula counts as a theory."""
+"""Largest relative error of Z - 1 for which a formula is accepted as theory."""
 
 PUBLISHED = {0.670: (7.98678, 3e-5), 0.680: (8.51325, 4e-5), 0.690: (8.96990, 8e-5), 0.700: (9.1297, 2e-4)}
-"""βP(2R)² and its error by packing fraction, of 870 discs in a square periodic box: Li, Nishikawa, Höllmer, Carillo,
+"""βP(2R)² and its error by packing fraction, for 870 discs in a square periodic box: Li, Nishikawa, Höllmer, Carillo,
 Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022).
 """
 
@@ -38,25 +38,26 @@ MIXTURE = "Santos, Yuste & López de Haro 1999"
 """Name of the theory of mixtures."""
 
 MIXING_ERROR = 0.02
-"""Relative error of Z - 1 of mixtures by that of equal discs, in units of φ (1 - ξ).
+"""Relative error of Z - 1 of mixtures when it is derived from equal discs, in units of φ (1 - ξ).
 
 For 2 000 discs of two radii in the ratio 4, Z - 1 differs by -0.28 ± 0.10 % at φ = 0.5 and by -0.36 ± 0.17 % at 0.3;
-for the ratio 2 by 0.02 ± 0.09 %, and for radii spread uniformly by 20 % by -0.13 ± 0.08 %.
+for the ratio 2 it differs by 0.02 ± 0.09 %, and for radii spread uniformly by 20 % by -0.13 ± 0.08 %.
 """
 
 FREEZING, MELTING, SOLID = 0.700, 0.716, 0.720
-"""Packing fractions between which fluid and hexatic coexist, and from which on discs form a crystal: Engel, Anderson,
-Glotzer, Isobe, Bernard & Krauth, Phys. Rev. E 87, 042134 (2013).
+"""Packing fractions between which fluid and hexatic phase coexist, and above which discs form a crystal.
+
+Source: Engel, Anderson, Glotzer, Isobe, Bernard & Krauth, Phys. Rev. E 87, 042134 (2013).
 """
 
 TOO_LOW = (0.4, 0.8)
-"""Excess of Z of a crystal over free-volume theory: at most 0.4 + 0.8 (φcp/φ - 1), an estimate.
+"""Estimated upper limit of the excess of Z of a crystal over free-volume theory: 0.4 + 0.8 (φcp/φ - 1).
 
 For 480 discs the excess is 0.71, 0.58, 0.44, 0.36 and 0.20 at φ = 0.72, 0.75, 0.82, 0.86 and 0.89.
 """
 
 PUBLISHED_NUMBER, SAME_FRACTION, SLOPE = 870, 1e-4, 50.0
-"""Number of discs in the published simulations, largest allowed distance from their φ, and largest dZ/dφ there."""
+"""Number of discs in the published simulations, largest accepted difference from their φ, and largest dZ/dφ there."""
 
 ENSKOG_ERRORS = {
     "diffusion": ((0.0, 0.1, 0.3, 0.45), (0.0, 0.11, 0.25, 0.31)),
@@ -64,12 +65,12 @@ ENSKOG_ERRORS = {
     "conductivity": ((0.0, 0.4, 0.5, 0.6), (0.02, 0.025, 0.025, 0.05)),
     "bulk viscosity": ((0.0, 0.6), (0.03, 0.03)),
 }
-"""Packing fractions, and relative differences of measured transport coefficients from Enskog's at these φ.
+"""Packing fractions, and relative differences of measured transport coefficients from Enskog theory at these φ.
 
-Self-diffusion is for 500 discs, as Enskog's theory lacks the long-time tail; the difference is larger for larger N.
-Above φ = 0.45 it decreases again, to 0.13 at 0.55 and 0.04 at 0.62. The other coefficients are for 250 discs, resolved
-to 1.5 to 2 %. Towards freezing the viscosity rises far above Enskog's: García-Rojo, Luding & Brey, Phys. Rev. E 74,
-061305 (2006).
+The values for self-diffusion are for 500 discs; they increase with N, because Enskog theory lacks the long-time tail.
+Above φ = 0.45 the difference decreases again, to 0.13 at 0.55 and 0.04 at 0.62. The other coefficients are for 250
+discs, with a resolution of 1.5 to 2 %. Near freezing the viscosity is far above the Enskog value: García-Rojo, Luding &
+Brey, Phys. Rev. E 74, 061305 (2006).
 """
 
 FRACTIONS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
@@ -105,39 +106,40 @@ ERRORS = {
 }
 """Relative error of Z - 1 by number of discs (rows, NUMBERS) and packing fraction (columns, FRACTIONS) in a square box.
 
-The errors are those of the virials in a periodic box and in one with walls, and of the pressure along one axis if the
-two axes differ. In a longer box the error is at most that of the number of discs in a square of its shorter side.
+The errors are those of Z from the virials in a periodic box and in a box with walls, and of the pressure along one axis
+if the two axes differ. In an elongated box the error is at most that for the number of discs in a square with its
+shorter side.
 """
 
 
 @dataclass(frozen=True)
 class Theory:
-    """Value of a quantity by theory. error: standard deviation of its error, same unit. source: name of the theory."""
+    """Theoretical value of a quantity, the standard deviation of its error (same unit) and the name of the theory."""
 
     value: float
     error: float
     source: str
 
     def times(self, factor: float) -> "Theory":
-        """Return the theory of the quantity multiplied by a factor."""
+        """Return the theoretical value of the quantity multiplied by a factor."""
         return Theory(self.value * factor, self.error * abs(factor), self.source)
 
     def inverse(self) -> "Theory":
-        """Return the theory of one over the quantity."""
+        """Return the theoretical value of the reciprocal of the quantity."""
         return Theory(1 / self.value, self.error / self.value**2, self.source)
 
 
 class NoTheoryError(ValueError):
-    """Theory has no value; the message is the reason, as part of a sentence."""
+    """Theory is not available; the message is the reason, as part of a sentence."""
 
 
 class BoxTheory(NamedTuple):
-    """Theory of Z = PA/NT of a gas in a box by each route, and of its contacts.
+    """Theoretical values of Z = PA/NT of a gas in a box from each route, and of its contacts.
 
-    pairs, walls: Z by the virial of the pairs and of the walls. sides: Z by the force on the walls across x and across
-    y, divided by the whole length of the side; None without theory or such walls. contacts: (S, S), 2 σ_ij n_j χ_ij as
-    from `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts; both are nan without theory.
-    reason: why theory has no value; empty if it has one.
+    pairs, walls: Z from the virial of the pairs and of the walls. sides: Z from the force on the walls across x and
+    across y, divided by the whole length of the side; None without theory or without such walls. contacts: (S, S), 2
+    σ_ij n_j χ_ij as in `hard_discs.box_contacts`. rate_error: (S, S), relative error of the contacts; both arrays are
+    nan without theory. reason: why there is no theoretical value; empty if there is one.
     """
 
     pairs: Theory | None
@@ -150,7 +152,7 @@ class BoxTheory(NamedTuple):
     def along_axes(
         self, radius: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
     ) -> tuple[Theory | None, Theory | None]:
-        """Return Z by the part of the pair virial along x and along y, whose mean is `pairs`; None without a value."""
+        """Return Z from the pair virial along x and along y, whose mean is `pairs`; None if unknown."""
         if self.pairs is None or (periodic[0] == periodic[1] and box[0] == box[1]):
             return self.pairs, self.pairs
         if periodic[0] != periodic[1] and self.walls is not None:
@@ -178,12 +180,12 @@ def fluid(packing_fraction: float) -> Theory:
 
 
 def enskog_error(quantity: str, packing_fraction: float) -> float:
-    """Return the relative error of a transport coefficient by Enskog's theory; quantity: a key of ENSKOG_ERRORS."""
+    """Return the relative error of an Enskog transport coefficient; quantity: a key of ENSKOG_ERRORS."""
     return float(np.interp(packing_fraction, *ENSKOG_ERRORS[quantity]))
 
 
 def crystal(packing_fraction: float) -> Theory:
-    """Return Z of an infinite crystal of equal discs by free-volume theory; its error is an estimate.
+    """Return Z of an infinite crystal of equal discs from free-volume theory; its error is an estimate.
 
     Raises:
         NoTheoryError: if discs form no crystal, or beyond close packing.
@@ -205,14 +207,14 @@ def box_theory(
     *,
     ergodic: bool = True,
 ) -> BoxTheory:
-    """Return the theory of the pressure and of the contacts of a uniform gas of finite N in its box.
+    """Return theoretical values for the pressure and the contacts of a uniform gas of finite N in its box.
 
     Args:
-        radius: radius of each species, (S,), length.
-        number: number of discs of each species, (S,).
+        radius: (S,), radius of each species, length.
+        number: (S,), number of discs of each species.
         box: width and height of the box, length.
         periodic: whether the box is periodic along x and along y.
-        ergodic: False for a gas that does not reach all states of its energy, which has no theory.
+        ergodic: False for a gas that does not reach all states of its energy, for which theory is not available.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     try:
@@ -240,7 +242,7 @@ def _two(radius: np.ndarray, number: np.ndarray, box: tuple[float, float], perio
     )
     contacts = np.full((len(radius), len(radius)), 4 * (exact.pairs - 1) / (math.pi * radii.sum()))
     if len(radius) == 2:
-        np.fill_diagonal(contacts, 0.0)  # one disc of each species
+        np.fill_diagonal(contacts, 0.0)  # a disc does not collide with itself
     return BoxTheory(pairs, walls, (sides[0], sides[1]), contacts, np.zeros_like(contacts))
 
 
@@ -264,7 +266,7 @@ def _equal_discs(
     for axis in open_axes:
         alike = len(open_axes) == 2 and box[0] == box[1]
         along = pairs if alike else of(axis, "one axis")
-        by_axis[axis] = along.times(box[axis] / (box[axis] - 2 * r))  # walls act on the centres, which reach less far
+        by_axis[axis] = along.times(box[axis] / (box[axis] - 2 * r))  # the centres cannot reach the walls
     walls = None if not open_axes else pairs if len(open_axes) == 2 else of(open_axes[0], "one axis")
     partners = (number - np.eye(len(number))) / (
         n - 1
@@ -277,10 +279,11 @@ def _equal_discs(
 def _mixture(
     radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]
 ) -> BoxTheory:
-    """Return the theory of a mixture by the equation of state of equal discs, with errors from simulations.
+    """Return theoretical values for a mixture from the equation of state of equal discs, with errors from simulations.
 
-    The rates of single pairs of species have an additional error of up to 0.04 φ. For two discs larger than the mean,
-    which many small discs push together, it is larger by the ratio of their radius to the mean radius.
+    The collision rates of each pair of species have an additional error of up to 0.04 φ. For two discs that are larger
+    than average, which many small discs push together, this error is multiplied by the ratio of their radius to the
+    mean radius.
     """
     n = int(number.sum())
     phi = math.pi * float((number * radius**2).sum()) / (box[0] * box[1])
@@ -301,7 +304,7 @@ def _mixture(
 
 
 def mixture_error(packing_fraction: float, alike: float) -> float:
-    """Return the relative error of Z - 1 of infinite mixtures by that of equal discs; alike: ξ (`likeness`)."""
+    """Return the relative error of Z - 1 of infinite mixtures as derived from equal discs; alike: ξ (`likeness`)."""
     series = fluid(packing_fraction)
     return math.hypot(series.error / (series.value - 1), MIXING_ERROR * packing_fraction * (1 - alike))
 
@@ -318,12 +321,12 @@ def _published(n: int, phi: float, box: tuple[float, float], periodic: tuple[boo
 
 
 def _series_error(phi: float) -> float:
-    """Return the relative error of Z - 1 by the resummed virial series."""
+    """Return the relative error of Z - 1 from the resummed virial series."""
     return float(np.exp(np.interp(phi, (0.5, 0.6, 0.67), np.log((1.5e-4, 2.5e-4, 1.7e-2)))))
 
 
 def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float, float]) -> float:
-    """Return the relative error of Z - 1 by the formula for finite gases, interpolated in ERRORS.
+    """Return the relative error of Z - 1 from the formula for finite gases, interpolated in ERRORS.
 
     Raises:
         NoTheoryError: outside the range of the simulations, or if the error is too large.

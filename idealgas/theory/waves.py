@@ -1,4 +1,4 @@
-"""Density waves in a fluid, by linear hydrodynamics: diffusion of heat, and sound."""
+"""Density waves in a fluid in linear hydrodynamics: heat diffusion and sound."""
 
 import math
 from typing import NamedTuple
@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.theory import hard_discs
 
 MOST_CALLS = 4000
-"""Number of evaluations of the correlation after which a fit is abandoned."""
+"""Number of evaluations of the correlation function after which a fit is abandoned."""
 
 
 class Fluid(NamedTuple):
@@ -16,7 +16,7 @@ class Fluid(NamedTuple):
 
     Attributes:
         speed: speed of sound c, length/time.
-        damping: damping of sound Γ, length²/time.
+        damping: sound damping Γ, length²/time.
         spreading: thermal diffusivity χ, length²/time.
         exponent: adiabatic exponent γ (no unit).
     """
@@ -51,10 +51,10 @@ class Decay(NamedTuple):
 
 
 def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
-    """Return ⟨ρ(t)ρ*(0)⟩/⟨ρρ*⟩ (L,) at times (L,) of a wave with the wave number k, 1/length.
+    """Return ⟨ρ(t)ρ*(0)⟩/⟨ρρ*⟩ (L,) at times (L,) of a wave with wave number k, 1/length.
 
     Its Laplace transform is (s² + bs + γχνk⁴ + (1 - 1/γ)c²k²)/(s³ + bs² + (c²k² + γχνk⁴)s + χc²k⁴) with b = (ν + γχ)k²:
-    Boon & Yip, Molecular Hydrodynamics (1980), section 5.3. To lowest order in k the poles are -χk² and -Γk² ± ick.
+    Boon & Yip, Molecular Hydrodynamics (1980), section 5.3. To lowest order in k, the poles are -χk² and -Γk² ± ick.
     """
     gamma, square = fluid.exponent, (fluid.speed * k) ** 2
     heat, viscous = fluid.spreading * k**2, fluid.viscosity * k**2
@@ -66,7 +66,7 @@ def correlation(time: np.ndarray, k: float, fluid: Fluid) -> np.ndarray:
 
 
 def fit(time: np.ndarray, measured: np.ndarray, guess: Decay, thermal: float) -> Decay | None:
-    """Return the law that fits a correlation (L,) at times (L,) best, by least squares; None if the fit fails.
+    """Return the least-squares fit to a correlation (L,) at times (L,); None if the fit fails.
 
     The size of a long wave is nT times the isothermal compressibility, γT/(mc²), so that γ is not a free parameter.
     thermal: T/m, length²/time².
@@ -89,7 +89,7 @@ def fit(time: np.ndarray, measured: np.ndarray, guess: Decay, thermal: float) ->
 
 
 def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float) -> Fluid:
-    """Return the fluid of hard discs of packing fraction φ up to 0.62.
+    """Return the properties of the hard-disc fluid at a packing fraction φ of at most 0.62.
 
     c² = (T/m)(d(φZ)/dφ + Z²) and γ = 1 + Z²/(d(φZ)/dφ).
     """
@@ -97,6 +97,6 @@ def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float)
     density, gamma = 4 * phi / (math.pi * diameter**2), 1 + z**2 / slope
     state = diameter, density, temperature, mass, hard_discs.fluid_contact_value(phi)
     viscous = hard_discs.enskog_viscosity(*state) + hard_discs.enskog_bulk_viscosity(*state)
-    spreading = hard_discs.enskog_conductivity(*state) / (density * gamma)  # c_P = γ for each disc
+    spreading = hard_discs.enskog_conductivity(*state) / (density * gamma)  # c_P = γ per disc
     damping = (viscous / (density * mass) + (gamma - 1) * spreading) / 2
     return Fluid(math.sqrt(temperature / mass * (slope + z**2)), damping, spreading, gamma)
