@@ -31,13 +31,15 @@ def test_every_row_with_every_digit(folder):
 def test_filters(folder):
     assert KINDS == KIND_NAMES
     printed = rows(output_of("events", folder / "run.h5"))
-    some = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 90.5))
-    assert some == [row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 90.5]
-    assert some
+    selected = rows(output_of("events", folder / "run.h5", "--disc", 3, "--kind", "wall", "--from", 5, "--to", 90.5))
+    assert selected == [
+        row for row in printed if row["disc"] == 3 and row["kind"] == "wall" and 5 <= row["time"] < 90.5
+    ]
+    assert selected
     first, last = (printed[k]["time"] for k in (40, 60))  # of events: the one at --from is printed, that at --to is not
-    some = rows(output_of("events", folder / "run.h5", "--from", repr(first), "--to", repr(last)))
-    assert some == [row for row in printed if first <= row["time"] < last]
-    assert (some[0]["time"], some[-1]["time"] < last) == (first, True)
+    selected = rows(output_of("events", folder / "run.h5", "--from", repr(first), "--to", repr(last)))
+    assert selected == [row for row in printed if first <= row["time"] < last]
+    assert (selected[0]["time"], selected[-1]["time"] < last) == (first, True)
 
 
 def test_a_log_that_is_being_written(folder):

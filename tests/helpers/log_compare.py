@@ -66,8 +66,8 @@ def same_by_brute_force_and_resumed(folder: Path, path: Path, overrides: Sequenc
     for end in (*([end] for end in ends[1:]), own_end):
         resume(resumed, end)
     assert differences(resumed, whole) == []
-    with open_log(whole) as log, open_log(oracle) as other:
-        columns = list(zip(log.chunks(), other.chunks(), strict=True))
+    with open_log(whole) as log, open_log(oracle) as oracle_log:
+        columns = list(zip(log.chunks(), oracle_log.chunks(), strict=True))
         assert all(np.array_equal(getattr(a, name), getattr(b, name)) for a, b in columns for name in log.columns)
     assert abs(summary.energy_drift) < 1e-12
     return summary

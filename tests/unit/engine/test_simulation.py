@@ -53,9 +53,9 @@ def test_events_of_one_disc_and_ties_come_in_their_order(method):
 @methods
 def test_stops_where_it_should_and_limits_count_from_time_0_through_all_calls(method):
     whole = run(Simulation(discs_in((10, 10), *THREE), method()), Stop(time=200.0))
-    some = Simulation(discs_in((10, 10), *THREE), method())
-    assert run(some, Stop(time=200.0, events=17)) == whole[: len(run_rows(whole, 17))]
-    assert some.counters.events == 17
+    limited = Simulation(discs_in((10, 10), *THREE), method())
+    assert run(limited, Stop(time=200.0, events=17)) == whole[: len(run_rows(whole, 17))]
+    assert limited.counters.events == 17
     pairs = Simulation(discs_in((10, 10), *THREE), method())
     run(pairs, Stop(time=200.0, disc_collisions=5))
     assert pairs.counters.disc_collisions == 5

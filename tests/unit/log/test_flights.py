@@ -187,10 +187,10 @@ def test_small_batches_have_the_same_flights_and_whole_pairs(log, monkeypatch):
 def test_some_discs_and_some_columns_and_a_data_frame(log):
     edges = np.linspace(0, log.end_time, 6)
     whole = Flights.joined(log.flights(edges))
-    some = Flights.joined(log.flights(edges, discs=[2, 5]))
+    selected = Flights.joined(log.flights(edges, discs=[2, 5]))
     few = Flights.joined(log.flights(edges, discs=7, columns=("end", "new_velocity")))
     chosen = np.isin(whole.disc, [2, 5])
-    for each, other in zip(whole, some, strict=True):
+    for each, other in zip(whole, selected, strict=True):
         assert each is None is other or np.array_equal(each[chosen], other)
     assert np.array_equal(few.end, whole.end[whole.disc == 7])
     assert np.array_equal(few.new_velocity, whole.new_velocity[whole.disc == 7])

@@ -13,11 +13,11 @@ pytestmark = pytest.mark.interpreted
 
 
 @njit
-def combine(columns, found, order):
+def combine(columns, results, order):
     """All operators on numbers 0 and 1 of a column, and comparisons of them."""
     a, b = load(columns, 0), load(columns, 1)
     for k, value in enumerate((a + b, a - b, a * b, a / b, root(a * a), max(a, b), number(0.25, a))):
-        store(found, k, value)
+        store(results, k, value)
     order[0] = a < b
     order[1] = a > b
     order[2] = a <= b

@@ -56,11 +56,11 @@ def test_powers_are_within_one_unit_in_the_last_place():
 
 
 @njit
-def all_of(numbers, found):
+def all_of(numbers, values):
     """Every function of every number."""
     for i in range(numbers.shape[0]):
-        found[i, 0], found[i, 1] = cos_sin_turns(numbers[i])
-        found[i, 2], found[i, 3], found[i, 4] = log(numbers[i]), third_power(numbers[i]), quarter_power(numbers[i])
+        values[i, 0], values[i, 1] = cos_sin_turns(numbers[i])
+        values[i, 2], values[i, 3], values[i, 4] = log(numbers[i]), third_power(numbers[i]), quarter_power(numbers[i])
 
 
 def test_compiled_code_gives_the_same_bits():

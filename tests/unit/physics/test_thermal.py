@@ -29,13 +29,13 @@ def test_random_numbers_are_those_of_splitmix64_for_disc_and_emission():
     """Exactly: 53 bits of a counter's hash, one added, so that none is zero."""
     golden = 0x9E3779B97F4A7C15
     thermal = walls(1.0, seed=2**63 + 5)
-    for own in range(4):
+    for disc_id in range(4):
         for emission in (0, 1, 2, 10**9):
-            thermal.emissions[own] = emission
+            thermal.emissions[disc_id] = emission
             for draw in range(3):
-                key = mixed((2**63 + 5 + golden * (own + 1)) % WORD)
+                key = mixed((2**63 + 5 + golden * (disc_id + 1)) % WORD)
                 bits = mixed((mixed((key + golden * (8 * emission + draw + 1)) % WORD) + key) % WORD)
-                assert uniform(thermal, own, draw) == ((bits >> 11) + 1) * 2.0**-53
+                assert uniform(thermal, disc_id, draw) == ((bits >> 11) + 1) * 2.0**-53
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.5, 5.0])
@@ -77,10 +77,10 @@ def test_it_is_the_law_of_a_gas_that_streams_out():
     """P(speed > v) = exp(-m v²/2T) is the first number: with v from it, it comes back to the rounding of v."""
     thermal = walls(0.7)
     with mpmath.workdps(50):
-        for own in range(4):
+        for disc_id in range(4):
             disc = body(vx=0.0, vy=0.0, m=1.3)
-            number = exact(uniform(thermal, own, 0))
-            emit(disc, own, 1.0, 0.0, 0, thermal, None)
+            number = exact(uniform(thermal, disc_id, 0))
+            emit(disc, disc_id, 1.0, 0.0, 0, thermal, None)
             exponent = exact(1.3) * exact(disc.vx) ** 2 / (2 * exact(0.7))
             assert abs(mpmath.exp(-exponent) - number) <= 2 * gamma(5) * exponent * number
 
@@ -99,5 +99,7 @@ def test_which_walls_emit_and_on_what_their_random_numbers_depend():
     other.emissions[:] = [8, 3, 0]
     assert [uniform(result, 1, draw) for draw in range(3)] == [uniform(other, 1, draw) for draw in range(3)]
     assert uniform(result, 1, 0) == uniform(result, 1, 0)
-    numbers = {uniform(walls(1.0, seed=seed), own, draw) for seed in range(3) for own in range(3) for draw in range(3)}
+    numbers = {
+        uniform(walls(1.0, seed=seed), disc_id, draw) for seed in range(3) for disc_id in range(3) for draw in range(3)
+    }
     assert len(numbers) == 27

@@ -61,7 +61,7 @@ def test_velocities_spins_and_times():
 def test_first_collisions_are_drawn_as_the_others():
     thermostat = bath(rate=0.25)
     draw_first_collisions(thermostat)
-    assert thermostat.time.tolist() == [interval(thermostat, own) for own in range(4)]
+    assert thermostat.time.tolist() == [interval(thermostat, disc_id) for disc_id in range(4)]
     assert not thermostat.number.any()
     disc = body(vx=1.0, vy=2.0, m=1.0)
     andersen_collision(disc, 0, None, None)
@@ -74,8 +74,8 @@ def test_numbers_are_not_those_of_thermal_walls():
     result = set()
     for number in range(20):
         thermostat.number[:] = thermal.emissions[:] = number
-        result |= {uniform(thermostat, own, draw) for own in range(4) for draw in range(3, 8)}
-        result |= {uniform_at_wall(thermal, own, draw) for own in range(4) for draw in range(3)}
+        result |= {uniform(thermostat, disc_id, draw) for disc_id in range(4) for draw in range(3, 8)}
+        result |= {uniform_at_wall(thermal, disc_id, draw) for disc_id in range(4) for draw in range(3)}
     assert len(result) == 20 * 4 * 8
 
 

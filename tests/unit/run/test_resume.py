@@ -96,10 +96,10 @@ def test_a_log_that_has_only_its_start(tmp_path):
 def test_snapshots_change_no_event(tmp_path):
     for name, override in (("with", SNAPSHOTS), ("without", "log.snapshot_every=")):
         simulate(scene_of("periodic", override, "run.events=20000"), tmp_path / name)
-    with open_log(tmp_path / "with") as one, open_log(tmp_path / "without") as other:
-        assert len(one.snapshot_times) > 5
-        for a, b in zip(one.chunks(), other.chunks(), strict=True):
-            for name in one.columns:
+    with open_log(tmp_path / "with") as with_snapshots, open_log(tmp_path / "without") as without:
+        assert len(with_snapshots.snapshot_times) > 5
+        for a, b in zip(with_snapshots.chunks(), without.chunks(), strict=True):
+            for name in with_snapshots.columns:
                 assert np.array_equal(getattr(a, name), getattr(b, name))
 
 

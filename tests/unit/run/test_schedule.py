@@ -68,9 +68,9 @@ def test_the_velocities_have_the_temperature_of_the_time(tmp_path):
     sources = [(left, squared[:, 0], 0, 40, 4.0), (left, squared[:, 0], 40, 80, 0.25)]
     sources += [(bath, squared.sum(axis=1), 0, 60, 1.0), (bath, squared.sum(axis=1), 60, 120, 9.0)]
     for which, energy, start, end, temperature in sources:
-        some = energy[which & (time >= start) & (time < end)]
-        assert len(some) > 100
-        assert abs(some.mean() / temperature - 1) < 4 / math.sqrt(len(some))
+        selected = energy[which & (time >= start) & (time < end)]
+        assert len(selected) > 100
+        assert abs(selected.mean() / temperature - 1) < 4 / math.sqrt(len(selected))
 
 
 @pytest.mark.usefixtures("uncompiled")

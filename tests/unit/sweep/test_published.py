@@ -55,12 +55,12 @@ def test_averages_beside_the_paper(plan, tmp_path):
     assert (table.title, table.notes[1:]) == ("A paper", ("Low.",))
     for row, phi, paper, error in zip(table.rows, (0.1, 0.2), (1.2, 1.5), (0.1, 0.0), strict=True):
         of = [r for r in rows if r["phi"] == phi and r["quantity"] == table.notes[0]]
-        own = sum(r["value"] for r in of) / 2
-        own_error = sum(r["standard_error"] ** 2 for r in of) ** 0.5 / 2
+        mean = sum(r["value"] for r in of) / 2
+        standard_error = sum(r["standard_error"] ** 2 for r in of) ** 0.5 / 2
         numbers = [cell.value for cell in row[1:]]
         assert row[0] == f"phi = {phi}"
-        assert numbers[:4] == pytest.approx([own, own_error, paper, error])
-        assert numbers[4] == pytest.approx((own - paper) / (own_error**2 + error**2) ** 0.5)
+        assert numbers[:4] == pytest.approx([mean, standard_error, paper, error])
+        assert numbers[4] == pytest.approx((mean - paper) / (standard_error**2 + error**2) ** 0.5)
 
 
 def test_one_value_for_each_point_and_exact_values_agree_or_do_not(plan):

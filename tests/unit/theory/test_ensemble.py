@@ -25,7 +25,7 @@ ALL = (*ALONG_X, "box.bottom=periodic", "box.top=periodic")
 HEAVY, LIGHT = 9 / 14, 13 / 14  # 1 - m/M with M = 2 * 5 + 4 * 1
 
 
-def found(*overrides):
+def ensemble_of(*overrides):
     """Ensemble of the mixture, and its kinetic energy in the frame of the conserved momentum."""
     scene = parse_scene(MIXTURE, overrides=overrides)
     gas = make_gas(scene)
@@ -49,7 +49,7 @@ def found(*overrides):
 )
 def test_conserved_momentum_by_axis(overrides, dof, heavy, light):
     """T = 2E/D, and T(1 - m/M) along the axes where the total momentum is conserved; 3 in a heat bath."""
-    ensemble, energy = found(*overrides)
+    ensemble, energy = ensemble_of(*overrides)
     temperature = 3.0 if math.isinf(dof) else 2 * energy / dof
     assert ensemble.dof == dof
     assert ensemble.temperature == pytest.approx(temperature, rel=1e-12)
@@ -71,7 +71,7 @@ def test_conserved_momentum_by_axis(overrides, dof, heavy, light):
 def test_fixed_discs_take_no_energy(mass, count, overrides, dof, fixed):
     """Four light discs have 8 degrees of freedom among discs that are too heavy to move in any run."""
     at_rest = ("species.heavy.temperature=", "species.heavy.speed=0", f"species.heavy.mass={mass}")
-    ensemble, energy = found(*overrides, *at_rest, f"species.heavy.count={count}")
+    ensemble, energy = ensemble_of(*overrides, *at_rest, f"species.heavy.count={count}")
     temperature = 2 * energy / 8 if fixed is not None else 3
     assert ensemble.dof == dof
     assert ensemble.of_axes[1] == pytest.approx(temperature, rel=1e-12)
@@ -97,12 +97,12 @@ def discs_of(mass):
 def test_classes_keep_the_area_and_the_masses_of_discs_that_differ():
     radius = np.random.default_rng(1).uniform(0.3, 0.7, 5000)
     gas = gas_of((900, 900), np.zeros((5000, 2)), 0.0, radius, mass=radius**2)
-    found = classes(gas)
-    assert len(found.radius) == 32
-    assert found.packing_fraction(found.number / gas.area) == pytest.approx(gas.packing_fraction, rel=1e-13)
-    assert found.number @ found.mass == pytest.approx(gas.mass.sum(), rel=1e-13)
-    assert found.number @ found.radius / 5000 == pytest.approx(radius.mean(), rel=1e-4)
-    assert found.shares @ found.mass**-0.5 == pytest.approx([(1 / radius).mean()], rel=1e-3)
+    result = classes(gas)
+    assert len(result.radius) == 32
+    assert result.packing_fraction(result.number / gas.area) == pytest.approx(gas.packing_fraction, rel=1e-13)
+    assert result.number @ result.mass == pytest.approx(gas.mass.sum(), rel=1e-13)
+    assert result.number @ result.radius / 5000 == pytest.approx(radius.mean(), rel=1e-4)
+    assert result.shares @ result.mass**-0.5 == pytest.approx([(1 / radius).mean()], rel=1e-3)
     assert [len(classes(gas_of((9, 9), np.zeros((n, 2)), 0.0, radius[:n])).radius) for n in (1, 3, 50)] == [1, 3, 32]
 
 
@@ -159,5 +159,5 @@ def test_variances_of_speeds_and_energies(dof):
         velocity, energy = velocity * np.sqrt(scale)[:, None, None], energy * scale[:, None]
     speed = np.hypot(velocity[:, :, 0], velocity[:, :, 1])
     sums = [np.add.reduceat(values, [0, 150], axis=1).var(axis=0) for values in (speed, energy)]
-    found = Ensemble(np.zeros(2), dof, 1.5, discs_of(mass), np.full((2, 2), 1.5)).variances(number)
-    assert found == pytest.approx(np.array(sums), rel=4 * math.sqrt(2 / 4000) + 2 / 400)
+    variances = Ensemble(np.zeros(2), dof, 1.5, discs_of(mass), np.full((2, 2), 1.5)).variances(number)
+    assert variances == pytest.approx(np.array(sums), rel=4 * math.sqrt(2 / 4000) + 2 / 400)

@@ -80,9 +80,9 @@ def test_which_of_two_events_of_a_disc_is_next(contact, crossing, code, first, i
 def test_images_of_one_partner_come_in_the_order_of_the_smaller_id():
     """Fewer box lengths along x, then y, first; seen from the disc with the larger id all signs are reversed."""
     for near, far in (((0, 5), (1, 0)), ((-1, 0), (0, 0)), ((0, -1), (0, 0))):
-        for own, other in ((3, 8), (3, FIRST_WALL + 6)):
-            assert image_precedes(own, other, near, far)
-            assert not image_precedes(own, other, far, near)
+        for disc_id, rank in ((3, 8), (3, FIRST_WALL + 6)):
+            assert image_precedes(disc_id, rank, near, far)
+            assert not image_precedes(disc_id, rank, far, near)
         assert image_precedes(8, 3, far, near)
         assert not image_precedes(8, 3, near, far)
     assert not image_precedes(8, 3, (1, 1), (1, 1))

@@ -44,11 +44,11 @@ def first_by_sorting(entries, ids):
     for i, (time, partner, side) in enumerate(entries):
         if time is None:
             continue
-        own = int(ids[i])
+        disc_id = int(ids[i])
         if side is not None and side < SIDE_OF_BOX:
-            event = (-1, own)
+            event = (-1, disc_id)
         else:
-            event = (own, FIRST_WALL + side - SIDE_OF_BOX if partner is None else int(ids[partner]))
+            event = (disc_id, FIRST_WALL + side - SIDE_OF_BOX if partner is None else int(ids[partner]))
         if best is None or time < best[0] or (time == best[0] and precedes(*event, *best[1])):
             best = (time, event, i)
     return best[2]

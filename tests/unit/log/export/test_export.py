@@ -104,7 +104,7 @@ def test_parts_without_rows_have_the_columns(log, tmp_path, monkeypatch):
     assert len(files) == 3
     assert all(len(read_table(file)["time"]) == 0 for file in files)
 
-    def broken(*found):
+    def broken(*arguments):
         yield next(whole(log, "events"))
         raise OSError("disk")
 
