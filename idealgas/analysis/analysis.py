@@ -1,12 +1,12 @@
 """Base class of all analyses: a subclass declares its options and measures a log.
 
-A module or package of `idealgas.analysis` contains one analysis, a subclass of `Analysis`. The first line of its
-docstring is the help of the command `idealgas NAME`. The command with `--json` and `--csv`, the sections of the report,
-the key of a sweep and the function `idealgas.NAME` are made from the class.
+Each module or package of `idealgas.analysis` contains one analysis, a subclass of `Analysis`. The first line of the
+module's docstring is the help of the command `idealgas NAME`. The class provides the command with its options `--json`
+and `--csv`, the sections of the report, the key in sweeps and the function `idealgas.NAME`.
 
-Results are dataclasses that inherit from `Result`, show themselves in tables and figures, and are restored from the
-results of a sweep; their fields are the plain values for JSON (`fields.py`). Each condition of a number that is not met
-is a sentence in `caveats` of the result, which tables, reports and JSON contain.
+Results are dataclasses that inherit from `Result`. They provide their own tables and figures, their fields are written
+to JSON as plain values (`fields.py`), and a result stored by a sweep can be restored. If a condition for a measurement
+or a prediction is not met, a sentence in the `caveats` of the result explains this in tables, reports and JSON.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -39,13 +39,13 @@ class Option:
     Attributes:
         name: a Python identifier.
         kind: type of the value: str, int or float.
-        help: text for the command line.
+        help: help text on the command line.
         default: value if the option is not given.
-        choices: allowed texts.
+        choices: allowed values of a str option; empty if any string is allowed.
         least: smallest allowed number.
         most: largest allowed number.
         positive: whether a number must be greater than 0.
-        metavar: word that stands for the value in the help text.
+        metavar: placeholder for the value in the help text.
     """
 
     name: str
@@ -63,14 +63,14 @@ class Option:
         """Description of the allowed values, for error messages."""
         if self.choices:
             return ", ".join(self.choices)
-        words = {int: "a whole number", float: "a number", str: "a text"}[self.kind]
+        words = {int: "a whole number", float: "a number", str: "text"}[self.kind]
         bounds = [f">= {self.least:g}"] if self.least is not None else []
         bounds += [f"<= {self.most:g}"] if self.most is not None else []
         bounds += ["> 0"] if self.positive else []
         return " ".join([words, " and ".join(bounds)]).strip()
 
     def check(self, value: Any) -> None:
-        """Raise UserError if the value is not allowed; None is allowed if it is the default."""
+        """Raise UserError if a value is not allowed; None is allowed if the default is None."""
         if value is None and self.default is None:
             return
         kind = {int: Integral, float: Real, str: str}[self.kind]
@@ -84,12 +84,12 @@ class Option:
 
 @dataclass(frozen=True)
 class Section:
-    """One section of the report that an analysis fills.
+    """One section that an analysis contributes to the report.
 
     Attributes:
         title: heading of the section.
-        caption: text below the figure, which screen readers also read.
-        options: values of the options of the analysis for this section.
+        caption: text below the figure, also read by screen readers.
+        options: option values with which the analysis is run for this section.
     """
 
     title: str
@@ -98,21 +98,21 @@ class Section:
 
 
 class Analysis:
-    """One analysis. The program uses its class attributes and static methods.
+    """Base class of an analysis, whose class attributes and static methods the program uses.
 
     Attributes:
-        name: name of its module, a Python identifier.
-        key: name of the command and key in the file of a sweep, with hyphens instead of underscores.
-        results: classes of its results; the class for several logs follows that for one log.
+        name: name of the module that defines the analysis, a Python identifier.
+        key: name of the command and key in sweep files: `name` with hyphens instead of underscores.
+        results: classes of the results: the class for one log and then, if it differs, the class for several logs.
         sections: sections of the report.
-        options: options besides the start and the end of the window; they are arguments of `measure`.
-        averages: whether `combine` averages over logs, so that their runs must be independent.
+        options: options besides the start and end of the window, passed to `measure` as arguments.
+        averages: whether `combine` averages over logs, in which case the runs must be independent.
         start: description of the default start of the window.
         end: description of the default end of the window.
         reads: what the progress bar counts, such as events or frames.
-        position: position in the report; analyses without one follow in alphabetical order.
-        reported_from: packing fraction from which on a report includes the analysis.
-        headline: name of its main quantity, which the figure of a sweep shows by default; empty for none.
+        position: rank in the report, lowest first; analyses with equal ranks are in alphabetical order.
+        reported_from: lowest packing fraction at which a report includes the analysis.
+        headline: name of the main quantity, plotted by default in the figure of a sweep; empty if there is none.
     """
 
     name: ClassVar[str]
@@ -129,22 +129,22 @@ class Analysis:
     headline: ClassVar[str] = ""
 
     measure: ClassVar[Callable[..., Any]]
-    """Function measure(log, start, end, progress, **options) that returns the result of one log."""
+    """Function measure(log, start, end, progress, **options) that returns the result for one log."""
 
     combine: ClassVar[Callable[..., Any] | None] = None
-    """Function combine(results) that returns one result of several logs or of the points of a sweep.
+    """Function combine(results) that returns one result for several logs or for the points of a sweep.
 
-    None if the analysis takes a single log only.
+    None if the analysis accepts only a single log.
     """
 
     supports_polydispersity: ClassVar[bool] = True
     """Whether the analysis applies to species whose discs differ in radius or mass."""
 
     supports_shear: ClassVar[bool] = False
-    """Whether the analysis subtracts the mean flow between sheared sides and follows the images that they move."""
+    """Whether the analysis subtracts the mean flow between sheared sides and follows the images that shear displaces."""
 
     supports_escapes: ClassVar[bool] = False
-    """Whether the analysis applies to a gas that discs leave."""
+    """Whether the analysis applies to a gas from which discs escape."""
 
     def __init_subclass__(cls) -> None:
         """Register the analysis under the name of its module."""
@@ -156,7 +156,7 @@ class Analysis:
 
     @classmethod
     def is_checked(cls) -> bool:
-        """Return whether the result has a method `check()` that compares measurement and theory."""
+        """Return whether the result has a method `check()` that compares the measurement with theory."""
         return hasattr(cls.results[0], "check")
 
     @classmethod
@@ -168,7 +168,7 @@ class Analysis:
         progress: ReadProgress | None = None,
         **options: Any,
     ) -> Any:
-        """Analyse a log, or the log at a path, between the times `start` and `end`, and return the `Result`.
+        """Analyse a log, given directly or by its path, between the times `start` and `end`, and return the `Result`.
 
         Raises:
             UserError: if an option is unknown or its value is not allowed, or if the analysis does not apply to the
@@ -187,11 +187,11 @@ class Analysis:
         cls, log: "Log", start: float | None, end: float | None, progress: ReadProgress | None, values: dict[str, Any]
     ) -> Any:
         if not cls.supports_polydispersity and (unlike := log.discs.unlike):
-            differ = f"but radius or mass differ within {', '.join(unlike)}"
+            differ = f"but radius or mass varies within {', '.join(unlike)}"
             raise NotApplicableError(f"{log.path}: {cls.key} requires equal discs in each species, {differ}")
         if not cls.supports_shear and log.scene.properties.shear:
             raise NotApplicableError(
-                f"{log.path}: {cls.key} requires a gas that does not flow, but sides shear it; use `idealgas shear` or "
+                f"{log.path}: {cls.key} requires a gas without flow, but this gas is sheared; use `idealgas shear` or "
                 "`idealgas profile`"
             )
         if log.escapes and not cls.supports_escapes:
@@ -211,7 +211,7 @@ class Analysis:
 
     @classmethod
     def function(cls) -> Callable[..., Any]:
-        """Return `analyse` as a function with the arguments and the docstring of `measure`."""
+        """Return `analyse` as a function with the signature of `measure` and a docstring based on it."""
         arguments = signature(cls.measure)
 
         @wraps(cls.measure)
@@ -224,23 +224,23 @@ class Analysis:
 
     @classmethod
     def _docstring(cls) -> str:
-        """Return the docstring of `measure` with the arguments that all analyses take, and its own options."""
+        """Return the docstring of `measure`, with descriptions of the common arguments and of the options."""
         text, *errors = (getdoc(cls.measure) or "").partition("\n\nRaises:")
         arguments = {
             "log": "log to analyse, or its path.",
             "start": f"start of the window, time; by default {cls.start}.",
             "end": f"end of the window, time; by default {cls.end}.",
-            "progress": f"called as progress(done, total) with numbers of {cls.reads}.",
+            "progress": f"called as progress(done, total), in numbers of {cls.reads}.",
         } | {option.name: f"{option.help} Allowed: {option.allowed}." for option in cls.options}
         listed = "".join(f"\n    {name}: {words}" for name, words in arguments.items())
         return f"{text}\n\nArgs:{listed}{''.join(errors)}"
 
     @classmethod
     def combined(cls, results: Sequence[Any]) -> Any:
-        """Combine the results of one or several runs.
+        """Combine the results of one or more runs.
 
         Raises:
-            UserError: if the analysis averages and a run is given twice, or if the gases cannot be combined.
+            UserError: if the analysis averages over runs and a run is given twice, or if the gases cannot be combined.
         """
         if cls.combine is None:
             (result,) = results
@@ -254,10 +254,10 @@ class Analysis:
 
     @classmethod
     def restored(cls, values: dict[str, Any], origin: Origin) -> Any:
-        """Restore the result of a run from its plain values, which a sweep has stored.
+        """Restore the result of a run from the plain values stored by a sweep.
 
         Raises:
-            UserError: if the values are not those of a result.
+            UserError: if the values do not form a valid result.
         """
         try:
             return replace(from_dict(cls.results[0], values), origin=origin, title=origin.title)
@@ -267,7 +267,7 @@ class Analysis:
 
 @contextmanager
 def _arithmetic(what: str) -> Iterator[None]:
-    """Raise UserError if arithmetic fails, as a log may contain numbers that no run produces."""
+    """Turn arithmetic errors into a UserError, because a damaged log may contain numbers that no run produces."""
     import numpy as np
 
     from idealgas.jit import INTERPRETED

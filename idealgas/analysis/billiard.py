@@ -1,7 +1,8 @@
 """Measure the mean path of discs between two wall hits.
 
-Theory is exact for any shape of the box if the paths reach every point in every direction: π times the area that the
-centres can reach, divided by its perimeter (Chernov, J. Stat. Phys. 88, 1 (1997), after Santaló).
+If the paths pass through every point in every direction with equal probability, the mean path length is exactly π times
+the area that the centres of the discs can reach, divided by the perimeter of this area, whatever the shape of the box
+(Chernov, J. Stat. Phys. 88, 1 (1997), after Santaló).
 """
 
 import math
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
 
 UNMIXED = (
     "Discs hardly ever collide. Theory then requires walls that mix all paths, such as those of Sinai's billiard or of "
-    "a stadium; in a circle or a rectangle the mean differs from path to path."
+    "a stadium; in a circle or a rectangle, the mean depends on the path."
 )
-"""Caveat for discs that only walls deflect."""
+"""Caveat for discs that are deflected almost only by walls."""
 
 SPARSE = 1e-6
-"""Packing fraction up to which other discs do not change any printed digit of the density at the walls."""
+"""Packing fraction below which the other discs have no visible effect on the density at the walls."""
 
 ROW = "mean path between wall hits (length)"
 
@@ -43,13 +44,13 @@ class Billiard(Result):
     """Paths of discs between wall hits.
 
     Attributes:
-        window: window of time that was used.
+        window: time window that was analysed.
         hits: number of wall hits in the window.
-        path: mean path of a disc between two of its wall hits, length.
-        reach: area and perimeter that the centres of the discs can reach; None without theory.
+        path: mean path length of a disc between successive wall hits.
+        reach: area that the centres of the discs can reach, and its perimeter; None without theory.
         reason: why theory is not available; None if it is.
         time: (B,), middles of the blocks of time.
-        series: (B,), path flown up to each block over the number of wall hits up to it, length.
+        series: (B,), mean path length up to the end of each block.
     """
 
     window: Window
@@ -65,7 +66,7 @@ class Billiard(Result):
         return check_theory([("path", None, self.path)], self.reason)
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the mean path, and of the area and perimeter from which its theory follows."""
+        """Return the table of the mean path and that of the area and perimeter from which it is predicted."""
         notes = [str(self.window), f"{self.hits:,} wall hits"]
         if self.reason:
             notes.append(f"Theory is not available: {self.reason}.")
@@ -79,12 +80,12 @@ class Billiard(Result):
         return tables
 
     def summary(self) -> str:
-        """Return the mean path between wall hits and whether it agrees with π A/P."""
+        """Return the mean path between wall hits, and whether it agrees with π A/P."""
         verdict = agreement([("path", self.path)], "π A/P", self.reason)
         return f"The mean path between two wall hits is {format_estimate(self.path)}; {verdict}."
 
     def figure(self) -> "Figure":
-        """Draw the mean path up to each time, with theory."""
+        """Draw the running mean of the path length, with the theoretical value."""
         from idealgas.presentation.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
@@ -111,12 +112,12 @@ class BilliardAnalysis(Analysis):
     ) -> Billiard:
         """Measure the mean path of discs between two wall hits, and compare it with π A/P.
 
-        A is the area that the centres of the discs can reach and P its perimeter. Collisions with other discs do not
-        end a path. Theory is available for discs of one radius that fly straight between walls at rest; its relative
-        error is 2φ, which allows for the density at the walls.
+        A is the area that the centres of the discs can reach, and P is its perimeter. Collisions with other discs do
+        not end a path. Theory is available for discs of equal radius that fly straight between walls at rest. In a gas
+        of several discs, its relative error of 2φ allows for the density at the walls.
 
         Raises:
-            UserError: if no disc hits a wall.
+            UserError: if no disc hits a wall in the window.
         """
         log.require_events()
         moments = Moments(log.gravity)
@@ -143,14 +144,14 @@ class BilliardAnalysis(Analysis):
 
 
 def _theory(log: Log) -> tuple[Theory, Reach]:
-    """Return the mean path π A/P between wall hits, length, with the area and the perimeter.
+    """Return the theoretical mean path length π A/P between wall hits, with the area A and the perimeter P.
 
     Raises:
         NoTheoryError: if theory does not apply.
     """
     properties, gas = log.scene.properties, log.discs
     if np.ptp(gas.radius) > 0:
-        raise NoTheoryError("the discs have several radii")
+        raise NoTheoryError("the discs differ in radius")
     if not (properties.straight_flight and properties.fixed_walls):
         raise NoTheoryError("gravity acts on the discs, or walls move")
     if properties.dissipative or properties.spins or properties.varies or len(properties.temperatures) > 1:

@@ -1,7 +1,7 @@
-"""Caveats of results: conditions of a number that are not met.
+"""Caveats of results: sentences about conditions that are not met.
 
-An analysis tests its own conditions and puts one sentence per unmet condition into its result (`Result`). This module
-contains the caveats that all analyses share, and those of several logs together.
+Each analysis tests its own conditions and adds one sentence per unmet condition to its `Result`. This module contains
+the caveats that all analyses share, and those that concern several logs together.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,41 +21,41 @@ from idealgas.theory import conserved, time_steps
 Sample = TypeVar("Sample", bound=Any)
 
 MOST = 6
-"""Largest number of caveats of single logs that are kept if many logs are combined."""
+"""Maximum number of caveats from single logs that are kept when logs are combined."""
 
 NAMED = 3
-"""Largest number of logs that one sentence lists."""
+"""Maximum number of logs or seeds that are listed in full."""
 
 WIDE, WIDE_PERIODIC = 20.0, 5.0
-"""Width of a wide box between walls, which occupy a twentieth of it, and of a wide periodic box, in diameters."""
+"""Smallest width in diameters of a box that counts as wide: between walls, and with periodic sides."""
 
 
 def log_caveats(log: Log) -> tuple[str, ...]:
-    """Return the caveats of every time average of a log: those of its gas and of its simulation method."""
+    """Return the caveats for time averages over a log that are due to its gas and its simulation method."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
 
 
 def path_caveats(log: Log, window: Window) -> tuple[str, ...]:
-    """Return a caveat if discs hardly collide with each other, so that only walls mix their paths."""
+    """Return a caveat if the discs of an isolated gas hardly collide, so that only walls mix their paths."""
     times, collisions = log.observables["disc_collisions"]
     among = np.diff(np.interp((window.start, window.end), times, collisions))
     if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
         return ()
     return (
         f"Discs hardly collide with each other ({each:.2g} times each in the window): each disc keeps its energy, "
-        "and averages are over its path between walls. Standard errors are too small if paths stay alike for long.",
+        "and only walls mix its path. Standard errors are too small if paths remain correlated for long.",
     )
 
 
 def window_caveats(window: Window) -> tuple[str, ...]:
-    """Return a caveat if the window is too short for the slowest exchange in its gas."""
+    """Return a caveat if the window is too short compared with the slowest relaxation process of the gas."""
     time, process = window.slowest
     if window.duration >= INDEPENDENT * time:
         return ()
     return (
         f"This gas relaxes slowly: {process} in t = {time:.2g}, and the window is only {window.duration / time:.2g} "
-        "times as long. Standard errors may be up to 3 times too small; they are right if the window is "
-        f"{INDEPENDENT:g} times as long.",
+        "times as long. Standard errors may be up to 3 times too small; they are reliable if the window is "
+        f"{INDEPENDENT:g} times as long as this time.",
     )
 
 
@@ -63,9 +63,9 @@ def origin_of(scene: Scene, path: str, label: str = "") -> Origin:
     """Return the origin of a run of a scene.
 
     Args:
-        scene: the scene.
-        path: path of its log, or another name for it.
-        label: name of the run among several; empty for its path.
+        scene: scene of the run.
+        path: path of the log, or another name for the run.
+        label: name of the run among several; if empty, `path` is used.
     """
     seed = scene.scene.seed if draws_random_numbers(scene) else None
     return Origin(
@@ -82,7 +82,7 @@ def origin_of(scene: Scene, path: str, label: str = "") -> Origin:
 
 
 def combined_title(results: Sequence[Result]) -> str:
-    """Return the title of the figure of one or several runs: their titles, or their number."""
+    """Return the title of a figure of one or more runs: their titles, or their number if there are too many titles."""
     titles = list(dict.fromkeys(r.title for r in results))
     if len(titles) > NAMED:
         return f"{len(results)} runs"
@@ -91,7 +91,7 @@ def combined_title(results: Sequence[Result]) -> str:
 
 
 def combined_caveats(results: Sequence[Result]) -> tuple[str, ...]:
-    """Return the caveats of single logs, each once, with the paths of the logs that it concerns; at most MOST."""
+    """Return each caveat of the single results once, with the paths of the logs it applies to; at most MOST caveats."""
     if len(results) == 1:
         return results[0].caveats
     whose: dict[str, list[str]] = {}
@@ -100,12 +100,12 @@ def combined_caveats(results: Sequence[Result]) -> tuple[str, ...]:
             whose.setdefault(sentence, []).extend([result.origin.path] if result.origin else [])
     sentences = [f"{named(paths)}: {sentence}" if paths else sentence for sentence, paths in whose.items()]
     if len(sentences) > MOST:
-        sentences[MOST:] = [f"{len(sentences) - MOST} more caveats are reported with the single logs."]
+        sentences[MOST:] = [f"{len(sentences) - MOST} more caveats are listed with the individual logs."]
     return tuple(sentences)
 
 
 def averaging_caveats(results: Sequence[Result]) -> tuple[str, ...]:
-    """Return caveats on the independence of runs that are averaged.
+    """Return caveats about runs that are averaged but may not be independent.
 
     Raises:
         UserError: if a run is given twice: the same log, a copy of it, or another log of the same scene and seed.
@@ -120,21 +120,21 @@ def averaging_caveats(results: Sequence[Result]) -> tuple[str, ...]:
         if origin.seed is not None:
             seeds.setdefault(origin.seed, []).append(origin.path)
     return tuple(
-        f"Runs with the same seed ({seed}) may start alike, and their errors are then not independent: {named(paths)}. "
-        "Give each run a different seed."
+        f"Runs with the same seed ({seed}) may start from the same state; their errors are then not independent: "
+        f"{named(paths)}. Give each run a different seed."
         for seed, paths in seeds.items()
         if len(paths) > 1
     )
 
 
 def must_be_one_gas(results: Sequence[Result], message: str = "different gases") -> None:
-    """Raise UserError, with a message that starts with `message`, if results are of different gases."""
+    """Raise UserError with a message that starts with `message` if the results belong to different gases."""
     if len(gases := {r.origin.gas: r.origin.words for r in results if r.origin is not None}) > 1:
         raise UserError(f"{message} ({'; '.join(gases.values())}): analyse them separately")
 
 
 def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
-    """Return the kind of gas in words (empty if unknown) and the runs of each state, in order of φ."""
+    """Group samples by state, in order of φ; return the kind of gas in words (empty if unknown) and samples of each."""
     states: dict[tuple[float, int, str], list[Sample]] = {}
     for sample in samples:
         kind = sample.origin.kind if sample.origin else ""
@@ -143,12 +143,12 @@ def by_state(samples: Iterable[Sample]) -> list[tuple[str, list[Sample]]]:
 
 
 def seeds_of(runs: Iterable[Result]) -> tuple[int, ...]:
-    """Return the seeds of runs in increasing order, each once; runs that draw no random numbers have none."""
+    """Return the distinct seeds of runs in increasing order; runs that draw no random numbers have no seed."""
     return tuple(sorted({run.origin.seed for run in runs if run.origin and run.origin.seed is not None}))
 
 
 def name_of_state(packing_fraction: float, number: int, kind: str, seeds: Sequence[int]) -> str:
-    """Return the name of a state of a gas: φ, N, the seeds of its runs and the kind of gas."""
+    """Return a name for a state of a gas, composed of φ, N, the seeds of the runs and the kind of gas."""
     last = f" to {seeds[-1]}" if len(seeds) > NAMED else ""
     listed = f"{seeds[0]}{last}" if last else ", ".join(map(str, seeds))
     of_seeds = [f"seed{'s' * (len(seeds) > 1)} {listed}"] if seeds else []
@@ -162,15 +162,15 @@ def named(paths: Sequence[str]) -> str:
 
 
 def narrow(log: Log) -> tuple[str, ...]:
-    """Return a caveat if the box is too narrow for theory of a wide one; none for discs without positions."""
+    """Return a caveat if the box is too narrow for theories of a wide box; none if the discs have no positions."""
     if not log.has_positions:
         return ()
     diameter = 2 * float(log.discs.radius.max())
     for size, periodic in zip(log.box, log.periodic, strict=True):
         if size < (WIDE_PERIODIC if periodic else WIDE) * diameter:
-            between = "to its own image" if periodic else "between walls"
+            between = "with periodic sides" if periodic else "between walls"
             return (
                 f"The box is {size / diameter:.3g} diameters wide {between}; theory assumes a wide box "
-                f"({WIDE:g} diameters between walls, {WIDE_PERIODIC:g} if periodic).",
+                f"({WIDE:g} diameters between walls, {WIDE_PERIODIC:g} with periodic sides).",
             )
     return ()
