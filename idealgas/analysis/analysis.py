@@ -141,7 +141,7 @@ class Analysis:
     """Whether the analysis applies to species whose discs differ in radius or mass."""
 
     supports_shear: ClassVar[bool] = False
-    """Whether the analysis subtracts the mean flow between sheared sides and follows the images that shear displaces."""
+    """Whether the analysis subtracts the mean flow of a sheared gas and follows the images that the shear displaces."""
 
     supports_escapes: ClassVar[bool] = False
     """Whether the analysis applies to a gas from which discs escape."""

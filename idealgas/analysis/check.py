@@ -1,7 +1,8 @@
-"""Agreement of measurement and theory: one rule for headlines, checks, JSON and report pages.
+"""Agreement between measurement and theory: one rule for headlines, checks, JSON and reports.
 
-Measurement and theory differ if a difference is larger than Student's t allows, given the number of rows. They agree if
-no row differs, provided that the samples could have revealed a difference; otherwise there are too few samples.
+A measurement differs from theory if their difference exceeds the limit from Student's t, which takes the number of
+compared rows into account. Otherwise they agree if there are enough samples to reveal a difference; if there are not,
+no verdict is given.
 """
 
 import math
@@ -14,34 +15,34 @@ from idealgas.presentation.tables import Cell, Number, Table
 from idealgas.statistics.estimates import Estimate
 
 FALSE_ALARM = 1e-3
-"""Probability that a correct gas differs from theory in any row of a comparison, whatever the number of rows."""
+"""Probability that at least one row of a comparison differs from theory in a correct gas, however many there are."""
 
 POWER = 0.95
-"""Probability that a comparison finds the smallest error that it reports as detectable."""
+"""Probability with which a comparison reveals the smallest error that it reports as detectable."""
 
 FEWEST = 5.0
-"""Smallest number of independent samples of an estimate that can agree with theory."""
+"""Smallest number of independent samples for which an estimate can be said to agree with theory."""
 
 FEWEST_OF_LAW = 30.0
-"""Smallest number of independent samples that can agree with a law; one in twenty then has a distance above 0.24."""
+"""Smallest number of independent samples that can agree with a law; 5 % of such sets deviate by more than 0.24."""
 
 ROUGH = 20.0
-"""Number of samples below which it is printed with a deviation, as Student's t then differs from a normal law."""
+"""Number of samples below which deviations are printed with it, as Student's t then differs from a normal law."""
 
 NAMED = 3
-"""Largest number of rows with too few samples that a sentence lists."""
+"""Largest number of rows with too few samples that are listed by name."""
 
 VERDICTS = {True: "agrees", False: "differs", None: "too few samples"}
 
 
 class PValue(NamedTuple):
-    """Probability that samples of a law deviate from it by at least as much, and the number of independent samples."""
+    """p-value of a test of samples against a law, and the number of independent samples."""
 
     value: float
     samples: float
 
     def agrees(self, rows: int) -> bool | None:
-        """Return whether the samples agree with the law, in a comparison of `rows` rows; None if they are too few."""
+        """Return whether the samples agree with the law in a comparison of `rows` rows; None with too few samples."""
         if self.value < FALSE_ALARM / rows:
             return False
         return True if self.samples >= FEWEST_OF_LAW else None
@@ -49,13 +50,13 @@ class PValue(NamedTuple):
 
 @dataclass(frozen=True)
 class Comparison:
-    """One row of a comparison: a measured quantity with its theory, all in the unit of the quantity.
+    """One row of a comparison: a measured and a theoretical value, in the unit of the quantity.
 
     Attributes:
         name: name of the quantity.
         source: name of the theory.
-        estimate: measurement and theory.
-        rows: number of rows that are compared together.
+        estimate: measured and theoretical values.
+        rows: number of rows in the whole comparison.
     """
 
     name: str
@@ -66,17 +67,18 @@ class Comparison:
     @property
     @reported
     def difference(self) -> float:
-        """Measurement minus theory."""
+        """Measured value minus theoretical value."""
         assert self.estimate.theory is not None
         return self.estimate.value - self.estimate.theory
 
     @property
     @reported
     def allowed(self) -> float:
-        """Largest difference without an alarm; a correct gas exceeds it with a probability of FALSE_ALARM / rows.
+        """Largest allowed difference, which a correct gas exceeds with a probability of FALSE_ALARM / rows.
 
-        It is the root of the sum of two squares: by Student's t for the standard error, and by the normal distribution
-        for the error of theory. It is exact for either error alone, and exceeded less often for both.
+        It is the root of the sum of the squares of two limits: that of Student's t for the standard error, and that of
+        the normal distribution for the error of theory. The probability is exact if only one of the two errors is
+        present, and smaller if both are.
         """
         from scipy import special
 
@@ -85,9 +87,10 @@ class Comparison:
     @property
     @reported
     def detectable(self) -> float:
-        """Smallest error of the measurement that the comparison finds with a probability of POWER.
+        """Smallest error of the measurement that the comparison reveals with a probability of POWER.
 
-        It is from the normal approximation of noncentral t: Johnson & Welch, Biometrika 31, 362 (1940).
+        It follows from the normal approximation to the noncentral t distribution (Johnson & Welch, Biometrika 31, 362
+        (1940)).
         """
         return self.allowed + self._margin(self.estimate.theory_error)
 
@@ -96,8 +99,8 @@ class Comparison:
     def agrees(self) -> bool | None:
         """Whether measurement and theory agree; None if there are too few samples for a verdict.
 
-        There are too few if there is no error bar, if there are fewer than FEWEST samples, or if they would not reveal
-        an error as large as a nonzero value of the theory.
+        There are too few samples if there is no error bar, if there are fewer than FEWEST independent samples, or if
+        the comparison could not reveal an error as large as the theoretical value, unless this value is zero.
         """
         deviation, theory = self.estimate.deviation, self.estimate.theory
         if deviation is None or not math.isfinite(deviation):
@@ -122,7 +125,7 @@ class Comparison:
         return float(special.stdtrit(self._freedom, 1 - self._false_alarm / 2)) * self.estimate.standard_error
 
     def _margin(self, theory_error: float) -> float:
-        """Return the part of a difference beyond the allowed one that chance hides with a probability of 1 - POWER."""
+        """Return by how much an error must exceed the allowed difference to be revealed with a probability of POWER."""
         from scipy import special
 
         of_allowed = self._by_student / math.sqrt(2 * self._freedom)
@@ -135,7 +138,7 @@ class CheckResult:
 
     Attributes:
         compared: compared rows.
-        reason: why theory has no value, as part of a sentence; None if it has one.
+        reason: why theory is not available, as part of a sentence; None if it is.
     """
 
     compared: tuple[Comparison, ...] = ()
@@ -144,7 +147,7 @@ class CheckResult:
     @property
     @reported
     def agrees(self) -> bool | None:
-        """Whether measurement and theory agree in all rows with enough samples; None without such rows."""
+        """Whether measurement and theory agree in all rows with enough samples; None if there are no such rows."""
         verdicts = {row.agrees for row in self.compared}
         return False if False in verdicts else True if True in verdicts else None
 
@@ -153,7 +156,7 @@ class CheckResult:
         return as_dict(self)
 
     def tables(self) -> list[Table]:
-        """Return the table of the comparisons; none without theory."""
+        """Return the table of comparisons; an empty list without theory."""
         heads = ("", "compared with", "difference", "allowed ±", "detectable", "verdict")
         rows: list[Sequence[Cell]] = []
         for row in self.compared:
@@ -163,7 +166,7 @@ class CheckResult:
         return [Table("Check: difference between measurement and theory", heads, rows)] if rows else []
 
     def __str__(self) -> str:
-        """Return the result in sentences."""
+        """Return the verdict in sentences."""
         if not self.compared:
             return f"Theory is not available: {self.reason}."
         failed = [row.name for row in self.compared if row.agrees is False]
@@ -173,16 +176,16 @@ class CheckResult:
             verdict = "Measurement and theory " + (f"do not agree in {'; '.join(failed)}" if failed else "agree")
         return (
             f"{verdict}. A correct gas fails this check with a probability of {FALSE_ALARM:g}; an error of the "
-            f"detectable size is found with {POWER:.0%}."
+            f"detectable size is found with a probability of {POWER:.0%}."
         )
 
 
 def check_theory(rows: Iterable[tuple[str, str | None, Estimate]], reason: str | None = None) -> CheckResult:
-    """Check that every estimate with a theory agrees with it.
+    """Compare each estimate that has a theoretical value with this value.
 
     Args:
-        rows: name, name of the theory, and value of each estimate.
-        reason: why theory has no value, for the case that no estimate has a theory.
+        rows: for each estimate, its name, the name of the theory (None for "theory"), and the estimate.
+        reason: why theory is not available, as part of a sentence; used if no estimate has a theoretical value.
     """
     known = [(name, source or "theory", value) for name, source, value in rows if value.theory is not None]
     compared = tuple(Comparison(name, source, value, len(known)) for name, source, value in known)
@@ -192,12 +195,12 @@ def check_theory(rows: Iterable[tuple[str, str | None, Estimate]], reason: str |
 def agreement(
     results: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", reason: str | None = None
 ) -> str:
-    """Return whether estimates agree with theory, by the rule of checks, as the predicate of a sentence on them.
+    """Return whether estimates agree with theory, by the same rule as checks, as the predicate of a sentence.
 
     Args:
-        results: estimates, or tests of laws, by name; if there are several, the one that deviates most is named.
+        results: names with estimates or tests of laws; if there are several, the one that deviates most is named.
         theory: name of the theory.
-        reason: why theory has no value, as part of a sentence.
+        reason: why theory is not available, as part of a sentence.
     """
     known = [(name, item) for name, item in results if isinstance(item, PValue) or item.theory is not None]
     if not known:
@@ -231,8 +234,12 @@ def agreement(
 class _Row(NamedTuple):
     """Verdict on a row.
 
-    name: name of the row. agrees: whether it agrees. size: its deviation. shown: the deviation in words. value: value
-    of theory.
+    Attributes:
+        name: name of the row.
+        agrees: whether measurement and theory agree; None if there are too few samples.
+        size: absolute deviation, in standard errors.
+        shown: the deviation as printed; empty without an error bar.
+        value: the theoretical value as printed; empty for the test of a law.
     """
 
     name: str

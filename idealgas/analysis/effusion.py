@@ -1,4 +1,4 @@
-"""Measure the flow through a gate that opens, and compare it with n⟨v⟩/π.
+"""Measure the flow through a gate after it opens, and compare it with n⟨v⟩/π.
 
 DIR is the folder of a sweep with the analysis "effusion". Runs that differ only in their seeds are averaged.
 """
@@ -31,38 +31,41 @@ if TYPE_CHECKING:
 INSTANTS = 256
 
 LAW_OFF, LAW_OFF_PER_PATH = 0.0125, 0.245
-"""Relative error of n⟨v⟩/π for a slit of width w at mean free path λ: LAW_OFF + LAW_OFF_PER_PATH w/λ.
+"""Coefficients of the relative error of n⟨v⟩/π for a slit of width w: LAW_OFF + LAW_OFF_PER_PATH w/λ.
 
-A straight line through measured fluxes, which are larger by 2.0, 3.9 and 6.6 % at w/λ = 0.03, 0.11 and 0.22.
+λ is the mean free path. The line was fitted to measured fluxes, which exceeded n⟨v⟩/π by 2.0, 3.9 and 6.6 % at w/λ =
+0.03, 0.11 and 0.22.
 """
 
 CROWDING = 3.2
-"""Relative error of n⟨v⟩/π over the packing fraction φ of the chamber, as discs crowd in a slit.
+"""Relative error of n⟨v⟩/π, divided by the packing fraction φ of the chamber, due to the higher density in the slit.
 
-To lowest order the density in a narrow slit is n exp(3.2 φ), as the walls cover a part of the area that a disc excludes
-for others. The flux was larger by 14 % in twelve runs at φ = 0.1, and by 120 % in twelve runs at φ = 0.3.
+To lowest order in φ, the density in a narrow slit is n exp(3.2 φ), because the walls cover part of the area from which
+a disc excludes other discs. In twelve runs each, the flux was larger by 14 % at φ = 0.1 and by 120 % at φ = 0.3.
 """
 
 DENSEST = 0.03
-"""Largest packing fraction of the chamber for which n⟨v⟩/π is given."""
+"""Largest packing fraction of the chamber for which theory is available."""
 
 TINY = 1e-12
 
 
 @dataclass(frozen=True)
 class Effusion(RunResult):
-    """Flow of discs between two chambers through a gate after its opening.
+    """Flow of discs between two chambers through a gate after it opens.
 
     Attributes:
-        density: number density if all discs were in the chamber that has more discs at first, 1/length².
-        temperature: temperature, energy.
+        density: number density that the chamber with more discs at the start would have if it contained all discs,
+            1/length².
+        temperature: temperature of the gas, energy.
         time: (INSTANTS,), times.
         beyond: (INSTANTS,), number of discs in the other chamber.
-        expected: (INSTANTS,), this number by theory; None if `speed` has no theory.
-        speed: number of discs per time and open length, divided by the difference of the densities, length/time. Each
-            density is multiplied by the mean speed in its chamber over that of the gas. Its theory is ⟨v⟩/π, or None
-            for a slit wider than a mean free path and for a chamber denser than DENSEST. Its error is that of a Poisson
-            number of passages in both directions.
+        expected: (INSTANTS,), theoretical number of discs in the other chamber; None if `speed` has no theory.
+        speed: flux over density: net number of discs per time and open length, divided by the difference between the
+            densities, length/time. Each density is multiplied by the mean speed in its chamber, relative to the
+            equilibrium mean speed ⟨v⟩ of the gas. The theoretical value is ⟨v⟩/π; it is None if the slit is wider than
+            a mean free path or the chamber is denser than DENSEST. The standard error assumes that the numbers of
+            passages in both directions follow Poisson distributions.
     """
 
     density: float
@@ -75,26 +78,28 @@ class Effusion(RunResult):
 
 @dataclass(frozen=True)
 class Effusions(Result):
-    """Flow through a slit in groups of runs that differ only in their seeds.
+    """Flow through a slit, averaged over groups of runs that differ only in their seeds.
 
-    groups: runs of each group, by its name. together: mean flux over density of each group, length/time.
+    Attributes:
+        groups: runs of each group, by name of the group.
+        together: mean flux over density of each group, length/time.
     """
 
     groups: Annotated[dict[str, tuple[Effusion, ...]], OMITTED]
     together: Annotated[dict[str, Estimate], INLINE]
 
     def plain_tables(self) -> list[Table]:
-        """Return the table of the flux over density of each gas, length/time."""
+        """Return the table of the flux over density of each group, length/time."""
         return [estimates("Flux over density (length/time), theory ⟨v⟩/π", self.together.items())]
 
     def summary(self) -> str:
-        """Return the flux over density of the first gas, and whether all fluxes agree with kinetic theory."""
+        """Return the flux over density of the first group, and whether all fluxes agree with kinetic theory."""
         first, *_ = self.together.values()
         verdict = agreement(self.together.items(), "⟨v⟩/π of kinetic theory")
-        return f"The flux per density is {format_estimate(first)}; {verdict}."
+        return f"The flux over density is {format_estimate(first)}; {verdict}."
 
     def figure(self) -> "Figure":
-        """Draw the number of discs beyond the slit against time, and the flux of each gas against n⟨v⟩/π."""
+        """Draw the number of discs beyond the slit against time, and the flux of each group against n⟨v⟩/π."""
         from idealgas.presentation.style import GREY, curve_style, panels
 
         groups, together = self.groups, self.together
@@ -132,7 +137,7 @@ class EffusionAnalysis(Analysis):
     headline = "speed"
     supports_polydispersity = False
     results = (Effusion, Effusions)
-    sections = (Section("Effusion", "Fraction of the discs beyond the gate against time, and the flux beside n⟨v⟩/π"),)
+    sections = (Section("Effusion", "Discs beyond the slit against time, and the measured flux against n⟨v⟩/π"),)
     averages = True
     start = "the opening of the gate"
     reads = "frames"
@@ -141,15 +146,15 @@ class EffusionAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Effusion:
-        """Measure how fast discs pass through a slit that opens between two chambers, and compare it with n⟨v⟩/π.
+        """Measure the flux of discs through a slit that opens between two chambers, and compare it with n⟨v⟩/π.
 
-        From a gas of number density n and mean speed ⟨v⟩, n⟨v⟩/π discs leave per time and open length of the slit. This
-        is the flux of kinetic theory through a slit much narrower than the mean free path. More discs pass through a
-        wider slit. Theory is not available if the slit is wider than a mean free path, or for a dense chamber.
+        Kinetic theory predicts that n⟨v⟩/π discs leave a gas of number density n and mean speed ⟨v⟩ per time and open
+        length of the slit, if the slit is much narrower than the mean free path. More discs pass through a wider slit.
+        Theory is not available if the slit is wider than a mean free path or if the chamber is dense.
 
         Raises:
-            UserError: unless the log has events, and its scene has one species and one gate along an axis that is lower
-                than the box; or if no net flow is expected.
+            UserError: if the log has no events, if the scene has several species, if it does not have exactly one gate
+                that forms a slit in a wall along an axis, or if no net flow is expected.
         """
         discs, equilibrium = composition(log.discs), ensemble(log)
         gate = _slit(log)
@@ -187,16 +192,16 @@ class EffusionAnalysis(Analysis):
             rate = expected * slit
             law = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
         if gate.others:
-            no_law += (f"The law assumes empty chambers; these contain {', '.join(gate.others)}.",)
+            no_law += (f"Theory assumes chambers without other walls; these contain {', '.join(gate.others)}.",)
         density = number / inner
         return Effusion(density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=no_law)
 
     @staticmethod
     def combine(results: Sequence[Effusion]) -> Effusions:
-        """Combine runs with the same label into groups and average their flux.
+        """Group runs with the same label and average the flux in each group.
 
         Raises:
-            UserError: if runs with one label are of different gases.
+            UserError: if runs with the same label belong to different gases.
         """
         groups: dict[str, tuple[Effusion, ...]] = {}
         for run in results:
@@ -208,9 +213,11 @@ class EffusionAnalysis(Analysis):
 
 
 def _no_law(paths: float, phi: float) -> tuple[str, ...]:
-    """Return why ⟨v⟩/π does not hold, for the width of a slit in mean free paths and a packing fraction phi.
+    """Return a caveat that ⟨v⟩/π does not apply; empty if it does.
 
-    The result is empty if it holds.
+    Args:
+        paths: width of the slit in mean free paths.
+        phi: packing fraction of the chamber.
     """
     if paths > 1:
         return (
@@ -223,15 +230,20 @@ def _no_law(paths: float, phi: float) -> tuple[str, ...]:
 
 
 def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
-    """Return the fraction of all discs beyond the slit by theory, (INSTANTS,).
+    """Return the theoretical fraction of all discs that are beyond the slit, (INSTANTS,).
 
-    Discs that pass carry the mean energy 3T/2 instead of T, so that one chamber becomes colder and the other hotter.
-    leave and come are the rates in the two directions at equal temperature, 1/time.
+    The discs that pass carry a mean energy of 3T/2 instead of T, so that one chamber cools and the other heats up.
+
+    Args:
+        time: (INSTANTS,), times.
+        at_first: fraction of the discs beyond the slit at the first time.
+        leave: rate at which a disc passes from the first chamber to the other at equal temperatures, 1/time.
+        come: rate at which a disc passes back, 1/time.
     """
     from scipy.integrate import solve_ivp  # its import takes longer than most measurements
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Return the rates of the shares: a side with shares n and e loses √(ne) discs and 3/2 √(e³/n) energy."""
+        """Return the rates of change: from discs n and energy e, √(ne) discs and 3/2 √(e³/n) of energy are lost."""
         (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
         return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])
@@ -243,10 +255,15 @@ def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) 
 
 
 class Slit(NamedTuple):
-    """Slit between two chambers: a gate in a wall from side to side.
+    """Slit between two chambers: a gate in a wall that divides the box.
 
-    opens, closes: times. across: axis normal to the wall (0 or 1). place: coordinate of the wall on this axis, length.
-    width: width of the slit, length. others: names of the walls in the chambers besides the one with the slit.
+    Attributes:
+        opens: time at which the gate opens.
+        closes: time at which the gate closes.
+        across: axis normal to the wall (0 or 1).
+        place: coordinate of the wall on this axis, length.
+        width: width of the slit, length.
+        others: names of the other walls in the chambers.
     """
 
     opens: float
@@ -258,7 +275,7 @@ class Slit(NamedTuple):
 
 
 def _slit(log: Log) -> Slit:
-    """Return the slit of a log; raise UserError unless it has events, one species, and one gate in a straight wall."""
+    """Return the slit of a log; raise UserError unless it has events, one species and one gate that forms a slit."""
     inside = walls_inside(log.scene)
     gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
     if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
@@ -275,7 +292,7 @@ def _slit(log: Log) -> Slit:
 
 
 def _obstacle(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
-    """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is one."""
+    """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is a slit."""
     if gate.start[across] != gate.end[across] or not gate.is_straight:
         return "the gate is not along an axis"
     (low, high), radius, size = _reach(gate, across), float(log.discs.radius[0]), log.box[1 - across]
@@ -290,14 +307,14 @@ def _obstacle(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], acr
     for start, end in [*sorted([*beside, (low, high)]), (size, math.inf)]:
         gap, reached = max(gap, start - reached), max(reached, end)
     return (
-        f"the wall of the gate does not reach from side to side: beside the gate is a gap of {gap:.4g}"
+        f"the wall of the gate does not divide the box: there is a gap of {gap:.4g} beside the gate"
         if gap >= 2 * radius
         else ""
     )
 
 
 def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
-    """Return the walls in line with a gate while it is open, displaced by so little that no disc passes between."""
+    """Return the walls that are in line with an open gate, displaced by so little that no disc passes between them."""
     opens, closes = gate.absences[0][0], min(gate.absences[0][1], log.end_time)
     place, near = gate.start[across], log.discs.radius[0] / 2
     return [
@@ -311,13 +328,13 @@ def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
 
 
 def _reach(wall: NumberedWall, across: int) -> tuple[float, float]:
-    """Return the range of coordinates of a wall along the other axis, length."""
+    """Return the lowest and highest coordinate of a wall along the axis other than `across`, length."""
     ends = float(wall.start[1 - across]), float(wall.end[1 - across])
     return min(ends), max(ends)
 
 
 def _instants(log: Log, gate: Slit, start: float | None, end: float | None) -> np.ndarray:
-    """Return the instants (INSTANTS,) at which the open gate is sampled; raise UserError if there are none."""
+    """Return the times (INSTANTS,) at which the open gate is sampled; raise UserError if there are none."""
     if gate.opens >= log.end_time:
         raise UserError(f"{log.path}: the gate opens at t = {gate.opens:g}, but the log ends at {log.end_time:g}")
     first, last = span(log, start, end)

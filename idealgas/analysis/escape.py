@@ -1,7 +1,7 @@
-"""Measure how discs leave the gas through holes: the number left in time, and escapes per length of path.
+"""Measure how discs leave the gas through holes: the number left against time, and escapes per path length.
 
-Theory is the limit of small holes in an ergodic box: a disc of speed v leaves at the rate v ℓ/(π A) through holes of
-length ℓ in walls around an area A.
+In the limit of small holes in an ergodic box, theory predicts that a disc of speed v leaves at a rate of v ℓ/(π A)
+through holes of total length ℓ in the walls around an area A.
 """
 
 import math
@@ -28,32 +28,34 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INSTANTS = 257
-"""Number of instants of the series."""
+"""Number of times in the time series."""
 
 RARE, OFTEN = 0.1, 10.0
-"""Collisions of a disc per escape up to which speeds persist, and from which on the gas is in equilibrium."""
+"""Collisions per escape of a disc: up to RARE, discs keep their speeds; from OFTEN, the gas stays in equilibrium."""
 
 BILLIARD = (
     "Discs hardly ever collide. Theory then requires walls that lead every path to the hole, such as walls that bulge "
-    "inwards; those of a circle or a rectangle do not."
+    "inwards; the walls of a circle or a rectangle do not."
 )
-"""Caveat for discs that only walls deflect."""
+"""Caveat for discs that are deflected almost only by walls."""
 
 
 @dataclass(frozen=True)
 class Escape(Result):
-    """Escape of discs through the holes of one log.
+    """Escape of discs through the holes in one log.
 
     Attributes:
         discs: number of discs at the start of the window.
-        escaped: number of these discs that escaped.
+        escaped: number of these discs that escaped in the window.
         time: (INSTANTS,), times.
-        left: (INSTANTS,), number of discs in the gas.
-        expected: (INSTANTS,), mean of this number by theory; None without theory.
-        spread: (INSTANTS,), its standard deviation, including the error of theory; None without theory.
-        per_path: escapes per length of path, 1/length; None under gravity.
-        mean_time: time that discs spend in the gas per escape. If escapes do not depend on the time already spent, this
-            is the mean escape time, even if not all discs have left.
+        left: (INSTANTS,), number of discs that remain in the gas.
+        expected: (INSTANTS,), theoretical mean number of discs that remain; None without theory.
+        spread: (INSTANTS,), standard deviation of `left` about `expected`, including the error of theory; None without
+            theory.
+        per_path: escapes per path length, 1/length; None under gravity.
+        mean_time: total time that all discs spend in the gas, divided by the number of escapes, time. If the escape
+            rate does not depend on the time already spent in the gas, this is the mean escape time, even if some discs
+            have not left yet.
     """
 
     discs: int
@@ -66,7 +68,7 @@ class Escape(Result):
     mean_time: Estimate
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the rates and of the number of discs left."""
+        """Return the table of escape rates and that of the number of discs in the gas."""
         rows = {"escapes per path (1/length)": self.per_path, "mean escape time (time)": self.mean_time}
         rates = [(name, estimate) for name, estimate in rows.items() if estimate is not None]
         notes = [f"{self.escaped} of {self.discs} discs escaped"]
@@ -79,14 +81,14 @@ class Escape(Result):
         return [estimates("Escape", rates, notes), time_series("Number of discs in the gas", series)]
 
     def summary(self) -> str:
-        """Return the number of discs that escaped, and whether their rate agrees with theory."""
+        """Return the number of discs that escaped, and whether their escape rate agrees with theory."""
         estimate = self.per_path or self.mean_time
-        quantity = "escapes per length of path" if self.per_path else "time per escape"
+        quantity = "escapes per path length" if self.per_path else "time per escape"
         verdict = agreement([(quantity, estimate)])
         return f"{self.escaped} of {self.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
 
     def figure(self) -> "Figure":
-        """Draw the number of discs in the gas with its theory, on a logarithmic scale if less than a tenth is left."""
+        """Draw the measured and theoretical numbers of discs, on a logarithmic scale if less than a tenth remains."""
         from idealgas.presentation.style import COLOURS, panels
 
         figure, (ax,) = panels(1)
@@ -108,7 +110,7 @@ class EscapeAnalysis(Analysis):
     headline = "per_path"
     supports_escapes = True
     results = (Escape,)
-    sections = (Section("Escape", "Number of discs in the gas against time, beside theory"),)
+    sections = (Section("Escape", "Number of discs in the gas against time, with theory"),)
     start = "the log's start"
 
     @staticmethod
@@ -117,11 +119,12 @@ class EscapeAnalysis(Analysis):
     ) -> Escape:
         """Measure how fast discs leave the gas through absorbing walls.
 
-        Errors are those of a Poisson number of escapes. Theory is given for discs of one radius in a box with walls at
-        rest and without gravity; the length of the holes and the area are those for the centres of the discs.
+        The standard errors assume that the number of escapes follows a Poisson distribution. Theory is available for
+        discs of equal radius in a box without gravity and with walls at rest. The length of the holes and the area are
+        those that the centres of the discs can reach.
 
         Raises:
-            UserError: if no wall absorbs discs, or if the log has no events or no escapes in the window.
+            UserError: if no wall absorbs discs, if the log has no events, or if no disc escapes in the window.
         """
         if not log.escapes:
             raise NotApplicableError(f"{log.path}: escape requires a wall that absorbs discs, and this gas has none")
@@ -138,7 +141,7 @@ class EscapeAnalysis(Analysis):
             theory = _theory(log, spent / (last - first))
             expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
-            what = "Theory" if theory is None else "Theory of the number left"
+            what = "Theory" if theory is None else "Theory for the number of discs left"
             caveats = (f"{what} is not available: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
@@ -155,9 +158,9 @@ class EscapeAnalysis(Analysis):
 def _flights(
     log: Log, first: float, last: float, progress: ReadProgress | None
 ) -> tuple[np.ndarray, float, float, int]:
-    """Return the times of the escapes in order, the total time and path of all discs, and the number of collisions.
+    """Return the times of the escapes, and the total flight time, path length and number of collisions of all discs.
 
-    A collision of two discs is counted twice, once for each.
+    The times are in ascending order. A collision between two discs counts twice, once for each disc.
     """
     at, spent, path, collisions, done = [np.empty(0)], [0.0], [0.0], 0, 0
     rows = log.row_at(last, "right") - log.row_at(first, "right")
@@ -177,22 +180,23 @@ def _flights(
 
 
 def _theory(log: Log, number: float) -> Theory:
-    """Return the number of escapes per length of path, ℓ/(π A), 1/length.
+    """Return the theoretical number of escapes per path length, ℓ/(π A), 1/length.
 
-    The relative error is the sum of ℓ/P, where P is the whole perimeter that discs touch, as a hole depletes the gas in
-    front of it; 2φ for the density at the wall; the error for a slit of width ℓ in `effusion`, as discs stream out
-    together; and the uncertain part of ℓ around corners of absorbing and other walls.
+    The relative error is the sum of four terms: ℓ/P for the depletion of the gas in front of a hole, where P is the
+    whole perimeter that discs touch; 2φ for the density at the wall; the error for a slit of width ℓ in `effusion`, for
+    discs that stream out together; and the fraction of ℓ that is uncertain because it lies at corners between absorbing
+    and other walls.
 
     Args:
         log: log of the gas.
-        number: mean number of discs in the gas.
+        number: time average of the number of discs in the gas.
 
     Raises:
         NoTheoryError: if theory does not apply.
     """
     scene, gas, radius = log.scene, log.discs, float(log.discs.radius[0])
     if np.ptp(gas.radius) > 0:
-        raise NoTheoryError("discs have several radii")
+        raise NoTheoryError("the discs differ in radius")
     if not (scene.properties.straight_flight and scene.properties.fixed_walls):
         raise NoTheoryError("gravity acts on the discs, or walls move")
     if any(wall.absorbing and (wall.absences or wall.is_permeable) for wall in scene.walls):
@@ -212,10 +216,18 @@ def _theory(log: Log, number: float) -> Theory:
 def _expected(
     log: Log, speed: np.ndarray, rate: Theory, time: np.ndarray, collisions: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean and standard deviation of the number of discs left, (INSTANTS,), from speeds (N,) at time 0.
+    """Return the theoretical mean and standard deviation of the number of discs left, (INSTANTS,).
 
-    Discs that hardly ever collide keep their speeds. Discs of a gas in equilibrium leave at the rate of its mean speed.
-    Without heat from outside the gas cools, as each disc that leaves carries 3T/2 with it: then N ∝ (1 + t/4τ)⁻⁴.
+    Discs that hardly ever collide keep their speeds. In equilibrium, every disc leaves at the rate that follows from
+    the mean speed. If no heat is supplied, the gas cools because each disc that leaves carries an energy of 3T/2 on
+    average; the number of discs then decays as (1 + t/4τ)⁻⁴, where τ is the mean escape time at the start.
+
+    Args:
+        log: log of the gas.
+        speed: (N,), speeds of the discs at the start of the window, length/time.
+        rate: escapes per path length, 1/length.
+        time: (INSTANTS,), times since the start of the window.
+        collisions: number of disc collisions per escape, each counted for both discs.
 
     Raises:
         NoTheoryError: if theory does not apply.
@@ -223,10 +235,10 @@ def _expected(
     properties, mass, number = log.scene.properties, float(log.discs.mass[0]), len(speed)
     mixes, lossy = collisions >= OFTEN, properties.dissipative or properties.spins
     if RARE < collisions < OFTEN or len(properties.temperatures) > 1 or properties.varies:
-        raise NoTheoryError("discs neither keep their speeds nor come to equilibrium before they leave")
+        raise NoTheoryError("discs neither keep their speeds nor reach equilibrium before they leave")
     if mixes and (np.ptp(log.discs.mass) > 0 or lossy):
         raise NoTheoryError(
-            "while discs leave, the temperature is not known for mixtures, or with energy losses or spins"
+            "the temperature of the remaining gas is not known for mixtures, or with energy losses or spins"
         )
     if not mixes and (properties.temperatures or lossy):
         raise NoTheoryError("walls or a heat bath change the speeds of discs that hardly ever collide")

@@ -1,4 +1,4 @@
-"""Contents of a log: file, scene, discs and run, without reading its events."""
+"""Describe the contents of a log, without reading its events: file, scene, discs and run."""
 
 import os
 from typing import Any
@@ -58,9 +58,9 @@ def info(log: Log) -> dict[str, Any]:
 
 
 def _reference_speed(log: Log) -> dict[str, Any]:
-    """Return the reference speed at the start and at the end, length/time, and how often it was raised.
+    """Return the reference speed at the start and at the end, length/time, and how many times it was raised.
 
-    The result is empty if the log has no varying reference speed.
+    The result is empty if the log does not record the reference speed.
     """
     if "v_ref" not in log.observables:
         return {}

@@ -98,7 +98,7 @@ def test_speeds_that_walls_or_a_heat_bath_change():
     assert result.expected is None
     assert result.mean_time.theory is None
     reason = "walls or a heat bath change the speeds of discs that hardly ever collide"
-    assert f"Theory of the number left is not available: {reason}." in result.caveats
+    assert f"Theory for the number of discs left is not available: {reason}." in result.caveats
 
 
 @pytest.mark.usefixtures("uncompiled")
@@ -109,7 +109,7 @@ def test_what_has_no_theory():
     assert result.per_path.theory is None
     assert result.caveats == ("Theory is not available: a hole opens or closes, or lets discs pass.",)
     both = log_of(scene, "species.gas.radius={ values = [0.1, 0.2] }")
-    assert escape(both).caveats == ("Theory is not available: discs have several radii.",)
+    assert escape(both).caveats == ("Theory is not available: the discs differ in radius.",)
     raised(r"no disc leaves the gas between t = 0 and 0\.001", escape, both, end=0.001)
 
 

@@ -70,7 +70,7 @@ def test_windows_are_those_of_the_open_gate():
     raised("the gate is open only from t = 1 to 7", measured, closing, start=8.0)
     wide = SCENE.replace("[8, 4]", "[8, 0.05]").replace("[8, 6]", "[8, 9.95]")
     raised("the gate opens the box from side to side", measured, wide)
-    raised("beside the gate is a gap of 1", measured, SCENE.replace("to = [8, 4] }, ", "to = [8, 3] }, "))
+    raised("there is a gap of 1 beside the gate", measured, SCENE.replace("to = [8, 4] }, ", "to = [8, 3] }, "))
 
 
 def test_two_chambers_become_even():

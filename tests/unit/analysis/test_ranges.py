@@ -82,9 +82,9 @@ def test_a_caveat_is_said_where_it_holds(words, name, options, scene, other):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        (SLIT[2], "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]", "beside the gate is a gap of 3"),
-        ("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}", "beside the gate is a gap of 0.5"),
-        ("to=[4, 3]}", "to=[4, 3], closes_at=100}", "beside the gate is a gap of 3"),
+        (SLIT[2], "wall=[{from=[4, 3], to=[4, 5], opens_at=1.0}]", "there is a gap of 3 beside the gate"),
+        ("to=[4, 3]}", "to=[4, 2]}, {from=[4, 2.5], to=[4, 3]}", "there is a gap of 0.5 beside the gate"),
+        ("to=[4, 3]}", "to=[4, 3], closes_at=100}", "there is a gap of 3 beside the gate"),
         ("wall=[", "wall=[{from=[4, 4.5], to=[4, 3]}, ", "a wall stands in the gate"),
         (SLIT[2], WHOLE[1], "opens the box from side to side, so that the gas expands freely"),
     ],
