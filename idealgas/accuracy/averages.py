@@ -1,4 +1,4 @@
-"""Measure the averages of a scene in one case: collision rate, pressure, speed distribution, energy drift, overlap."""
+"""Measure averages of a scene in one case: collision rate, pressure, speed distribution, energy drift and overlap."""
 
 import math
 from collections.abc import Callable
@@ -20,15 +20,15 @@ from idealgas.statistics.estimates import Estimate
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages of a run over its equilibrium window; a quantity that does not apply is None.
+    """Averages over the equilibrium window of a run; a quantity that does not apply is None.
 
     Attributes:
-        rate: number of pair collisions of the gas per time.
-        z_pairs: Z = PA/NT from the virial of the pairs, with theory.
-        z_walls: Z = PA/NT from the virial of the walls, with theory.
-        distance: Kolmogorov-Smirnov distance between the speeds and their theoretical distribution.
+        rate: number of pair collisions in the gas per time.
+        z_pairs: Z = PA/NT from the virial of the pairs, with its theoretical value.
+        z_walls: Z = PA/NT from the virial of the walls, with its theoretical value.
+        distance: Kolmogorov-Smirnov distance between the distribution of speeds and the theoretical distribution.
         noise: value of this distance that is expected by chance.
-        drift: relative change of the energy.
+        drift: relative change in the energy.
         overlap: deepest overlap, relative to the sum of the two radii.
         window: start of the window, time.
     """
@@ -51,8 +51,11 @@ def measure_averages(
     Args:
         scene: the scene.
         path: path of the log, which is removed afterwards.
-        window: start of the window, time; None to detect equilibrium.
-        progress: function that is called with the fraction done.
+        window: start of the window, time; None to detect when equilibrium is reached.
+        progress: function that is called with the fraction of the work that is done.
+
+    Returns:
+        Averages, and the summary of the run.
     """
     summary = simulate(scene, path, force=True, on_progress=lambda p: progress(p.share))
     with open_log(path) as log:
@@ -66,10 +69,10 @@ def _averages(log: Log, summary: Summary, window: float | None) -> Averages:
     with suppress(UserError):
         speeds = HistogramAnalysis.measure(log, "speed", window).distributions
         worst = max(speeds, key=lambda distribution: distribution.tests[-1].distance)
-        distance, noise = worst.tests[-1].distance, 0.87 / math.sqrt(worst.samples)  # mean of Kolmogorov's distribution
+        distance, noise = worst.tests[-1].distance, 0.87 / math.sqrt(worst.samples)  # mean under Kolmogorov's law
     try:
         measured = pressure(log, window)
-    except UserError:  # the analysis does not apply to this gas, so only collisions are counted
+    except UserError:  # the analysis does not apply to this gas; its collisions are counted instead
         count = summary.disc_collisions
         rate = Estimate(count / summary.end_time, math.sqrt(count) / summary.end_time, count)
         return Averages(rate, None, None, distance, noise, summary.energy_drift, summary.deepest_overlap, None)

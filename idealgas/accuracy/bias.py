@@ -1,7 +1,7 @@
-"""The bias of a quantity caused by time steps, a dt + b dt².
+"""Bias a dt + b dt² of a quantity that is caused by time steps.
 
-Contacts are detected half a step late on average, which gives the first term. The second term arises because fast pairs
-pass through each other.
+The first term arises because contacts are detected half a step late on average. The second term includes the pairs that
+pass through each other because no step ends while they overlap and still approach.
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 from idealgas.statistics.estimates import Estimate
 
 LARGEST = 0.1  # largest bias that is included in a fit
-FEWEST = 3  # smallest number of time steps to which a law is fitted
+FEWEST = 3  # smallest number of time steps for a fit
 CLEAR = 3.0  # number of standard errors above which a bias is significant
 
 
@@ -31,13 +31,16 @@ class BiasLaw(NamedTuple):
     error: float
 
     def step(self, target: float) -> float:
-        """Return the smallest time step at which the bias has the magnitude `target`."""
+        """Return the smallest time step at which the magnitude of the bias is `target`."""
         roots = np.concatenate([np.roots([self.second, self.first, sign * target]) for sign in (-1, 1)])
         return float(min(root.real for root in roots if abs(root.imag) < 1e-9 * abs(root) and root.real > 0))
 
 
 def bias_law(dt: np.ndarray, biases: Sequence[Estimate]) -> BiasLaw | None:
-    """Fit the law to independent biases up to LARGEST at time steps (n,); None if they are few or not significant."""
+    """Fit the bias law to independent biases at time steps (n,).
+
+    Biases above LARGEST are excluded. The result is None if too few remain or none of them is significant.
+    """
     value, error = np.array([(bias.value, bias.standard_error) for bias in biases]).reshape(-1, 2).T
     near = (abs(value) < LARGEST) & (error > 0)
     if near.sum() < FEWEST or not (abs(value[near]) > CLEAR * error[near]).any():
@@ -48,10 +51,11 @@ def bias_law(dt: np.ndarray, biases: Sequence[Estimate]) -> BiasLaw | None:
 
 
 def rate_biases(dt: np.ndarray, rates: Sequence[Estimate]) -> tuple[list[Estimate], BiasLaw | None]:
-    """Return the biases of independent rates at time steps (n,), relative to the limit dt → 0, and their law.
+    """Return the biases of independent rates at time steps (n,) relative to the limit dt → 0, and their law.
 
-    The first rate is the rate of the event-driven run, with dt = 0. The limit is the constant R of R (1 + a dt + b dt²)
-    fitted to all rates with a bias up to LARGEST, so that the error of the event-driven run does not enter all biases.
+    The first rate is that of the event-driven run, with dt = 0. The limit is the constant R in R (1 + a dt + b dt²),
+    fitted to all rates with a bias of up to LARGEST, so that the error of the event-driven run is not part of every
+    bias.
     """
     value, error = np.array([(rate.value, rate.standard_error) for rate in rates]).T
     if not (error > 0).all():
@@ -74,7 +78,7 @@ def rate_biases(dt: np.ndarray, rates: Sequence[Estimate]) -> tuple[list[Estimat
 
 
 def _fit(dt: np.ndarray, error: np.ndarray, powers: tuple[int, ...]) -> np.ndarray:
-    """Return weights (powers, n); their product with values of errors (n,) gives the coefficients of powers of dt."""
+    """Return weights (powers, n) whose product with values (n,) of given errors is the coefficients of powers of dt."""
     columns = np.stack([dt**power for power in powers], axis=1)
     scale = np.linalg.norm(columns, axis=0)
     return np.linalg.pinv(columns / scale / error[:, None]) / scale[:, None] / error

@@ -1,4 +1,4 @@
-"""The cases whose accuracy is compared: methods, time steps and precisions, and how a gas is run in each of them."""
+"""Cases whose accuracy is compared: methods, time steps and precisions, and how a gas is run in each case."""
 
 import copy
 import time
@@ -25,12 +25,12 @@ EQUILIBRATION = 10.0  # collisions per disc after which a gas is considered equi
 
 @dataclass(frozen=True)
 class Case:
-    """A case of the comparison, that is a way to run a scene.
+    """A case in the comparison: a way to run a scene.
 
     Attributes:
         method: name of the method.
         dt: time step of the time-driven method, time.
-        precision: arithmetic of brute force.
+        precision: arithmetic of the brute-force method.
     """
 
     method: str
@@ -43,13 +43,13 @@ class Case:
         return f"dt = {self.dt:.3g}" if self.dt is not None else self.precision or "event-driven"
 
     def make(self) -> Method:
-        """Return a new method object of this case."""
+        """Return a new method object for this case."""
         if self.dt is not None:
             return TimeDriven(self.dt)
         return PreciseBruteForce(self.precision) if self.precision else EventDriven()
 
     def scene(self, scene: Scene, until: float) -> Scene:
-        """Return the scene that is run in this case until a given time, without other stop conditions.
+        """Return the scene for a run of this case until a given time, without other stop conditions.
 
         Raises:
             SceneError: if the scene cannot be run with this method.
@@ -65,13 +65,13 @@ class Case:
 
 @dataclass(frozen=True)
 class EquilibratedStart:
-    """An equilibrated gas with its effects, from which all cases start."""
+    """Equilibrated gas with its effects, from which all cases start."""
 
     gas: Gas
     effects: Effects
 
     def simulation(self, method: Method) -> Simulation:
-        """Return a simulation from this start with a method and a copy of the effects."""
+        """Return a simulation from this start with the given method and a copy of the effects."""
         return Simulation(self.gas, method, copy.deepcopy(self.effects))
 
 
@@ -93,7 +93,7 @@ def compared_cases(gas: Gas, precise: bool) -> list[Case]:
 
 
 def equilibrated(scene: Scene) -> EquilibratedStart:
-    """Return the gas of a scene after EQUILIBRATION collisions per disc, simulated event-driven."""
+    """Return the gas of a scene after EQUILIBRATION collisions per disc with the event-driven method."""
     gas = make_gas(scene)
     simulation = Simulation(gas, EventDriven(), make_effects(scene, gas))
     stop = Stop(disc_collisions=round(EQUILIBRATION * len(gas) / 2), events=round(20 * EQUILIBRATION * len(gas)))
@@ -103,7 +103,7 @@ def equilibrated(scene: Scene) -> EquilibratedStart:
 
 
 def cpu_seconds(simulation: Simulation, until: float) -> float:
-    """Run a simulation until a time, and return the CPU time of this thread, s."""
+    """Run a simulation until a given time and return the CPU time of this thread, s."""
     started = time.thread_time()
     simulation.run(pause=until)
     return time.thread_time() - started

@@ -1,4 +1,4 @@
-"""Figures of accuracy: errors against CPU time, all errors in detail, and the lifetime of an orbit."""
+"""Figures of accuracy: errors against CPU time, all errors in detail, and the lifetime of a periodic orbit."""
 
 from typing import Any
 
@@ -19,17 +19,17 @@ AVERAGES = {
     "deepest overlap (σ)": "deepest_overlap",
     "Kolmogorov-Smirnov distance": "ks_distance",
 }
-"""Label and column of each error of an average, the most important first."""
+"""Label and column of the error of each average, the most important first."""
 
 MARKERS = "osD^vP*X"
-PATHS = (0.5, 1.0, 2.0)  # collisions per disc at which errors of trajectories are shown against CPU time
+PATHS = (0.5, 1.0, 2.0)  # collisions per disc for which trajectory errors are shown against CPU time
 LEAST = 1e-17  # smallest error that is drawn, diameters
-ROUNDING = 1e-9  # magnitude below which an error of an average is due to rounding
+ROUNDING = 1e-9  # magnitude below which the error of an average is due to rounding
 SHOWN_STEPS = 4  # number of evenly spaced points that are labelled with their time step
 
 
 def accuracy_figure(study: Accuracy) -> Figure:
-    """Return a figure of the error of an average against CPU time, and of the trajectories in each precision."""
+    """Return a figure with the error of an average against CPU time, and the trajectory errors in each precision."""
     figure, axes = panels(1 + bool(len(study.collisions)))
     _cost(axes[0], study)
     if len(axes) > 1:
@@ -38,7 +38,7 @@ def accuracy_figure(study: Accuracy) -> Figure:
 
 
 def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.ndarray:
-    """Return (n, 4) time step, CPU time, magnitude and standard error of an error, where it exceeds `least`."""
+    """Return (n, 4) time step, CPU time, magnitude and standard error of an error, for magnitudes above `least`."""
     points = [
         (row["dt"] or 0.0, row["cpu_s_per_time"], abs(row[name]), row.get(f"{name}_error") or 0.0)
         for row in rows
@@ -48,9 +48,10 @@ def _points(rows: list[dict[str, Any]], name: str, least: float = 0.0) -> np.nda
 
 
 def _cost(ax: Panel, study: Accuracy) -> None:
-    """Draw the error of the first average that was measured against CPU time: a curve of time steps, and a point.
+    """Draw the error of the first measured average against CPU time: a curve for the time steps, and a point.
 
-    An error below its statistical error cannot be resolved and is drawn at the statistical error.
+    The point is the event-driven run. An error smaller than its standard error cannot be resolved and is drawn at the
+    standard error.
     """
     exact = flat_row(study.event_driven, study)
     rows = [flat_row(row, study) for row in study.steps]
@@ -88,7 +89,7 @@ def _digits(ax: Panel, study: Accuracy) -> None:
 
 
 def details_figure(study: Accuracy) -> Figure:
-    """Return a figure of all errors of averages and of the motion against CPU time, and of all trajectories."""
+    """Return a figure with all errors of averages and of the motion against CPU time, and with all trajectories."""
     motion = bool(len(study.collisions))
     figure, axes = panels(3 if motion else 1)
     _errors_against_time(axes[0], study, AVERAGES, ROUNDING)
@@ -150,7 +151,7 @@ def _trajectories(ax: Panel, study: Accuracy) -> None:
 
 
 def orbit_figure(study: OrbitStudy) -> Figure:
-    """Return a figure of the lifetime of the orbit against digits: all boxes, the medians, and a line through them."""
+    """Return a figure of the orbit lifetime against digits: all boxes, the medians, and a line through the medians."""
     figure, (ax,) = panels(1)
     for k, survival in enumerate(study.survivals):
         x = survival.digits + np.linspace(-0.5, 0.5, len(survival.times))

@@ -1,4 +1,4 @@
-"""Measure errors of the motion: missed collisions, trajectories, and the return after reversal of the velocities."""
+"""Measure errors of the motion: missed collisions, trajectories, and the return to the start after a reversal."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -15,21 +15,21 @@ from idealgas.run.layout import row_columns
 from idealgas.state import Gas
 from idealgas.statistics.estimates import Estimate
 
-STARTS = 200  # largest number of starts from which collisions are compared
+STARTS = 200  # largest number of starting points for the comparison of collisions
 ENOUGH = 5_000  # number of compared collisions that is sufficient
-BETWEEN = 2.0  # collisions per disc between two starts
+BETWEEN = 2.0  # collisions per disc between two starting points
 
 
 @dataclass(frozen=True)
 class Missed:
-    """Number of first collisions after common starts that were compared, and number of these that were missed."""
+    """Number of first collisions after common starts that were compared, and number of those that were missed."""
 
     compared: int
     missed: int
 
     @property
     def share(self) -> Estimate:
-        """Fraction of missed collisions; if none was missed, the error is that of a single one."""
+        """Fraction of missed collisions; if none was missed, the error is that for one missed collision."""
         number = self.compared or math.nan
         return Estimate(self.missed / number, math.sqrt(max(self.missed, 1)) / number, self.compared)
 
@@ -39,14 +39,14 @@ def count_missed(
 ) -> list[Missed]:
     """Count the collisions that each case misses, compared with the event-driven motion over a mean free time.
 
-    Only collisions of two discs that have not yet collided with other discs are compared. A collision is missed if, in
-    the case, neither disc has collided by the end of the next time step.
+    Only collisions between two discs that have not yet collided with other discs are compared. A collision is missed
+    if, in the case, neither disc has collided by the end of the next time step.
 
     Args:
         start: the equilibrated gas.
         cases: the cases.
         rate: number of collisions per disc and time.
-        progress: function that is called with the fraction done.
+        progress: function that is called with the fraction of the work that is done.
     """
     reference = start.simulation(EventDriven())
     compared, missed = np.zeros((2, len(cases)), int)
@@ -67,7 +67,7 @@ def count_missed(
 
 
 def first_collisions(start: EquilibratedStart, case: Case, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times (N,) and partners (N,) of the first collision of each disc; infinity and -1 if there is none."""
+    """Return the times (N,) and partners (N,) of the first collision of each disc; infinity and -1 if it has none."""
     n = len(start.gas)
     time, partner = np.full(n, math.inf), np.full(n, -1)
     simulation = start.simulation(case.make())
@@ -85,7 +85,7 @@ def first_collisions(start: EquilibratedStart, case: Case, duration: float) -> t
 def flown_through(
     truth: tuple[np.ndarray, np.ndarray], measured: tuple[np.ndarray, np.ndarray], dt: float
 ) -> tuple[int, int]:
-    """Return the number of compared and of missed collisions of pairs whose first collision is with each other.
+    """Return the numbers of compared and of missed collisions between discs that both collide first with each other.
 
     Args:
         truth: times and partners of the first collisions in the event-driven run.
@@ -111,12 +111,15 @@ def positions(simulation: Simulation, times: Sequence[float]) -> np.ndarray:
 
 
 def rms_distance(a: np.ndarray, b: np.ndarray, gas: Gas) -> np.ndarray:
-    """Return the root-mean-square distance between positions a and b (..., N, 2) of the discs, in mean diameters."""
+    """Return the root-mean-square distance between disc positions a and b (..., N, 2), in mean diameters."""
     return np.sqrt(((a - b) ** 2).sum(axis=-1).mean(axis=-1)) / (2 * gas.radius.mean())
 
 
 def error_on_return(start: EquilibratedStart, case: Case, duration: float) -> float:
-    """Return the rms distance from the start, in mean diameters, after a run, a reversal and an equally long run."""
+    """Return the rms distance from the start after a run, a reversal of all velocities and an equally long run.
+
+    The unit is the mean diameter.
+    """
     if case.precision is not None:
         return _error_on_precise_return(start, case.precision, duration)
     simulation = start.simulation(case.make())
@@ -140,6 +143,6 @@ def _error_on_precise_return(start: EquilibratedStart, precision: str, duration:
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the difference of two columns of nearly equal numbers, as float64."""
+    """Return the difference between two columns of nearly equal numbers, as float64."""
     difference = a.astype(float) - b
     return difference if difference.ndim == 1 else difference.sum(axis=1)

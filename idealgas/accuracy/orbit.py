@@ -1,9 +1,9 @@
-"""The lifetime of an unstable periodic orbit of three discs, for several precisions of the arithmetic.
+"""Lifetime of an unstable periodic orbit of three discs, for several arithmetic precisions.
 
-Two discs that collide with the line of centres at 45° to their motion are both deflected by 90°. The middle disc
+If two discs collide with the line of centres at 45° to their motion, both are deflected by 90°. The middle disc
 collides alternately with the disc on its right and the disc on its left. After each collision one disc moves down and
-the other up, the sides reflect them, and they collide again. The sides of the box, the radius and the speed are free;
-all other lengths follow from the condition that the discs arrive at the same time.
+the other up; they are reflected by the sides and collide again. The sides of the box, the radius and the speed are
+free; all other lengths follow from the condition that both discs arrive at the same time.
 """
 
 import math
@@ -20,21 +20,21 @@ from idealgas.engine.simulation import Simulation, Stop
 from idealgas.state import Gas
 
 DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-double": 106 * math.log10(2)}
-"""Number of decimal digits in each precision."""
+"""Number of decimal digits of each precision."""
 
 PLACEMENTS = 25
 SPREAD = 0.25  # relative variation of the sides of the box and of the radius
-LEAST_ROOM = 0.1  # smallest length of a flight between collisions or before a wall, radii
-MOST_PERIODS = 200  # length of a run; an orbit that has not broken by then never breaks
-AGREEMENT = 1e-9  # largest deviation of the start of a scene from the orbit, relative to the box
+LEAST_ROOM = 0.1  # smallest length of a flight between collisions or to a wall, radii
+MOST_PERIODS = 200  # length of a run; an orbit that lasts so long never breaks
+AGREEMENT = 1e-9  # largest deviation of an initial state from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4
 PARTNERS = ((LEFT, 1, TOP, 1), (2, BOTTOM, 2, 0, BOTTOM, 0), (1, TOP, 1, RIGHT))
-"""Partners (discs or sides) that each disc meets during a period, in order."""
+"""Partners (discs or sides) with which each disc collides during a period, in order."""
 
 
 class Orbit(NamedTuple):
-    """Start of an orbit at speed 1, with 50 digits; the middle disc moves to the right, the other two to the left.
+    """Initial state of an orbit at speed 1, with 50 digits; the middle disc moves to the right, the others to the left.
 
     Attributes:
         x: x coordinates of the discs, length.
@@ -50,10 +50,10 @@ class Orbit(NamedTuple):
 
 
 def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
-    """Return the orbit at speed 1 in a box of width and height `box`; it exists if its `room` is positive.
+    """Return the orbit at speed 1 in a box of width and height `box`; the orbit exists if its `room` is positive.
 
-    In the code, d is the distance of two discs in contact along x and along y, `drop` is the path of a disc to a side
-    and back, and `flight` is the path of the middle disc from one partner to the other.
+    In the code, d is the distance between two discs in contact along x and along y, `drop` is the path of a disc to a
+    side and back, and `flight` is the path of the middle disc from one partner to the other.
     """
     with localcontext() as context:
         context.prec = 50
@@ -68,7 +68,7 @@ def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
 
 
 def is_on_orbit(gas: Gas) -> bool:
-    """Return whether the positions and velocities of a gas are, within rounding, the start of the orbit in its box."""
+    """Return whether a gas is, to within rounding, in the initial state of the orbit in its box."""
     if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
         return False
     orbit = three_disc_orbit(gas.box, float(gas.radius[0]))
@@ -101,7 +101,7 @@ class Survival:
 
 @dataclass(frozen=True)
 class OrbitStudy:
-    """Lifetime of the orbit in every precision.
+    """Lifetime of the orbit in each precision.
 
     Attributes:
         period: period of the orbit in the scene, time at speed 1.
@@ -136,7 +136,7 @@ class OrbitStudy:
 
 
 def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
-    """Return the start of an orbit with all digits of a precision. gas: the same discs in float64."""
+    """Return the initial state of an orbit with all digits of a precision. gas: the same discs in float64."""
 
     def column(values: tuple[Decimal, ...]) -> np.ndarray:
         high = np.array([float(value) for value in values])
@@ -152,7 +152,7 @@ def columns_at(orbit: Orbit, gas: Gas, precision: str) -> Columns:
 
 
 def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
-    """Return a gas of the discs of an orbit, rounded to float64."""
+    """Return a gas with the discs of an orbit, rounded to float64."""
     return Gas(
         box=box,
         position=np.array([orbit.x, orbit.y], float).T.copy(),
@@ -165,7 +165,10 @@ def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
 
 
 def survival(box: tuple[float, float], radius: float, precision: str) -> float:
-    """Return the time of the first collision that the exact motion lacks; infinity if none occurs in MOST_PERIODS."""
+    """Return the time of the first collision that the exact motion does not have.
+
+    The result is infinity if there is no such collision within MOST_PERIODS periods.
+    """
     orbit = three_disc_orbit(box, radius)
     gas = orbit_gas(orbit, box, radius)
     simulation = Simulation(gas, PreciseBruteForce(precision, columns_at(orbit, gas, precision)))
@@ -183,7 +186,7 @@ def survival(box: tuple[float, float], radius: float, precision: str) -> float:
 
 
 def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, float], float]]:
-    """Return random box sizes and radii for which the orbit exists, typical of a gas."""
+    """Return random box sizes and radii, similar to those of a gas, for which the orbit exists."""
     random = np.random.default_rng(seed)
     boxes: list[tuple[tuple[float, float], float]] = []
     while len(boxes) < number:
@@ -197,13 +200,13 @@ def placements(gas: Gas, number: int, seed: int) -> list[tuple[tuple[float, floa
 def study_orbit(
     gas: Gas, number: int = PLACEMENTS, seed: int = 0, progress: Callable[[str, float], None] = lambda what, share: None
 ) -> OrbitStudy:
-    """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in every precision.
+    """Measure the lifetime of the orbit of a gas, and of orbits in `number` similar boxes, in each precision.
 
     Args:
-        gas: gas at the start of the orbit (`is_on_orbit`).
+        gas: gas in the initial state of the orbit (`is_on_orbit`).
         number: number of other boxes.
-        seed: seed of the random boxes.
-        progress: function that is called with the name of the current work and the fraction of it that is done.
+        seed: seed for the random boxes.
+        progress: function that is called with the name of the current task and the fraction of it that is done.
     """
     boxes = placements(gas, number, seed)
     period = float(three_disc_orbit(gas.box, float(gas.radius[0])).period)

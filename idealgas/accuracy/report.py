@@ -17,7 +17,7 @@ from idealgas.files import check_output, storage_error, written
 from idealgas.presentation.style import save
 from idealgas.statistics.estimates import Estimate
 
-TARGET = 0.01  # relative error whose cost is given in a sentence
+TARGET = 0.01  # relative error whose cost is stated in a sentence
 LOST = 0.1  # rms distance beyond which a trajectory is considered lost, diameters
 
 
@@ -62,7 +62,7 @@ def number(value: float) -> float | None:
 
 
 def nearest(values: np.ndarray, target: float) -> int:
-    """Return the index of the value nearest to a target; 0 if there are no values."""
+    """Return the index of the value nearest to `target`; 0 if there are no values."""
     return int(np.abs(values - target).argmin()) if len(values) else 0
 
 
@@ -88,7 +88,7 @@ def sentences(study: Accuracy) -> list[str]:
 def cost_of(dt: float, rows: list[AccuracyRow]) -> float:
     """Return the CPU seconds per unit of simulated time for a time step, interpolated between measured time steps.
 
-    A power law is assumed between neighbouring time steps.
+    The cost is assumed to follow a power law between neighbouring time steps.
     """
     steps = np.log([row.case.dt or 0.0 for row in rows][::-1])
     costs = np.log([row.timing.median for row in rows][::-1])
@@ -98,7 +98,7 @@ def cost_of(dt: float, rows: list[AccuracyRow]) -> float:
 
 
 def price(study: Accuracy, quantity: str, law: BiasLaw | None) -> str:
-    """Return a sentence on the cost of a bias of TARGET with time steps; empty if no significant bias was measured."""
+    """Return a sentence on the cost of a bias of TARGET with time steps; empty if no bias was significant."""
     if law is None:
         return ""
     dt = law.step(TARGET)
@@ -190,12 +190,12 @@ def outputs(
 
     Args:
         path: path of the folder.
-        name: name of the files without endings.
-        pictures: what follows the name in the file of each figure.
+        name: name of the files without extension.
+        pictures: suffix of the name of each figure file.
         force: whether existing files may be overwritten.
 
     Returns:
-        NAME.csv, NAME.json and a figure NAME….png for each entry of `pictures`.
+        NAME.csv, NAME.json and a figure NAME….png for each entry in `pictures`.
 
     Raises:
         OutputError: if the folder cannot be created or a file cannot be written.
@@ -224,7 +224,7 @@ def write_files(
         paths: paths from `outputs`.
         result: plain values for the JSON file.
         rows: rows of the CSV file.
-        figures: figures, in the order of `pictures` of `outputs`.
+        figures: figures, in the order of `pictures` in `outputs`.
         force: whether to replace existing files.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Measure the errors and the CPU time of every case of the comparison, in one process."""
+"""Measure the errors and the CPU time of each case in the comparison, in one process."""
 
 import math
 import statistics
@@ -21,16 +21,16 @@ from idealgas.state import Gas
 from idealgas.statistics.estimates import Estimate, mean
 
 SHORTEST_TIMING = 0.1  # shortest timed run, CPU seconds
-RATE_SECONDS = 30.0  # total length of the runs for the collision rates, CPU seconds
+RATE_SECONDS = 30.0  # total duration of the runs for the collision rates, CPU seconds
 RATE_BLOCKS = 64  # number of blocks of each of these runs
-BURN_IN = 0.1  # initial fraction of these runs that is discarded, in which the gas adapts to the method
+BURN_IN = 0.1  # initial fraction of these runs that is discarded while the gas adapts to the method
 LONGEST_RUN = 40.0  # longest run of a case for its averages, and for the reference trajectories, CPU seconds
 MOST_PRECISE = 4000  # largest number of discs for brute force
 FOLLOWED = (0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16)
-"""Collisions per disc at which trajectories are compared; at the last one, no digit of a float64 is correct."""
+"""Collisions per disc at which trajectories are compared; at the last of these, no digit of a float64 is correct."""
 
 Progress = Callable[[str, float], None]
-"""Function that is called with the name of the current work and the fraction of it that is done."""
+"""Function that is called with the name of the current task and the fraction of it that is done."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Timing:
     """CPU time of a case.
 
     Attributes:
-        median: median over the repeats of the CPU seconds per unit of simulated time.
+        median: median, over the repeats, of the CPU seconds per unit of simulated time.
         least: smallest of these values.
         most: largest of these values.
         collisions: number of pair collisions per unit of simulated time.
@@ -62,14 +62,15 @@ class AccuracyRow:
     Attributes:
         case: method, time step and precision.
         timing: CPU time.
-        averages: averages of the whole run.
-        rate: bias of the collision rate, for time steps relative to the common limit dt → 0, for precisions relative to
+        averages: averages over the whole run.
+        rate: bias of the collision rate: for time steps relative to the common limit dt → 0, for precisions relative to
             the event-driven run.
         z_pairs: bias of the pressure from the virial of the pairs, relative to theory.
         z_walls: bias of the pressure from the virial of the walls, relative to theory.
         missed: missed collisions.
         trajectory: (T,), rms distance from the reference trajectories, diameters.
-        way_back: rms distance from the start after reversal of all velocities, diameters.
+        way_back: rms distance from the start after a run, a reversal of all velocities and an equally long run,
+            diameters.
     """
 
     case: Case
@@ -129,10 +130,10 @@ def study_accuracy(scene: Scene, repeats: int = 3, progress: Progress = lambda w
     Args:
         scene: the scene.
         repeats: number of timings of each case.
-        progress: function that is called with the name of the current work and the fraction of it that is done.
+        progress: function that is called with the name of the current task and the fraction of it that is done.
 
     Raises:
-        UserError: if the scene cannot be run with time steps, or if it has no collisions of discs.
+        UserError: if the scene cannot be run with time steps, or if its discs cannot collide with each other.
     """
     check(scene)
     progress("equilibrating the gas", 0.0)
@@ -192,14 +193,14 @@ def why_not_precise(scene: Scene, gas: Gas) -> str:
 
 
 def relative(value: Estimate, reference: Estimate) -> Estimate:
-    """Return the relative deviation value/reference - 1 of two independent estimates."""
+    """Return the relative difference value/reference - 1 between two independent estimates."""
     ratio = value.value / reference.value
     error = ratio * math.hypot(value.standard_error / value.value, reference.standard_error / reference.value)
     return Estimate(ratio - 1, error, math.inf)
 
 
 def from_theory(value: Estimate | None) -> Estimate | None:
-    """Return the relative deviation value/theory - 1 of an estimate, with both errors; None if it has no theory."""
+    """Return the relative deviation value/theory - 1 of an estimate, with both errors; None without theory."""
     if value is None or value.theory is None or not math.isfinite(value.theory):
         return None
     error = math.hypot(value.standard_error, value.theory_error) / value.theory
@@ -207,7 +208,7 @@ def from_theory(value: Estimate | None) -> Estimate | None:
 
 
 def measure_timings(start: EquilibratedStart, cases: Sequence[Case], repeats: int, progress: Progress) -> list[Timing]:
-    """Return the CPU time of all cases, measured in turn; each run takes at least SHORTEST_TIMING."""
+    """Return the CPU time of each case; the cases are measured in turn, in runs of at least SHORTEST_TIMING."""
     durations = []
     for k, case in enumerate(cases):
         progress("compiling and first timing", k / len(cases))
@@ -227,7 +228,7 @@ def measure_timings(start: EquilibratedStart, cases: Sequence[Case], repeats: in
 
 
 def _long_enough(start: EquilibratedStart, case: Case) -> float:
-    """Return the simulated time of a run that takes SHORTEST_TIMING; the machine code is compiled on the way."""
+    """Return the simulated time of a run that takes SHORTEST_TIMING; this also compiles the machine code."""
     speed = float(np.hypot(*start.gas.velocity.T).mean())
     duration = 2.0 ** math.floor(math.log2(start.gas.radius.min() / speed))
     cpu_seconds(start.simulation(case.make()), duration)
@@ -241,7 +242,7 @@ def _long_enough(start: EquilibratedStart, case: Case) -> float:
 def measure_rates(
     start: EquilibratedStart, cases: Sequence[Case], timings: Sequence[Timing], progress: Progress
 ) -> list[Estimate]:
-    """Return the pair collisions per time in each case, from runs of equal length that take RATE_SECONDS together."""
+    """Return the pair collisions per time in each case, from runs of equal length that take RATE_SECONDS in total."""
     whole = RATE_SECONDS / sum(timing.median for timing in timings[: len(cases)])
     edges = np.linspace(BURN_IN * whole, whole, RATE_BLOCKS + 1)
     rates = []
@@ -260,7 +261,7 @@ def _all_averages(
 ) -> tuple[list[Averages | None], float]:
     """Return the averages of the scene in all cases that are fast enough, and the simulated time of the runs.
 
-    The event-driven run, which is the first, determines this time.
+    The event-driven run, which comes first, determines this time.
     """
     averages: list[Averages | None] = []
     with tempfile.TemporaryDirectory(prefix="idealgas-accuracy-") as folder:
@@ -274,7 +275,7 @@ def _all_averages(
         averages.append(first)
         for case, timing in zip(cases[1:], timings[1:], strict=True):
             is_fast = timing.median * summary.end_time < LONGEST_RUN
-            is_new = case.precision != "float64"  # which has the same motion as the event-driven run
+            is_new = case.precision != "float64"  # float64 has the same motion as the event-driven run
             can_run = is_fast and is_new
             averages.append(run(case.scene(scene, summary.end_time), case, first.window)[0] if can_run else None)
     return averages, summary.end_time
@@ -283,7 +284,7 @@ def _all_averages(
 def _motion(
     start: EquilibratedStart, cases: Sequence[Case], timings: Sequence[Timing], rate: float, progress: Progress
 ) -> tuple[np.ndarray, dict[Case, np.ndarray], dict[Case, float]]:
-    """Return the collisions per disc, and `Row.trajectory` and `Row.way_back` of each case.
+    """Return the collisions per disc, and `trajectory` and `way_back` of each case for `AccuracyRow`.
 
     The reference is the double-double motion.
     """

@@ -26,7 +26,7 @@ from idealgas.theory.conserved import centre_of_mass_velocity
 ENDINGS, FRAME = (".mp4", ".gif"), ".png"
 LONGEST = 20.0  # default length of a film, seconds
 MOST_FRAMES = 1_000_000
-HISTORY = 200  # number of earlier states that trails and curves in a single frame pass through
+HISTORY = 200  # number of earlier states from which trails and curves in a single frame are drawn
 CODEC = ("-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
 
 
@@ -42,7 +42,7 @@ class Film:
 
 
 def ffmpeg() -> str:
-    """Return the path of the program ffmpeg, from the system or from the package imageio-ffmpeg.
+    """Return the path of the ffmpeg program, from the system or from the package imageio-ffmpeg.
 
     Raises:
         UserError: if neither is installed.
@@ -73,18 +73,19 @@ def animate(
 
     Args:
         log: the log to show, or its path.
-        output: path of the film, with the ending .mp4 or .gif.
+        output: path of the film, with extension .mp4 or .gif.
         start: start in simulated time; None for the start of the log.
         end: end in simulated time; None for LONGEST seconds of film.
         fps: frames per second of film.
         speed: simulated time per second of film; if None, a disc of typical speed crosses the box in CROSSING seconds.
         force: whether to replace an existing film.
-        on_frame: function that is called with the number of painted frames and the number of all frames.
+        on_frame: function that is called with the number of painted frames and the total number of frames.
         look: appearance of the film, see `Look`.
 
     Raises:
-        UserError: if the ending is unknown, ffmpeg is missing for an MP4, the log has no positions or events, the
-            window is empty, order is requested beside a piston, or a disc with a trail does not exist.
+        UserError: if the extension is unknown, if ffmpeg is required for an MP4 but missing, if the log has no
+            positions or events, if the time window is empty, if colours by order are requested for a gas with a piston,
+            or if a disc with a trail does not exist.
         OutputError: if the film cannot be written.
     """
     path = Path(output)
@@ -101,7 +102,7 @@ def animate(
     speed = speed or (max(log.box) / CROSSING / typical if typical > 0 else (latest - first) / LONGEST)
     last = latest if end is not None else min(latest, first + LONGEST * speed)
     if gif:
-        fps = 100 / max(round(100 / fps), 2)  # delays are multiples of 10 ms, and viewers ignore a delay of 10 ms
+        fps = 100 / max(round(100 / fps), 2)  # delays are multiples of 10 ms, and viewers ignore one of 10 ms
     number = round((last - first) * fps / speed) + 1
     if number > MOST_FRAMES:
         raise UserError(
@@ -119,7 +120,7 @@ def animate(
 
 
 def _painter(log: Log, thermal: float, times: tuple[float, float], states: Sequence[LogState], look: Look) -> Painter:
-    """Return the painter of the states of a log. thermal: the argument `rms_speed` of `Painter`."""
+    """Return the painter for states of a log. thermal: the argument `rms_speed` of `Painter`."""
     pistons, maxwell = piston_tracks(log, *times), tends_to_equilibrium(log)
     return Painter(log.scene, log.discs, pistons, thermal, times, states, maxwell, **look)
 
@@ -133,7 +134,7 @@ def paint_frame(
 
     Args:
         log: the log to show.
-        output: path of the picture, with the ending .png.
+        output: path of the picture, with extension .png.
         time: time of the state.
         force: whether to replace an existing picture.
         look: appearance of the picture, see `Look`.
@@ -142,7 +143,8 @@ def paint_frame(
         Path of the picture.
 
     Raises:
-        UserError: if the ending is unknown or the log does not cover the time, and as for `animate`.
+        UserError: if the extension is unknown, if the log does not cover the time, and in the cases listed for
+            `animate`.
         OutputError: if the picture cannot be written.
     """
     path = Path(output)
@@ -170,8 +172,8 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
     """Check that a log can be shown.
 
     Raises:
-        UserError: if the log has no positions or no events, as nothing would move, or if colours by order are requested
-            for a gas with a piston or with discs that escape.
+        UserError: if the log has no positions, or no events and therefore no motion to show, or if colours by order are
+            requested for a gas with a piston or with discs that escape.
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
         moving = ", ".join(log.scene.lacking("fixed_walls"))
@@ -188,7 +190,7 @@ def _sample_states(log: Log, first: float, last: float) -> list[LogState]:
 
 
 def speeds(log: Log, states: Sequence[LogState]) -> tuple[float, float]:
-    """Return the largest rms speed of states, and the same relative to a conserved motion of the whole gas."""
+    """Return the largest rms speed of the states, as measured and relative to a conserved motion of the gas."""
     typical, thermal = (
         max(np.sqrt(state.mean(((state.velocity - u) ** 2).sum(axis=1))) for state in states)
         for u in (0.0, centre_of_mass_velocity(log.scene, log.discs))
@@ -218,7 +220,7 @@ def mp4_writer(program: str, path: Path, width: int, height: int, fps: float) ->
         try:
             yield lambda frame: pipe.write(frame.data)
         except BrokenPipeError:
-            pass  # the error message of ffmpeg, which is read below, gives the reason
+            pass  # the reason is in the error message of ffmpeg, which is read below
         except BaseException:
             encoder.kill()
             raise

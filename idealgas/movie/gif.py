@@ -1,4 +1,4 @@
-"""A GIF writer that works frame by frame in bounded memory; Pillow's own writer would keep all frames until the end."""
+"""GIF writer that works frame by frame in bounded memory; the writer of Pillow would keep all frames until the end."""
 
 from typing import IO
 
@@ -15,7 +15,7 @@ SAME = 255
 
 
 class GifWriter:
-    """Writer of a GIF whose frames share one size and one palette, the colours of the project's figures."""
+    """Writer of a GIF whose frames have the same size and palette, with the colours of the project's figures."""
 
     def __init__(self, file: IO[bytes], width: int, height: int, delay: int) -> None:
         """Start a GIF. width, height: size in pixels; delay: time between frames in hundredths of a second."""
@@ -39,7 +39,7 @@ class GifWriter:
             self._file.write(block)
 
     def close(self) -> None:
-        """Write the end of the file after the last frame."""
+        """Write the end of the file, after the last frame."""
         self._file.write(b";")
 
     def _image(self, indices: np.ndarray) -> Image.Image:
@@ -51,7 +51,7 @@ class GifWriter:
 def make_palette() -> np.ndarray:
     """Return the palette (256, 3) uint8: greys, the colour map and the project's colours.
 
-    Lighter shades are included for smooth edges.
+    Lighter shades are included for anti-aliased edges.
     """
     greys = np.linspace(0, 1, 40)[:, None] * np.ones(3)
     shades = colormaps[COLOUR_MAP](np.linspace(0, 1, 32))[:, :3]

@@ -1,4 +1,4 @@
-"""Layout of a frame: its size, and the positions of the box and of the panel beside it."""
+"""Layout of a frame: its size, and the positions of the box and the panel."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,11 +6,11 @@ from typing import NamedTuple
 from idealgas.movie.piston_track import PistonTrack
 
 BEYOND = 1.25
-"""Length that is shown along the axis of a piston, relative to the largest length of the gas."""
+"""Length of the displayed range along the axis of a piston, relative to the largest length of the gas."""
 
 LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins, and width of a letter, in pixels of the usual size
 PANEL = 0.3
-"""Smallest fraction of a frame for the panel beside or below the box."""
+"""Smallest fraction of a frame that is used for the panel beside or below the box."""
 
 SIZES = ((960, 540), (720, 720), (540, 960))
 """Default sizes of a frame, pixels."""
@@ -19,7 +19,7 @@ Rectangle = tuple[float, float, float, float]
 
 
 class Layout(NamedTuple):
-    """Rectangles (left, bottom, width, height) of box and panel in pixels, and scale in pixels per unit of length."""
+    """Rectangles (left, bottom, width, height) of box and panel in pixels, and scale in pixels per unit length."""
 
     box: Rectangle
     panel: Rectangle | None
@@ -31,7 +31,7 @@ def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = Tr
 
     Args:
         size: width and height of the frame, pixels.
-        box: width and height of the shown part of the box, length.
+        box: width and height of the displayed part of the box, length.
         panel: whether there is a panel.
     """
     width, height = size[0] - LEFT - RIGHT, size[1] - TOP - BOTTOM
@@ -54,7 +54,7 @@ def layout(size: tuple[float, float], box: tuple[float, float], panel: bool = Tr
 def view(box: tuple[float, float], pistons: Sequence[PistonTrack]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the ranges of x and y that are shown, length.
 
-    The whole box is shown, except for most of the empty space beyond a piston (see BEYOND).
+    The whole box is shown, apart from most of the empty space beyond a piston (see BEYOND).
     """
     shown = [(0.0, box[0]), (0.0, box[1])]
     for piston in pistons:
@@ -68,11 +68,11 @@ def view(box: tuple[float, float], pistons: Sequence[PistonTrack]) -> tuple[tupl
 
 
 def lengths(shown: tuple[tuple[float, float], tuple[float, float]]) -> tuple[float, float]:
-    """Return the lengths of the shown part of a box along x and y."""
+    """Return the lengths of the displayed part of a box along x and y."""
     (left, right), (low, high) = shown
     return right - left, high - low
 
 
 def frame_size(shown: tuple[tuple[float, float], tuple[float, float]], panel: bool) -> tuple[int, int]:
-    """Return the size of a frame: the first of SIZES, unless the box is drawn much larger with another size."""
+    """Return the size of a frame: the first of SIZES, unless another size makes the drawn box much larger."""
     return max(SIZES, key=lambda size: layout(size, lengths(shown), panel).scale * (1.2 if size == SIZES[0] else 1.0))

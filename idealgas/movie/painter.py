@@ -1,4 +1,4 @@
-"""Paint the frames of a film: the discs in their box, and a panel beside it, such as the distribution of their speeds.
+"""Paint the frames of a film: the discs in their box, and a panel, for example with the distribution of their speeds.
 
 The background, which never changes, is drawn once. Each frame restores it and draws only the discs, walls, panel and
 title on top.
@@ -37,19 +37,22 @@ from idealgas.tallies.bond_order import bond_order
 from idealgas.theory.conserved import centre_of_mass_velocity
 
 COLOUR_MAP = "cividis"
-"""Colour map of speeds, readable for colour-blind viewers: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
+"""Colour map for speeds, readable for colour-blind viewers: Nuñez, Anderton & Renslow, PLoS ONE 13, e0199239 (2018)."""
 
 DPI = 100
 USUAL, NARROWEST, LEAST_ZOOM = (960, 540), 400, 0.5
-"""Frame size in pixels at which text and margins have their usual size; width or height in pixels below which they are
-reduced; smallest factor by which they are reduced."""
+"""Limits for the size of text and margins.
+
+They are the frame size at which text and margins have their usual size, the width or height below which they are
+reduced (both in pixels), and the smallest factor by which they are reduced.
+"""
 
 SHADES = 64
 PALEST, DARKEST = 0.93, 0.3
-"""End of the part of the colour map that is used on a white background, and start of the part used on a dark one."""
+"""End of the range of the colour map that is used on a white background, and start of the range used on a dark one."""
 
 EDGE, EDGED = 0.55, 8.0
-"""Brightness of the edge of a disc on white, relative to the disc, and diameter above which it is drawn, pixels."""
+"""Brightness of the edge of a disc on white relative to the disc, and diameter above which it is drawn, pixels."""
 
 PAPER, INK = "#14161a", "#e6e6e6"
 DARK: dict[Any, Any] = {
@@ -61,13 +64,13 @@ DARK: dict[Any, Any] = {
 """Matplotlib settings for pictures on a dark background."""
 
 SMALLEST = 4.0
-"""Smallest diameter with which a disc is drawn, pixels."""
+"""Smallest diameter at which a disc is drawn, pixels."""
 
 CROSSING = 5.0
-"""Time in which a disc of typical speed crosses the box by default, seconds of film."""
+"""Time in which a disc of typical speed crosses the box at the default playback speed, seconds of film."""
 
 Colouring = Literal["speed", "species", "order"]
-"""Property that the colour of a disc shows: its speed, its species, or its local order ψ₆."""
+"""Property that is shown by the colour of a disc: its speed, its species, or its local order ψ₆."""
 
 Shown = Literal["speeds", "density", "left-right", "none"]
 """Content of the panel beside the discs."""
@@ -77,9 +80,9 @@ class Look(TypedDict, total=False):
     """Appearance of a film.
 
     Attributes:
-        size: width and height of a frame in pixels, rounded down to even numbers in films; by default the most suitable
-            of SIZES for the shape of the box.
-        colouring: property that the colours of the discs show.
+        size: width and height of a frame in pixels, rounded down to even numbers in films; by default the entry in
+            SIZES that best suits the shape of the box.
+        colouring: property that is shown by the colours of the discs.
         panel: content of the panel beside the discs.
         trails: ids of discs whose paths are drawn.
         dark: whether the background is dark.
@@ -111,12 +114,22 @@ class Painter:
         trails: Sequence[int] = (),
         dark: bool = False,
     ) -> None:
-        """Prepare what is the same in all frames; the other arguments are described in `Look`.
+        """Prepare what is the same in all frames.
 
-        gas: the discs at the start. rms_speed: approximate largest root-mean-square speed in the film, length/time,
-        relative to a conserved motion of the whole gas. times: start and end of the film. sample: states of the film,
-        from which the range of the density panel is determined. maxwell: whether to compare the speeds with the
-        Maxwell-Boltzmann distribution.
+        Args:
+            scene: the scene.
+            gas: the initial state of the discs.
+            pistons: tracks of the pistons.
+            rms_speed: approximate largest root-mean-square speed in the film, length/time. Speeds are relative to a
+                conserved motion of the gas as a whole.
+            times: start and end of the film.
+            sample: states in the film, from which the range of the density panel is determined.
+            maxwell: whether to compare the speeds with the Maxwell-Boltzmann distribution.
+            size: see `Look`.
+            colouring: see `Look`.
+            panel: see `Look`.
+            trails: see `Look`.
+            dark: see `Look`.
 
         Raises:
             UserError: if a disc with a trail does not exist.
@@ -140,7 +153,7 @@ class Painter:
             self._draw_still(rms_speed, times, sample)
 
     def _draw_still(self, rms_speed: float, times: tuple[float, float], states: Sequence[LogState]) -> None:
-        """Draw what is the same in all frames, and prepare the parts that are drawn on top."""
+        """Draw what is the same in all frames, and prepare the artists that are drawn on top."""
         size = self.size
         usual = math.sqrt(size[0] * size[1] / math.prod(USUAL)), min(size) / NARROWEST
         zoom = max(min(usual), LEAST_ZOOM)
@@ -161,7 +174,7 @@ class Painter:
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
     def paint(self, state: LogState) -> np.ndarray:
-        """Paint a state, and return the frame (height, width, 4) uint8, which is valid until the next call."""
+        """Paint a state and return the frame (height, width, 4) uint8, which is valid until the next call."""
         speed = np.hypot(*(state.velocity - self._flow).T)
         self._place(state, speed, np.flatnonzero(state.inside))
         beside = () if self._panel is None else self._panel.update(state, speed)
@@ -213,7 +226,7 @@ class Painter:
             self._piston_lines.append((line, self._name(axes, piston.name, (farthest, self._view[1][1]))))
 
     def _name(self, axes: Axes, name: str, place: tuple[float, float]) -> Annotation:
-        """Write the name of a wall beside a point on it, on the side with more space, legible on top of discs."""
+        """Write the name of a wall beside a point on the wall, on the side with more space, legible on top of discs."""
         beyond = (self._figure.bbox.width - axes.transData.transform(place)[0]) * DPI / self._figure.dpi
         crossed = any(piston.axis == 0 for piston in self._pistons)
         right = place[0] < sum(self._view[0]) / 2 or (crossed and beyond > LETTER * len(name))
@@ -241,7 +254,7 @@ class Painter:
         axes.legend(handles=[*self._panel.handles, *kinds], frameon=False, loc="upper right")
 
     def _key(self) -> list[tuple[str, Any]]:
-        """Return the meaning of the colours, unless the axis of speeds shows it."""
+        """Return the legend of the colours, unless the axis of speeds shows their meaning."""
         if self._colouring == "species":
             return list(zip(self._gas.species_names, np.resize(COLOURS, len(self._gas.species_names)), strict=True))
         if self._colouring == "order":
@@ -258,10 +271,10 @@ class Painter:
         return self._shades[np.minimum(speed / self._brightest * SHADES, SHADES - 1).astype(int)]
 
     def _place(self, state: LogState, speed: np.ndarray, which: np.ndarray) -> None:
-        """Draw the discs `which` (n,) at their positions, and their images at periodic sides."""
+        """Draw the discs `which` (n,) at their positions, and their periodic images."""
         colours = self._colours(state.position, np.nan_to_num(speed))
         radius, box, position = self._gas.radius, np.array(self._gas.box), state.position[which]
-        ahead = self._scene.properties.shear * box[1] * state.time  # shift of the images above sheared sides
+        ahead = self._scene.properties.shear * box[1] * state.time  # shift of the periodic images beyond sheared sides
         for axis in np.flatnonzero(self._periodic)[::-1]:
             for side in (-1, 1):
                 reach = (
@@ -279,7 +292,7 @@ class Painter:
         self._discs.set(facecolors=colours[which], edgecolors=edges)
 
     def _trails_to(self, position: np.ndarray) -> list[Line2D]:
-        """Return the paths of the chosen discs up to now, with gaps where they cross periodic sides."""
+        """Return the paths of the chosen discs up to this position, with gaps where they cross periodic sides."""
         for (disc, path), line in zip(self._paths.items(), self._trails, strict=True):
             if path and (np.abs(position[disc] - path[-1]) > np.array(self._gas.box) / 2).any():
                 path.append(np.full(2, np.nan))
@@ -288,7 +301,7 @@ class Painter:
         return self._trails
 
     def _walls_at(self, time: float) -> list[Artist]:
-        """Return the walls that are present at a time, as gates may be open, and the pistons at their positions."""
+        """Return the walls that are present at a time (gates may be open), and the pistons at their positions."""
         drawn = list(compress((*self._walls, *self._names), [wall.is_present(time) for wall in self._inside] * 2))
         for piston, (line, name) in zip(self._pistons, self._piston_lines, strict=True):
             place = piston.at(time)

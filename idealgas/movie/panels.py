@@ -1,4 +1,4 @@
-"""Panels beside the discs of a film: their speeds, their density, or the fraction of discs on the right."""
+"""Panels beside the discs of a film: their speeds, their density, or the fraction of discs on the right-hand side."""
 
 from collections.abc import Iterable, Sequence
 from typing import Protocol
@@ -20,33 +20,33 @@ from idealgas.theory.ensemble import classes
 BINS = 36
 
 FASTEST, BRIGHTEST = 3.2, 2.0
-"""End of the speed axis and of the colour scale, in units of the root-mean-square speed."""
+"""Upper ends of the speed axis and of the colour scale, in units of the root-mean-square speed."""
 
 STRIP = 9  # height of the strip with the colours, pixels
 
 
 class FilmPanel(Protocol):
-    """Panel of a film. handles: entries of its legend."""
+    """Panel of a film. handles: entries for its legend."""
 
     handles: list[Line2D]
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """Return what has to be drawn for a state. speed: (N,), speeds of the discs."""
+        """Return the artists to be drawn for a state. speed: (N,), speeds of the discs."""
 
 
 class SpeedPanel:
-    """Distribution of the speeds, with the Maxwell-Boltzmann distribution if the gas approaches it."""
+    """Distribution of speeds, with the Maxwell-Boltzmann distribution if the gas tends to it."""
 
     def __init__(self, axes: Axes, gas: Gas, rms_speed: float, line: str | None, shades: np.ndarray | None) -> None:
         """Draw the axes.
 
         rms_speed: largest root-mean-square speed, length/time. line: colour of the Maxwell-Boltzmann curve; None for no
-        curve. shades: (n, 4), colours of the discs along the axis of speeds; None if colours do not show speeds.
+        curve. shades: (n, 4), colours along the axis of speeds; None if the colours of the discs do not show speeds.
         """
         self._gas, self._classes = gas, classes(gas)
         top = FASTEST * rms_speed or 1.0
         self._edges, self._speeds = np.linspace(0, top, BINS + 1), np.linspace(0, top, 200)
-        temperature = (top / FASTEST) ** 2 / 2 / float((1 / gas.mass).mean())  # ⟨v²⟩ of all discs is 2T ⟨1/m⟩
+        temperature = (top / FASTEST) ** 2 / 2 / float((1 / gas.mass).mean())  # ⟨v²⟩ over all discs is 2T ⟨1/m⟩
         highest = 1.8 * self._density(temperature).max()
         axes.set(xlim=(0, top), ylim=(0, highest or 1.0), ylabel="density (time/length)", xlabel="speed (length/time)")
         self._bars = _bars(axes, self._edges)
@@ -61,7 +61,7 @@ class SpeedPanel:
             axes.tick_params(axis="x", pad=12, length=0)
 
     def update(self, state: LogState, speed: np.ndarray) -> Iterable[Artist]:
-        """Update the bars, and the curve to the temperature of the state."""
+        """Update the bars, and the curve for the temperature of the state."""
         here = speed[state.inside]
         self._bars.set_data(np.histogram(here, self._edges)[0] / (max(len(here), 1) * self._edges[1]))
         for curve in self._curves:
@@ -81,7 +81,7 @@ class DensityPanel:
     """Number density in strips along the direction of gravity or, without gravity, along the longer side of the box."""
 
     def __init__(self, axes: Axes, scene: Scene, gas: Gas, line: str, sample: Sequence[LogState]) -> None:
-        """Draw the axes. line: colour of the mean density; sample: states that determine the range of the density."""
+        """Draw the axes. line: colour of the mean density; sample: states that determine the range of densities."""
         falls = np.array(scene.properties.strongest_pull) != 0
         self._axis = int(falls[1] if falls.any() else gas.box[1] > gas.box[0])
         length = gas.box[self._axis]

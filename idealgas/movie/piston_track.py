@@ -1,4 +1,4 @@
-"""The position of a piston in time, which is known at hits and samples and follows a parabola in between."""
+"""Position of a piston as a function of time: known at hits and samples, and a parabola in between."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from idealgas.tallies.chambers import piston_names
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """The motion of a piston.
+    """Motion of a piston.
 
     Attributes:
         axis: 0 for x, 1 for y.
@@ -20,8 +20,9 @@ class PistonTrack:
         place: (K,), position at these times, length.
         pull: (K,), acceleration after these times, length/time².
         limits: smallest and largest position, length.
-        outward: +1 if the gas is below the piston on this axis, -1 if it is above, 0 if it is on both sides.
-        name: name in pictures.
+        outward: +1 if the gas is on the lower side of the piston along this axis, -1 if it is on the upper side, 0 if
+            it is on both sides.
+        name: name shown in pictures.
     """
 
     axis: int
@@ -33,7 +34,7 @@ class PistonTrack:
     name: str
 
     def at(self, time: float) -> float:
-        """Return the position at a time, on the parabola through the known positions before and after it."""
+        """Return the position at a time, from the parabola through the known positions before and after that time."""
         k = int(np.clip(self.time.searchsorted(time, "right") - 1, 0, len(self.time) - 2))
         before, after = time - self.time[k], time - self.time[k + 1]
         step = self.time[k + 1] - self.time[k]
@@ -42,13 +43,13 @@ class PistonTrack:
 
 
 def piston_tracks(log: Log, start: float, end: float) -> list[PistonTrack]:
-    """Return the tracks, between two times, of the pistons whose positions are known."""
+    """Return the tracks, between two times, of all pistons whose positions are known."""
     tracks = (_track(log, k, start, end) for k in range(len(log.scene.piston)))
     return [track for track in tracks if track is not None]
 
 
 def pistons_at_start(scene: Scene) -> list[PistonTrack]:
-    """Return tracks of the pistons of a scene, each at rest at its initial position."""
+    """Return a track for each piston in a scene, at rest at its initial position."""
     always = np.array([0.0, 1.0])
     return [
         PistonTrack(
@@ -65,7 +66,7 @@ def pistons_at_start(scene: Scene) -> list[PistonTrack]:
 
 
 def _track(log: Log, k: int, start: float, end: float) -> PistonTrack | None:
-    """Return the track of piston k, from samples and from the positions of discs that hit it; None if unknown."""
+    """Return the track of piston k from samples and the positions of discs that hit it; None if it is unknown."""
     piston, wall_id = log.scene.piston[k], [wall.name for wall in log.walls].index(log.scene.piston[k].wall)
     sampled, places = log.observables["piston_position"]
     if not len(sampled):

@@ -1,1 +1,1 @@
-"""The report of a log: a single HTML page with every applicable analysis and a player of the motion."""
+"""Report of a log: a single HTML page with all applicable analyses and a player of the motion."""

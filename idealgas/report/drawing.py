@@ -1,7 +1,7 @@
 """Draw panels of lines, markers, error bars, bands and steps as SVG, from the objects of a matplotlib figure.
 
-matplotlib determines the limits, the ticks and their labels. It does not draw, because it creates an object for every
-tick and measures every text several times, which would take most of the time of a report.
+matplotlib determines the limits, the ticks and their labels, but does not draw: it would create an object for every
+tick and measure every text several times, which would take most of the time needed for a report.
 """
 
 import re
@@ -26,17 +26,17 @@ from idealgas.presentation.style import BLACK, COLOURS, GREY, GRID, LABEL_CHARAC
 from idealgas.presentation.tables import escape
 
 POINT = 72
-"""Units of an SVG per inch."""
+"""SVG units per inch."""
 
 NAMES = {colour.lower(): f"--c{k}" for k, colour in enumerate(COLOURS)} | {
     BLACK: "--ink",
     GREY.lower(): "--soft",
     GRID: "--line",
 }
-"""Variables in the style sheet of the page for the colours of figures."""
+"""Style-sheet variables of the page for the colours of figures."""
 
 SIZE, LEGEND_SIZE, LINE = 10.0, 9.0, 13.0
-"""Font sizes of texts and of the legend, and distance between lines of text, points."""
+"""Font sizes of text and of the legend, and distance between lines of text, points."""
 
 CHARACTER = 0.62
 """Assumed width of a character relative to the font size, slightly more than the width of most characters."""
@@ -45,13 +45,13 @@ LEAST_HEIGHT = 100.0
 """Smallest height between the axes, even with a long legend, points."""
 
 SWATCH = 20.0
-"""Length of the lines of a legend, points."""
+"""Length of the lines in a legend, points."""
 
 DASHES: dict[Any, tuple[float, ...]] = {"--": (3.7, 1.6), "-.": (6.4, 1.6, 1, 1.6), ":": (1, 1.65)}
-"""Dashes and gaps of lines in units of their widths, as in matplotlib."""
+"""Dashes and gaps of lines in units of the line width, as in matplotlib."""
 
 COMMANDS: dict[Any, str] = {1: "M", 2: "L", 3: "Q", 4: "C"}
-"""SVG commands by the codes of matplotlib paths; any other code closes a path."""
+"""SVG commands by matplotlib path code; any other code closes a path."""
 
 SUPERSCRIPTS = str.maketrans("0123456789-−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
 
@@ -79,13 +79,13 @@ def draw(figure: Figure, panel: Panel, size: tuple[float, float], key: str) -> t
     """Draw a panel of a drawable figure.
 
     Args:
-        figure: the figure; it is given the size of the picture.
+        figure: the figure, which is resized to the size of the picture.
         panel: the panel.
         size: width and height of the picture, points; the height is increased for a long legend.
-        key: name of the panel, which has to be unique on the page.
+        key: name of the panel, which must be unique on the page.
 
     Returns:
-        The content of the SVG element of the panel, and the position of its axes.
+        Content of the panel's SVG element, and the position of its axes.
     """
     entries = list(_legend(figure, panel))
     frame = _frame(figure, panel, size, sum(row for *_, row in entries))
@@ -101,16 +101,20 @@ def draw(figure: Figure, panel: Panel, size: tuple[float, float], key: str) -> t
 
 
 def _frame(figure: Figure, panel: Panel, size: tuple[float, float], legend: float) -> Frame:
-    """Place a panel in its figure, with space for the texts of the vertical axis and for the legend below.
+    """Place a panel in its figure, with space for the text on the vertical axis and for the legend below.
 
-    Sets the size of the figure. size: its width and smallest height, points. legend: height of the legend, points.
+    Args:
+        figure: the figure, whose size is set.
+        panel: the panel.
+        size: width and smallest height of the figure, points.
+        legend: height of the legend, points.
     """
     width, top, below = size[0], 1.8 * LINE, 2.8 * LINE + legend
     height = max(size[1], top + LEAST_HEIGHT + below)
     figure.set_dpi(POINT)
     figure.set_size_inches(width / POINT, height / POINT)
     left = LINE
-    for _ in range(2):  # twice is enough, as the number of ticks depends only on the height
+    for _ in range(2):  # twice is enough, because the number of ticks depends only on the height
         frame = Frame(width, height, left, width - 1.2 * LINE, height - below, top)
         place = frame.left, below, frame.right - frame.left, frame.bottom - frame.top
         panel.set_position((place[0] / width, place[1] / height, place[2] / width, place[3] / height))
@@ -123,7 +127,7 @@ def _frame(figure: Figure, panel: Panel, size: tuple[float, float], legend: floa
 
 
 def _ticks(axis: Axis) -> list[tuple[float, str]]:
-    """Return the ticks within the limits of an axis as pairs of position and label; minor ticks rarely have labels."""
+    """Return the ticks within the limits of an axis as pairs (position, label); minor ticks rarely have labels."""
     low, high = sorted(axis.get_view_interval())
     margin = 1e-9 * (high - low)
     ticks = []
@@ -137,7 +141,7 @@ def _ticks(axis: Axis) -> list[tuple[float, str]]:
 
 
 def _label(text: str) -> str:
-    """Return the label of a tick with powers as superscripts instead of matplotlib's markup."""
+    """Return the label of a tick, with superscripts for powers in place of matplotlib markup."""
     text = re.sub(r"\^\{(.*?)\}", lambda power: power[1].translate(SUPERSCRIPTS), text)
     return re.sub(r"\\mathdefault\{(.*?)\}|[$]", r"\1", text).replace(r"\times", "×").replace(r"\cdot", "·")
 
@@ -172,7 +176,7 @@ def _axes(panel: Panel, frame: Frame, down: Transform) -> str:
 
 
 def _text(x: float, y: float, anchor: str, text: str, size: float = SIZE) -> str:
-    """Return a line of text whose start, middle or end is at (x, y), as given by `anchor`."""
+    """Return a line of text that starts, is centred or ends at (x, y), depending on `anchor`."""
     place = f'x="{_number(x)}" y="{_number(y)}" font-size="{size:g}" text-anchor="{anchor}"'
     return f"<text {place}>{escape(plain(text))}</text>"
 
@@ -208,7 +212,7 @@ def _path(commands: str, style: str) -> str:
 
 
 def _number(value: float) -> str:
-    """Return a length in points with one decimal, so that rounding is invisible on most screens."""
+    """Return a length in points with one decimal; the rounding is invisible on most screens."""
     return f"{value:.1f}".removesuffix(".0")
 
 
@@ -232,7 +236,7 @@ def _fill(part: Any) -> str:
 
 
 def _paint(kind: str, colour: Any, alpha: float | None = None) -> str:
-    """Return a style that sets a colour, by its variable if it has one, and its opacity."""
+    """Return a style that sets a colour, through its style-sheet variable if there is one, and its opacity."""
     opacity, colour = to_rgba(colour, alpha)[3], to_hex(colour)
     if not opacity:
         return f"{kind}:none"
@@ -241,7 +245,7 @@ def _paint(kind: str, colour: Any, alpha: float | None = None) -> str:
 
 
 def _markers(line: Line2D, places: np.ndarray) -> str:
-    """Return the markers of a line at places (n, 2) as a single path.
+    """Return the markers of a line at positions (n, 2) as a single path.
 
     Filled circles are drawn as the round caps of lines of zero length.
     """
@@ -262,11 +266,11 @@ def _markers(line: Line2D, places: np.ndarray) -> str:
 
 
 def _legend(figure: Figure, panel: Panel) -> Iterator[tuple[float, float, Any, Sequence[str], float]]:
-    """Yield the entries of the legend of a panel.
+    """Yield the entries in the legend of a panel.
 
     Yields:
-        Horizontal position as a fraction of the width, vertical position in points, handle, lines of text, and height
-        that the entry adds to the legend in points.
+        Horizontal position as a fraction of the width, vertical position in points, handle, lines of text, and the
+            height in points that the entry adds to the legend.
     """
     if panel.get_legend() is None and not figure.legends:
         return
@@ -280,7 +284,7 @@ def _legend(figure: Figure, panel: Panel) -> Iterator[tuple[float, float, Any, S
 
 
 def _drawn_legend(entries: Sequence[tuple[float, float, Any, Sequence[str], float]], frame: Frame) -> Iterator[str]:
-    """Yield the SVG elements of the entries of a legend, below the axis."""
+    """Yield the SVG elements of the legend entries, below the axis."""
     for share, below, handle, lines, _ in entries:
         x, y = LINE / 2 + share * (frame.width - LINE), frame.bottom + 3.2 * LINE + below
         middle = y - 0.35 * LEGEND_SIZE

@@ -1,4 +1,4 @@
-"""The page that shows a log in the browser, even during the run, and its server, which only this machine can reach."""
+"""Page that shows a log in the browser, even during the run, and its server, which only this machine can reach."""
 
 import json
 import math
@@ -35,26 +35,26 @@ from idealgas.theory.conserved import centre_of_mass_velocity
 HOST = "127.0.0.1"
 
 ROWS = 2**16
-"""Largest number of event rows in a part of the motion."""
+"""Largest number of event rows in a segment of the motion."""
 
 SECONDS = 2.0
-"""Playing time of the newest part of a run, s."""
+"""Playing time of the newest segment of a run, s."""
 
 POINTS = 128
-"""Smallest number of points in the curves of a long log."""
+"""Smallest number of points in the curves for a long log."""
 
 POINT_ROWS = 2**14
 """Number of event rows around a point over which the pressure is averaged."""
 
 PATIENCE = 10.0
-"""Time limit for silence of a connection, for the arrival of its request, and for the transmission of the answer, s."""
+"""Time limit for each pause of a connection, for receiving its request, and for sending the answer, s."""
 
 MEASURING = 0.2
-"""Time that may be spent on measuring new points for an answer, s."""
+"""Time that may be spent on measuring new points for one answer, s."""
 
 
 class Live:
-    """Parts of the motion, and curves of temperature and pressure, of a log that a run may still be writing."""
+    """Segments of the motion, and curves of temperature and pressure, from a log that a run may still be writing."""
 
     def __init__(self, log: Log) -> None:
         """Prepare the log.
@@ -70,11 +70,11 @@ class Live:
 
     @property
     def running(self) -> bool:
-        """Whether the log is being written."""
+        """Whether a run is still writing the log."""
         return self._log.live
 
     def page(self) -> str:
-        """Return the HTML of the page, which then requests all data that change."""
+        """Return the HTML of the page, which then requests all data that may change."""
         log, scene = self._log, self._log.scene.scene
         heading = "The discs" if log.has_positions else "The speeds"
         shown = "After each part of the motion comes the newest one, or with the mark removed the next one."
@@ -92,11 +92,11 @@ class Live:
         )
 
     def part(self, after: float, newest: bool) -> dict[str, Any]:
-        """Return a part of the motion as plain values for JSON.
+        """Return a segment of the motion as plain values for JSON.
 
         Args:
-            after: time at which the part begins.
-            newest: whether it may begin later, to show the newest SECONDS of the run.
+            after: time at which the segment begins.
+            newest: whether the segment may begin later, to show the newest SECONDS of the run.
         """
         with self._refreshed() as log:
             first = max(after, self._newest()) if newest else after
@@ -112,7 +112,7 @@ class Live:
         """Measure more points, and return the curves and the state of the run as plain values for JSON.
 
         Args:
-            points: number of points that the page already shows; without new points, the curves are omitted.
+            points: number of points that the page already shows; if there are no new points, the curves are omitted.
         """
         with self._refreshed() as log:
             self._measure()
@@ -125,14 +125,14 @@ class Live:
 
     @contextmanager
     def _refreshed(self) -> Iterator[Log]:
-        """Yield the log in its present state, to one request at a time."""
+        """Yield the log in its current state, to one request at a time."""
         with self._lock:
             if not self._log.complete:
                 self._log.refresh()
             yield self._log
 
     def _newest(self) -> float:
-        """Return the start of the newest part of the motion."""
+        """Return the start of the newest segment of the motion."""
         log = self._log
         row = max(len(log) - ROWS, 0)
         return max(self._time_of(row) if row else log.start_time, log.end_time - SECONDS * self._second)
@@ -142,7 +142,7 @@ class Live:
         return float(block.time[0])
 
     def _measure(self) -> None:
-        """Measure points in the middle of the longest intervals between points, for MEASURING seconds."""
+        """Measure points at the centres of the longest intervals between points, for MEASURING seconds."""
         log, done = self._log, time.monotonic() + MEASURING
         while log.end_time > log.start_time and time.monotonic() < done:
             edges = np.array([log.start_time, *sorted(self._points), log.end_time])
@@ -153,7 +153,7 @@ class Live:
             self._points[middle] = _temperature(log, middle), self._pressures(middle)
 
     def _pressures(self, middle: float) -> dict[str, Estimate]:
-        """Return the pressure around a time, by name: of the gas, or on each wall if it has no equation of state."""
+        """Return the pressure around a time, by name: of the gas, or on each wall if there is no equation of state."""
         log = self._log
         row = min(max(log.row_at(middle) - POINT_ROWS // 2, 0), max(len(log) - 1 - POINT_ROWS, 0))
         try:
@@ -199,7 +199,7 @@ class Live:
 
 
 def _temperature(log: Log, at: float) -> float:
-    """Return the kinetic energy per disc at a time, excluding a conserved motion of the whole gas."""
+    """Return the kinetic energy per disc at a time, excluding a conserved motion of the gas as a whole."""
     state = log.state_at(at)
     velocity = state.velocity - centre_of_mass_velocity(log.scene, log.discs)
     return state.mean(log.discs.mass * (velocity**2).sum(axis=1)) / 2
@@ -209,7 +209,7 @@ def _temperature(log: Log, at: float) -> float:
 
 
 class _Server(ThreadingTCPServer):
-    """Server of the page of a log."""
+    """Server for the page of a log."""
 
     allow_reuse_address = True
     daemon_threads = True
@@ -221,20 +221,20 @@ class _Server(ThreadingTCPServer):
         self.name = f"{HOST}:{self.server_address[1]}"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Print only errors of the program, as browsers may end a connection at any time."""
+        """Print only errors in the program, because browsers may end a connection at any time."""
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """Handler of the requests of a browser for the page, parts of the motion and curves."""
+    """Handler of browser requests for the page, segments of the motion, and curves."""
 
     server: _Server
     server_version, sys_version = "idealgas", ""
     timeout = PATIENCE  # limit of each wait for bytes, and for sending an answer
 
     def setup(self) -> None:
-        """Begin a connection; it ends if its request is not complete in time, even while bytes are still arriving."""
+        """Begin a connection; it is closed if its request is not complete in time, even while bytes still arrive."""
         super().setup()
         self._timer = Timer(self.timeout, self._hang_up)
         self._timer.daemon = True
@@ -251,7 +251,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.connection.shutdown(SHUT_RDWR)
 
     def do_GET(self) -> None:
-        """Answer a request, unless it is for the name of another site that resolves to this machine."""
+        """Answer a request, unless its host name is that of another site that resolves to this machine."""
         try:
             url = urlsplit(self.path)
         except ValueError:
@@ -279,7 +279,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         try:
             values = make_data()
-        except UserError as error:  # temporary, if the log changes while it is read
+        except UserError as error:  # temporary: the log may have changed while it was read
             values = {"running": live.running, "state": str(error), "motion": None, "points": 0}
         self._answer(200, "application/json", json.dumps(values, allow_nan=False))
 
@@ -294,21 +294,21 @@ class _Handler(BaseHTTPRequestHandler):
             self.end_headers()
             self.wfile.write(body)
         except ConnectionError:
-            pass  # the tab of the browser was closed
+            pass  # the browser tab was closed
 
     def log_message(self, format: str, *args: Any) -> None:
         """Print nothing."""
 
 
 def _finite(text: str) -> float:
-    """Return the finite number that a text represents. Raises ValueError if it is anything else."""
+    """Return the finite number that a text represents; raise ValueError for any other text."""
     if not math.isfinite(value := float(text)):
         raise ValueError("not a finite number")
     return value
 
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; connect-src 'self'"
-"""Policy that prevents the page from loading anything from another server."""
+"""Content policy that prevents the page from loading anything from another server."""
 
 
 def serve(log: Log, port: int = 0, ready: Callable[[str], None] = lambda address: None) -> None:
@@ -316,7 +316,7 @@ def serve(log: Log, port: int = 0, ready: Callable[[str], None] = lambda address
 
     Args:
         log: the log to show.
-        port: number of the port; 0 for any free port.
+        port: port number; 0 for any free port.
         ready: function that is called with the address of the page.
 
     Raises:

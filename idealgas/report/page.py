@@ -20,15 +20,15 @@ from idealgas.report.player import MOST_DISCS, Player, player
 from idealgas.report.sections import ReportSection, make_sections
 
 SCRIPTS = ("gas.js", "views.js", "curves.js", "player.js")
-"""Files of the program of the page, in order."""
+"""JavaScript files of the page, in order."""
 
 
 CODE = re.compile("`([^`]+)`")
-"""Pattern of commands and keys in a description, which stand between backticks."""
+"""Pattern of commands and keys in a description, which are enclosed in backticks."""
 
 
 def text_of(name: str) -> str:
-    """Return the text of a file from which the page is made."""
+    """Return the text of a file that is included in the page."""
     return resources.files("idealgas.report").joinpath(name).read_text(encoding="utf-8")
 
 
@@ -52,7 +52,7 @@ SUMMARY = {
     "seconds": "wall time (s)",
     "compile_seconds": "compiling or loading machine code, before that (s)",
 }
-"""Labels, with units, of the values in the summary of a run that the report shows."""
+"""Labels, with units, of the values from the summary of a run that the report shows."""
 
 
 @takes_path
@@ -68,16 +68,16 @@ def write_report(
 
     Args:
         log: the log to show, or its path.
-        output: path of the page, with the ending .html or .htm.
+        output: path of the page, with extension .html or .htm.
         start: first time in the player; None for the start of the log.
         force: whether to replace an existing report.
-        on_step: function that is called with the number of finished sections and the number of all sections.
+        on_step: function that is called with the number of finished sections and the total number of sections.
 
     Returns:
         Path of the page.
 
     Raises:
-        UserError: if the path has another ending, or if the log does not cover `start`.
+        UserError: if the path has another extension, or if the log does not cover `start`.
         OutputError: if the page cannot be written.
     """
     path = Path(output)
@@ -128,9 +128,9 @@ def _page(log: Log, played: Player | None, sections: Sequence[ReportSection]) ->
 
 
 def description_html(description: str) -> str:
-    """Return the paragraphs of the description of a scene as HTML.
+    """Return the paragraphs in the description of a scene as HTML.
 
-    Indented paragraphs, which are tables and commands, keep their lines.
+    Indented paragraphs, which are tables and commands, keep their line breaks.
     """
     html = ""
     for text in filter(None, description.strip("\n").split("\n\n")):
@@ -144,7 +144,7 @@ def description_html(description: str) -> str:
 
 
 def _summary(log: Log, facts: dict) -> str:
-    """Return a sentence about the gas, with its packing fraction at the start, and about its run."""
+    """Return a sentence about the gas, with its initial packing fraction, and about its run."""
     gas, run, effects = facts["gas"], facts["run"], ", ".join(log.scene.effects)
     kind = f" with {effects}" if effects else ""
     discs = "disc" if gas["number"] == 1 else "discs"
@@ -156,7 +156,7 @@ def _summary(log: Log, facts: dict) -> str:
 
 
 def _player(log: Log, played: Player | None, heading: str) -> str:
-    """Return the HTML of the player, with a note about the time that it shows."""
+    """Return the HTML of the player, with a note about the time interval that it shows."""
     if played is None:
         reason = "no events are recorded" if not log.has_events else f"more than {MOST_DISCS:,} discs are too many"
         return f'<section id="s0"><h2>{heading}</h2><p class="note">No player: {reason}.</p></section>'

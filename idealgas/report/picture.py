@@ -19,12 +19,12 @@ MARGIN = 0.06
 
 
 def html_pictures(figure: Figure, caption: str, key: str) -> str:
-    """Return a figure as HTML: an SVG for each panel, and the caption below.
+    """Return a figure as HTML: an SVG for each panel, and the caption below them.
 
     Args:
         figure: the figure.
         caption: text of the caption.
-        key: name of the figure, which has to be unique on the page.
+        key: name of the figure, which must be unique on the page.
     """
     panels = [ax for ax in figure.axes if isinstance(ax, Panel)]
     with rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
@@ -34,9 +34,9 @@ def html_pictures(figure: Figure, caption: str, key: str) -> str:
 
 
 def _svg(panel: Panel, drawing: str, frame: Frame) -> str:
-    """Return the SVG of a panel, with the data that the page requires to mark the instant shown by the player.
+    """Return the SVG of a panel, with the data from which the page marks the instant that the player shows.
 
-    These are the position and the limits of the axes, and whether the panel shows time or strips of the box.
+    These data are the position and the limits of the axes, and whether the panel shows time or strips of the box.
     """
     axes = {
         "place": frame[2:],
@@ -53,7 +53,7 @@ def _svg(panel: Panel, drawing: str, frame: Frame) -> str:
 
 
 def _drawn(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
-    """Return the drawing of each panel of a figure, and the position of its axes."""
+    """Return the drawing and the position of the axes of each panel in a figure."""
     width, height = POINT * figure.get_size_inches()
     figure.set_layout_engine(None)
     grids = [spec.get_gridspec() for panel in panels if (spec := panel.get_subplotspec())]
@@ -67,16 +67,19 @@ def _drawn(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Fra
 
 
 def _drawn_by_matplotlib(figure: Figure, panels: list[Panel], key: str) -> list[tuple[str, Frame]]:
-    """Return the drawing of each panel of a figure with images or texts, and the position of its axes."""
+    """Return the drawing and the position of the axes of each panel in a figure that contains images or text."""
     disable_mathtext(figure)
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)
-    figure.set_layout_engine(None)  # "none" would leave a placeholder engine, with which every figure is drawn twice
+    figure.set_layout_engine(None)  # "none" would leave a placeholder engine, which draws every figure twice
     return [_picture(figure, panel, panels, f"{key}-{k}") for k, panel in enumerate(panels)]
 
 
 def _picture(figure: Figure, panel: Panel, panels: list[Panel], key: str) -> tuple[str, Frame]:
-    """Return the drawing of a panel, with unique ids and the same numbers for the same log, and its axes' position."""
+    """Return the drawing of a panel and the position of its axes.
+
+    Its ids are unique on the page, and its numbers are the same whenever the log is the same.
+    """
     part = _part(figure, panel, panels)
     for each in panels:
         each.set_visible(each is panel)
@@ -103,10 +106,10 @@ def _colour(colour: str) -> str:
 
 
 def _part(figure: Figure, panel: Panel, panels: list[Panel]) -> Bbox:
-    """Return the part of a figure that belongs to a panel, inches.
+    """Return the area of a figure that belongs to a panel, inches.
 
-    It is the whole figure if there is only one panel, and otherwise the width of its column and the height of the panel
-    with its texts.
+    It is the whole figure if there is only one panel; otherwise it has the width of the panel's column and the height
+    of the panel with its text.
     """
     width, height = figure.get_size_inches()
     spec = panel.get_subplotspec()

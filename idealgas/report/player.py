@@ -1,8 +1,8 @@
-"""Data of the player in a report page: a state of the gas and the events after it, as compact arrays.
+"""Data of the player in a report page: a state of the gas and the subsequent events, as compact arrays.
 
-Velocities are 32-bit floats with 24 significant bits. The page computes the flight of each disc from event to
-event; where the computed position would be off by more than ACCURACY, the data contain the position from the log.
-Therefore positions at any time are nearly as accurate as if each of them were stored as a 32-bit float.
+Velocities are 32-bit floats, with 24 significant bits. The page computes the flight of each disc from event to event.
+Where the computed position would be off by more than ACCURACY, the data contain the position from the log, so that
+positions at any time are nearly as accurate as if each were stored as a 32-bit float.
 """
 
 import base64
@@ -28,23 +28,26 @@ from idealgas.theory.conserved import centre_of_mass_velocity
 from idealgas.theory.ensemble import classes
 
 MOST_ROWS = 600_000
-"""Largest number of event rows in a page, which take about 10 MB."""
+"""Largest number of event rows in a page; so many rows take up about 10 MB."""
 
 MOST_DISCS = 100_000
 SHADES = 16
 MOST_INSTANTS, FEWEST_INSTANTS, MOST_NEIGHBOURHOODS = 64, 8, 2**15
-"""Limits for the local order of discs in a page: largest and smallest number of instants, and largest product of discs
-and instants. The order is omitted if there are more discs than this product, as finding their neighbours would take
-longer than the rest of the page."""
+"""Limits for the local order of discs in a page.
+
+They are the largest and the smallest number of instants, and the largest product of the numbers of discs and instants.
+The order is omitted if there are more discs than this product, because finding their neighbours would take longer than
+the rest of the page.
+"""
 
 TICKS = 2.0**32 - 1
-"""Number of ticks in the time of the player; times of events are multiples of a tick."""
+"""Number of ticks in the time interval of the player; event times are multiples of a tick."""
 
 LEAP = 2**16 - 1
-"""Smallest number of ticks between two events that is stored separately, with 32 bits instead of 16."""
+"""Smallest number of ticks between two events that is stored separately, in 32 bits instead of 16."""
 
 ACCURACY = 2.0**-24
-"""Largest deviation of a position from the position in the log, relative to the longer side of the box."""
+"""Largest difference between a position and that in the log, relative to the longer side of the box."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +57,8 @@ class Player:
     Attributes:
         head: plain values for JSON.
         arrays: little-endian numbers as base64 text, by name.
-        start: start of the time that can be played.
-        end: end of this time.
+        start: start of the time interval that can be played.
+        end: end of this interval.
     """
 
     head: dict[str, Any]
@@ -65,11 +68,13 @@ class Player:
 
 
 def player(log: Log, start: float | None = None, rows: int | None = None, order: bool = True) -> Player | None:
-    """Return the data of the player; None if the log has no events or too many discs, or if gravity changes in time.
+    """Return the data of the player for a log.
+
+    The result is None if the log has no events or too many discs, or if gravity depends on time.
 
     Args:
         log: the log.
-        start: start of the time to play; by default the start of the log.
+        start: start of the time interval; by default the start of the log.
         rows: largest number of event rows; by default MOST_ROWS.
         order: whether to include the local order ψ₆ of the discs.
     """
@@ -134,7 +139,7 @@ def player(log: Log, start: float | None = None, rows: int | None = None, order:
 
 
 def crossing(box: tuple[float, float], velocity: np.ndarray) -> float:
-    """Return the simulated time per second of playing, in which a typical disc crosses a part of the box."""
+    """Return the simulated time per second of playback at which a typical disc crosses the box in CROSSING seconds."""
     return max(box) / CROSSING / _rms_speed(velocity)
 
 
@@ -144,12 +149,12 @@ def _rms_speed(velocity: np.ndarray) -> float:
 
 
 def _absences(wall: NumberedWall, last: float) -> list[list[float]]:
-    """Return the times at which a wall opens and closes as finite numbers."""
+    """Return the times at which a wall opens and closes, as finite numbers."""
     return [[opens, min(closes, 2 * last + 1)] for opens, closes in wall.absences]
 
 
 def _pistons(log: Log, first: float, last: float) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Return axis, acceleration, limits and name of each piston, and its known times and positions, for an interval."""
+    """Return axis, acceleration, limits and name of each piston, and its known times and positions in an interval."""
     heads: list[dict[str, Any]] = []
     knots: dict[str, np.ndarray] = {}
     for k, track in enumerate(piston_tracks(log, first, last)):
@@ -167,9 +172,14 @@ def _ticks(time: np.ndarray, first: float, last: float) -> np.ndarray:
 
 
 def _events(log: Log, first: float, last: float, start: int, state: LogState) -> dict[str, np.ndarray]:
-    """Return the columns of the events between two times.
+    """Return the columns of the events in an interval.
 
-    start: number of the first event row. state: state of all discs at the first time.
+    Args:
+        log: the log.
+        first: start of the interval.
+        last: end of the interval.
+        start: index of the first event row.
+        state: state of all discs at the start.
     """
     names = ("time", "disc", "velocity", *(("position",) if log.has_positions else ()))
     blocks = list(log.chunks((*names, *(("kind",) if log.escapes else ())), start, log.row_at(last, "right")))
@@ -199,14 +209,19 @@ def _events(log: Log, first: float, last: float, start: int, state: LogState) ->
 def _unreached(
     log: Log, state: LogState, time: np.ndarray, disc: np.ndarray, velocity: np.ndarray, position: np.ndarray
 ) -> np.ndarray:
-    """Return the events, in order, at which the page requires the position of the disc.
+    """Return the events, in order, for which the page requires the position of the disc.
 
-    The deviations of all flights of a disc are summed, and the range of the sum is divided into cells as wide as the
-    accuracy. Whenever the sum enters another cell, the position is stored, so that the deviation since the last stored
-    position is less than the width of a cell.
+    The deviations in successive flights of a disc are summed, and the range of the sum is divided into cells of width
+    ACCURACY. Whenever the sum enters another cell, the position is stored. The deviation since the last stored position
+    is therefore less than the width of a cell.
 
-    state: state of all discs at the start of the player. time: (n,), time of each event since the start, as the page
-    computes it. disc: (n,). velocity, position: (n, 2), of the disc after the event.
+    Args:
+        log: the log.
+        state: state of all discs at the start of the player.
+        time: (n,), time of each event since the start, as the page computes it.
+        disc: (n,), disc of each event.
+        velocity: (n, 2), velocity of the disc after the event.
+        position: (n, 2), position of the disc.
     """
     ids = np.arange(len(log.discs))
     order = np.argsort(np.concatenate((ids, disc)), kind="stable")  # the start of each disc, followed by its events
@@ -221,13 +236,13 @@ def _unreached(
 
 
 def _order_shades() -> np.ndarray:
-    """Return the colours of order: no order, then each angle of ψ₆ at half and at full magnitude."""
+    """Return the colours for the local order: that of no order, then each angle of ψ₆ at half and full magnitude."""
     turn = np.exp(2j * np.pi * np.arange(SHADES) / SHADES)
     return order_colours(np.concatenate(([0], 0.5 * turn, turn)))
 
 
 def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
-    """Return the shades (F, N) of all discs at F evenly spaced instants, as numbers.
+    """Return the shades (F, N) of all discs at F evenly spaced instants, as indices.
 
     The array is omitted for a dilute gas, and if the neighbours of discs cannot be determined or are too many.
     """
@@ -246,7 +261,7 @@ def _order(log: Log, first: float, last: float) -> dict[str, np.ndarray]:
 
 
 def _packed(array: np.ndarray) -> str:
-    """Return an array as base64 text, with floats of 32 bits."""
+    """Return an array as base64 text; floats have 32 bits."""
     narrow = array.astype("<f4") if array.dtype.kind == "f" else array
     return base64.b64encode(np.ascontiguousarray(narrow).tobytes()).decode()
 

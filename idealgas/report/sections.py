@@ -22,7 +22,7 @@ class ReportSection:
         caption: text below the figure, which screen readers read aloud.
         tables: tables of the analysis.
         words: headline with the main result.
-        left_out: reason why the analysis does not apply; None if it does.
+        left_out: reason why the analysis does not apply; None if it applies.
     """
 
     analysis: str
