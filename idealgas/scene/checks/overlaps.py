@@ -26,8 +26,8 @@ ROUNDINGS = 16
 MOST_OVERLAPS = 1_000
 """Largest number of overlaps that are reported."""
 
-FEW = 128
-"""Number of discs up to which all pairs are compared."""
+FEW = 1024
+"""Number of discs up to which comparing all pairs takes less time than importing the search tree."""
 
 PART = 2048
 """Number of discs all of whose pairs fit in memory."""
@@ -126,7 +126,7 @@ def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iter
     if len(radius) <= FEW:
         yield np.triu_indices(len(radius), 1)
         return
-    from scipy.spatial import cKDTree  # slow to import, and not needed for few discs
+    from scipy.spatial import cKDTree  # slow to import
 
     def tree_of(group: np.ndarray) -> cKDTree:
         return cKDTree(centre[group], balanced_tree=False, compact_nodes=False)
