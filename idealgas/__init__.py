@@ -14,18 +14,18 @@
 `load_scene`, `load_example` and `parse_scene` return a `Scene`. `simulate` runs a scene and writes a log, and `resume`
 continues a run; both return a `Summary`. `open_run` starts a run that a program advances and steers.
 
-`open_log` opens a `Log` for reading. Each analysis is a function, such as `pressure`; `analyse` calls an analysis by
-its name, and `combine` combines its results from several logs. Analyses, `write_report`, `animate` and `export` accept
-a log or the path of a log. `load_sweep` reads a sweep, and `run_sweep` runs it.
+`open_log` opens a `Log` for reading. Each analysis is a function, such as `pressure`; `analyse` runs an analysis given
+by name, and `combine` combines the results of an analysis from several logs. Analyses, `write_report`, `animate` and
+`export` accept a log or the path of a log. `load_sweep` reads a sweep, and `run_sweep` runs it.
 
 Results are dataclasses with the methods `as_dict()`, which returns plain values for JSON, `tables()`, and `plot()`,
 which returns a matplotlib figure; notebooks show their tables. A measured number is an `Estimate`, a value with its
 standard error. An error that a user can correct is a `UserError` with a one-line message; `SceneError`, `LogError` and
 `OutputError` are derived from it.
 
-Lengths, times and masses are in arbitrary units, and Boltzmann's constant is 1. A name is imported when it is first
+Lengths, times and masses are in arbitrary units, and Boltzmann's constant is 1. Each name is imported when it is first
 used, so that `import idealgas` itself is fast. If idealgas is imported before NumPy, the linear algebra of NumPy and
-SciPy uses one thread, unless the environment variable OPENBLAS_NUM_THREADS sets another number.
+SciPy uses one thread, unless the environment variable OPENBLAS_NUM_THREADS specifies another number.
 """
 
 import os
@@ -35,7 +35,7 @@ from typing import Any
 
 from idealgas._version import __version__
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin while they wait, longer than small products take
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # waiting threads would spin for longer than small products take
 
 _HOMES = {
     "idealgas.accuracy.study": ("study_accuracy",),
@@ -63,7 +63,7 @@ __all__ = ["__version__", *sorted(name for names in _HOMES.values() for name in 
 
 
 def __getattr__(name: str) -> Any:
-    """Return the object with a name, which is imported at its first use (PEP 562)."""
+    """Return the object with this name; it is imported when it is first used (PEP 562)."""
     for home, names in _HOMES.items():
         if name in names:
             globals()[name] = value = getattr(import_module(home), name)
@@ -77,7 +77,7 @@ def __getattr__(name: str) -> Any:
 
 @cache
 def _function(name: str) -> Any:
-    """Return the function of an analysis, always the same object."""
+    """Return the function that runs an analysis, always the same object."""
     from idealgas.analysis import registry
 
     return registry.find(name).function()

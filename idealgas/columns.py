@@ -1,6 +1,6 @@
-"""Definition of an event row: its columns, batches of rows, kinds of events, and numbers of walls.
+"""Definition of an event row: its columns, batches of rows, kinds of events, and wall numbers.
 
-Each column is declared once, here. Batches, tables of a log, checkpoints, snapshots and exports use this declaration.
+Each column is declared once, here. Batches, tables in a log, checkpoints, snapshots and exports use this declaration.
 
 Walls 0 to 3 are the sides of the box; wall segments follow. In events, the partner -1 - k stands for wall k.
 """
@@ -15,13 +15,13 @@ SIDES = ("left", "right", "bottom", "top")
 """Names of walls 0 to 3."""
 
 MOST_SPECIES, MOST_WALLS = 1_000, 10_000
-"""Largest number of species, which is limited as pairs of species are counted, and of wall segments."""
+"""Largest number of species (limited because pairs of species are counted), and of wall segments."""
 
 FIRST_SEGMENT = len(SIDES)
 """Number of the first wall segment; further segments follow in the order of the scene."""
 
 HEAT_BATH = 1 << 30
-"""Number of the heat bath, larger than the number of any wall; in events, the partner BATH stands for it."""
+"""Number of the heat bath, which exceeds all wall numbers; in events, the partner BATH stands for it."""
 
 BATH = -1 - HEAT_BATH
 """Partner of a disc in an event of kind THERMOSTAT."""
@@ -36,11 +36,11 @@ Point = tuple[float, float]
 """Coordinates (x, y), length."""
 
 BLOCK = 65_536
-"""Number of rows of a full batch, and of a chunk in the file."""
+"""Number of rows in a full batch, and in a chunk of the file."""
 
 
 class Kind(IntEnum):
-    """Kind of an event, that is what a disc collided with; stored in the log as `events/kind`."""
+    """Kind of an event: the object with which a disc collided; stored in the log as `events/kind`."""
 
     DISC = 0
     WALL = 1
@@ -62,16 +62,16 @@ WALL_HITS = (Kind.WALL, Kind.WALL_END, Kind.FIXED_DISC, Kind.PISTON)
 
 
 class Column(NamedTuple):
-    """A column of a table.
+    """A column in a table.
 
     Attributes:
         name: name of the column.
         dtype: NumPy type of its numbers.
-        shape: shape of the entry of a row.
-        unit: unit of its numbers; empty if they have none.
+        shape: shape of the entry in one row.
+        unit: unit of its numbers; empty if there is none.
         when: property that discs must have (see `POSITIONS`) for their events to have this column; empty if all events
             have it.
-        parts: names of the components of an entry, for tables in which each column is a single number.
+        parts: names of the components of an entry, for tables in which each column contains a single number per row.
     """
 
     name: str
@@ -87,7 +87,7 @@ COUNTED = {
     Kind.STEERED: Column("steered", "i8"),
     Kind.ESCAPED: Column("escaped", "i8"),
 }
-"""Columns of checkpoints that count events of optional kinds; a log without such a column has no events of its kind."""
+"""Checkpoint columns that count events of optional kinds; without such a column, a log has no events of this kind."""
 
 Arrays = dict[Column, np.ndarray]
 """Columns with an entry for each disc."""
@@ -118,7 +118,7 @@ EVENT_COLUMNS = (
 
 
 class EventBatch(NamedTuple):
-    """Rows of the event log in order of time; a collision of two discs has two rows, the smaller id first.
+    """Rows of the event log in time order; a collision of two discs has two rows, the smaller id first.
 
     Attributes:
         time: (n,) f8, time of the event.
@@ -128,7 +128,7 @@ class EventBatch(NamedTuple):
         position: (n, 2) f8, position after the event, length; None if the method has no positions.
         velocity: (n, 2) f8, velocity after the event, length/time.
         angular_velocity: (n,) f8, angular velocity after the event, 1/time; None if discs do not spin.
-        image: (n, 2) i4, number of box lengths to add to the position to unwrap it; None without periodic sides.
+        image: (n, 2) i4, number of box lengths to be added to the position to unwrap it; None without periodic sides.
         trial: (n,) u8, number of the Monte Carlo trial, from 1; None for other methods.
     """
 
@@ -148,29 +148,29 @@ class EventBatch(NamedTuple):
 
 
 def event_columns(*has: str) -> tuple[Column, ...]:
-    """Return the columns of the events of discs that have these properties."""
+    """Return the event columns of discs that have these properties."""
     return tuple(column for column in EVENT_COLUMNS if not column.when or column.when in has)
 
 
 def columns_named(names: Collection[str]) -> tuple[Column, ...]:
-    """Return the columns of events with these names, in the order of their declaration."""
+    """Return the event columns with these names, in the order of their declaration."""
     return tuple(column for column in EVENT_COLUMNS if column.name in names)
 
 
 PLAIN_COLUMNS = event_columns(POSITIONS)
-"""Columns of the events of smooth discs in a reflecting box."""
+"""Event columns of smooth discs in a reflecting box."""
 
 
 def empty_batch(rows: int = BLOCK, columns: Sequence[Column] = PLAIN_COLUMNS) -> EventBatch:
-    """Return a batch of `rows` rows with these columns, for an engine to fill; all other columns are None."""
+    """Return a batch of `rows` rows with these columns, to be filled by an engine; all other columns are None."""
     made = {column.name: np.empty((rows, *column.shape), column.dtype) for column in columns}
     return EventBatch(*(made.get(name) for name in EventBatch._fields))  # type: ignore[arg-type]
 
 
 def face_names(walls: Sequence[str]) -> list[str]:
-    """Return the names of all faces of walls, given the names of the walls: the sides, then both faces of each segment.
+    """Return the names of all faces, given the names of the walls: the sides, then both faces of each segment.
 
-    The face on the left, seen from the start of the segment towards its end, comes first.
+    The face on the left, as seen from the start of the segment towards its end, comes first.
     """
     segments = walls[FIRST_SEGMENT:]
     return [*walls[:FIRST_SEGMENT], *(f"{name} {face}" for name in segments for face in ("left", "right"))]
@@ -182,7 +182,7 @@ def axis_of(side: int) -> int:
 
 
 def is_upper(side: int) -> bool:
-    """Return whether a side is at the larger coordinate along its axis, as are right and top."""
+    """Return whether a side is at the larger coordinate along its axis, as the right and top sides are."""
     return side % 2 == 1
 
 
@@ -197,7 +197,7 @@ def opposite(side: int) -> int:
 
 
 def side_ends(box: tuple[float, float]) -> list[tuple[Point, Point]]:
-    """Return both end points of each side of a box (width, height), length."""
+    """Return the two end points of each side of a box (width, height), length."""
     width, height = box
     left, right = ((0.0, 0.0), (0.0, height)), ((width, 0.0), (width, height))
     return [left, right, ((0.0, 0.0), (width, 0.0)), ((0.0, height), (width, height))]

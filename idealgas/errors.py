@@ -1,4 +1,4 @@
-"""Errors that a user can correct, which are printed on one line without a traceback, and text that is safe to print."""
+"""Errors that a user can correct, printed on one line without a traceback, and text that is safe to print."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -9,7 +9,7 @@ _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u20
 
 
 class UserError(Exception):
-    """The input or the environment is wrong; `exit_code` is the exit code of the command."""
+    """An error in the input or the environment; `exit_code` is the exit code of the command."""
 
     exit_code = 2
 
@@ -27,12 +27,12 @@ class NotApplicableError(UserError):
 
 
 def plain(text: str) -> str:
-    """Return a text with control characters replaced by escapes, as in TOML and JSON, so that it is safe to print."""
+    """Return text with control characters replaced by escapes, as in TOML and JSON, so that it is safe to print."""
     return _CONTROL.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def install(extra: str) -> str:
-    """Return the command that installs a group of optional packages of pyproject.toml."""
+    """Return the command that installs a group of optional packages from pyproject.toml."""
     return f'.venv/bin/pip install -e ".[{extra}]" in the top folder'
 
 
@@ -46,7 +46,7 @@ def unknown(kind: str, got: str, allowed: Sequence[str]) -> UserError:
     """Return a UserError for an unknown name, which suggests the most similar allowed name.
 
     Args:
-        kind: what the name stands for.
+        kind: what is named, for example "quantity".
         got: the unknown name.
         allowed: all allowed names.
     """

@@ -1,4 +1,4 @@
-"""The example scenes that are installed with the package."""
+"""Example scenes that are installed with the package."""
 
 import re
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ def path_of(name: str) -> Path:
 
 
 def paths() -> list[Path]:
-    """Return the paths of all scenes, in alphabetical order of their names."""
+    """Return the paths of all scenes, in alphabetical order of name."""
     return sorted(path_of("").glob(f"*{SCENE}"), key=lambda path: path.stem)
 
 
@@ -33,7 +33,7 @@ def names() -> list[str]:
 
 
 def first_sentence(description: str) -> tuple[str, str]:
-    """Return the first sentence of the description of a scene on one line, and the text that follows it."""
+    """Return the first sentence of a scene description on one line, and the rest of the text."""
     paragraph, *following = description.strip("\n").split("\n\n", maxsplit=1)
     sentence, *remainder = re.split(r"(?<=\.)\s+", paragraph, maxsplit=1)
     return " ".join(sentence.split()), "\n\n".join((*remainder, *following))
@@ -44,7 +44,7 @@ def load_example(name: str, overrides: Sequence[str] = ()) -> "Scene":
 
     Args:
         name: name of the example; `idealgas examples` lists all names.
-        overrides: changes of keys, as for `load_scene`.
+        overrides: changes to keys, as for `load_scene`.
 
     Raises:
         UserError: if there is no such example or the changes are invalid.

@@ -1,7 +1,7 @@
-"""Plain values of dataclasses, ready for JSON, made from their fields, and dataclasses restored from plain values.
+"""Conversion of dataclasses to plain values, ready for JSON, and back.
 
-A field is named as in its dataclass, unless its type contains another name, `Annotated[float, Key("other_name")]`, or a
-`Mark` instead of a name. Properties marked with `reported` are plain values too.
+The plain value of a field has the name of the field, unless its type contains another name, `Annotated[float,
+Key("other_name")]`, or a `Mark`. Properties marked with `reported` are also plain values.
 """
 
 import math
@@ -19,13 +19,13 @@ Instance = TypeVar("Instance")
 
 @dataclass(frozen=True)
 class Key:
-    """Name of a field among the plain values."""
+    """Name under which a field appears among the plain values."""
 
     name: str
 
 
 class Mark(Enum):
-    """How a field appears among the plain values."""
+    """Way in which a field appears among the plain values."""
 
     OMITTED = "never"
     OPTIONAL = "unless it is None"
@@ -36,13 +36,13 @@ OMITTED, OPTIONAL, INLINE = Mark
 
 
 def reported(function: Function) -> Function:
-    """Mark a property, below `@property`, as one of the plain values of its dataclass."""
+    """Mark a property, below `@property`, as a plain value of its dataclass."""
     function.__dict__["reported"] = True
     return function
 
 
 def as_dict(instance: Any) -> dict[str, Any]:
-    """Return the fields and reported properties of a dataclass by name, as plain values."""
+    """Return the fields and reported properties of a dataclass as plain values by name."""
     values: dict[str, Any] = {}
     for field in fields(instance):
         values |= _of_field(field, getattr(instance, field.name))
@@ -71,7 +71,7 @@ def reported_properties(kind: type) -> Iterator[str]:
 
 
 def plain_value(value: Any) -> Any:
-    """Return a value in terms of dict, list, str, int, float, bool and None; None for numbers that are not finite."""
+    """Return a value as dict, list, str, int, float, bool or None; numbers that are not finite become None."""
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
@@ -90,12 +90,12 @@ def plain_value(value: Any) -> Any:
 
 
 def from_dict(kind: type[Instance], values: Mapping[str, Any]) -> Instance:
-    """Return a dataclass from its plain values, as `as_dict` returns them.
+    """Return a dataclass from its plain values, as returned by `as_dict`.
 
-    Omitted fields have their default values. A number that was not finite is nan.
+    Omitted fields have their default values. Numbers that were not finite become nan.
 
     Raises:
-        LookupError, TypeError, ValueError: if the values are not those of the dataclass.
+        LookupError, TypeError, ValueError: if the values do not match the dataclass.
     """
     arguments: dict[str, Any] = {}
     for field in fields(kind):  # type: ignore[arg-type]
@@ -108,7 +108,7 @@ def from_dict(kind: type[Instance], values: Mapping[str, Any]) -> Instance:
 
 
 def _inline(kind: type, field: "Field[Any]", values: Mapping[str, Any]) -> Any:
-    """Return the value of a field whose plain values are among those of its dataclass."""
+    """Return the value of a field whose plain values are stored directly among those of its dataclass."""
     (inner, *optional), group = _alternatives(field.type), values
     if get_origin(inner) is dict:
         others = {_key(other) for other in fields(kind) if other is not field} | set(reported_properties(kind))
@@ -119,13 +119,13 @@ def _inline(kind: type, field: "Field[Any]", values: Mapping[str, Any]) -> Any:
 
 
 def _alternatives(kind: Any) -> tuple[Any, ...]:
-    """Return the types of a field without its marks: one, or one and None."""
+    """Return the types of a field without its marks: a single type, or a type and None."""
     kind = get_args(kind)[0] if get_origin(kind) is Annotated else kind
     return get_args(kind) if get_origin(kind) is UnionType else (kind,)
 
 
 def _restored(kind: Any, value: Any) -> Any:
-    """Return a value of a type from its plain value; see `from_dict`."""
+    """Return a value of the given type from its plain value; see `from_dict`."""
     kind, *optional = _alternatives(kind)
     if optional and value is None:
         return None

@@ -1,4 +1,4 @@
-"""Output files: they are checked before writing, and appear under their names only when they are complete."""
+"""Output files, which are checked before writing and appear under their names only when they are complete."""
 
 import errno
 import os
@@ -14,7 +14,7 @@ from idealgas.errors import OutputError
 from idealgas.locks import WriteLock, is_locked, open_regular
 
 LOG = "log"
-"""The kind of a log; the other kinds of files are called by their endings."""
+"""Kind of a log file; other kinds are named by their extensions."""
 
 HEAD = 4096  # number of bytes at the start of a file from which its type is recognised
 
@@ -37,11 +37,11 @@ _BEGINNINGS = {
     ".png": rb"\x89PNG\r\n\x1a\n",
     ".svg": rb"<\?xml.*<svg",
     ".toml": rb"# sweep of \d+ points by idealgas\n",
-    "results.csv": rb"",  # a sweep renames a table that it has not written itself
+    "results.csv": rb"",  # a sweep renames a table that it did not write
     "scene": rb"#:schema scene",
     "scene.schema.json": rb'\{\s*"\$defs"',
 }
-"""Patterns of the first bytes of the files that this program writes, by kind."""
+"""Patterns of the first bytes of files that this program writes, by kind."""
 
 IN_USE = "another run is writing this file"
 NO_LOCKS = (
@@ -54,8 +54,8 @@ Name = str | os.PathLike[str]
 def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> None:
     """Check that a file can be written.
 
-    An existing file is overwritten only with `force`, and only if it is empty or of the same kind, so that a typing
-    error does not destroy other files.
+    An existing file is overwritten only with `force`, and only if it is empty or of the same kind, so that a mistyped
+    name does not destroy other files.
 
     Args:
         path: path of the file.
@@ -84,7 +84,7 @@ def check_output(path: Name, kind: str, force: bool = False, inputs: Iterable[Na
 
 
 def _check_folder(place: Path, needs_lock: bool) -> None:
-    """Raise OSError with the reason of the system if a file cannot be created beside another, or cannot be locked."""
+    """Raise OSError with the system's reason if a file cannot be created or locked in a folder."""
     part = beside(place)
     part.touch(exist_ok=False)
     try:
@@ -108,13 +108,13 @@ def _check_replaceable(path: Path, existing: os.stat_result, kind: str, force: b
 
 
 def is_of_kind(path: Path, kind: str) -> bool:
-    """Return whether a file begins like the files of a kind that this program writes."""
+    """Return whether a file begins like files of this kind that this program writes."""
     with open_regular(path) as file:
         return bool(re.match(_BEGINNINGS[kind], file.read(HEAD), re.DOTALL))
 
 
 def describe_file_type(head: bytes) -> str:
-    """Return the type of a file, recognised by its first bytes, and the command that reads such files."""
+    """Return the type of a file, recognised by its first bytes, with the command that reads such files."""
     if re.match(_HDF5, head):
         return "an HDF5 file (`idealgas info` reads logs)"
     if b"\0" in head:
@@ -130,7 +130,7 @@ def _stat(path: Name) -> os.stat_result | None:
 
 @contextmanager
 def written(path: Name, kind: str, force: bool = False, inputs: Iterable[Name] = ()) -> Iterator[Path]:
-    """Check an output with `check_output`, and then write it as with `replacing`. Raises OutputError."""
+    """Check an output with `check_output`, then write it as with `replacing`. Raises OutputError."""
     check_output(path, kind, force, inputs)
     with replacing(Path(path), force) as part:
         yield part
@@ -155,13 +155,13 @@ def replacing(path: Path, force: bool = True) -> Iterator[Path]:
 
 
 def beside(path: Path) -> Path:
-    """Return a unique hidden path in the folder of a file; for a symbolic link, in the folder of its target."""
+    """Return a unique hidden path in the folder of a file; for a symbolic link, in the folder of the link's target."""
     place = path.resolve()
     return place.with_name(f".{place.name}.{secrets.token_hex(4)}")
 
 
 def temporaries(folder: Path) -> Iterator[Path]:
-    """Yield the files in a folder whose paths were made by `beside`."""
+    """Yield the files in a folder whose paths were created by `beside`."""
     for path in folder.iterdir():
         if re.fullmatch(r"\..+\.[0-9a-f]{8}", path.name):
             yield path
@@ -170,11 +170,11 @@ def temporaries(folder: Path) -> Iterator[Path]:
 def give_name(part: Path, path: Path, force: bool, fsync: bool = False) -> None:
     """Move a complete file to its final path, atomically.
 
-    An existing file is overwritten only with `force`, and never while it is being written.
+    An existing file is overwritten only with `force`, and never while a process is writing it.
     """
     place = path.resolve()
     while not _named(part, place, force):
-        pass  # the existing file was removed or replaced meanwhile
+        pass  # the existing file has since been removed or replaced
     if fsync:
         system.sync_folder(place.parent)
 
@@ -203,7 +203,7 @@ def _named(part: Path, place: Path, force: bool) -> bool:
 def error_number(error: Exception) -> int | None:
     """Return the number of the system error that caused an error; None if there is none.
 
-    Errors of HDF5 contain the number only in their text.
+    HDF5 errors contain the number only in their text.
     """
     number = error.errno if isinstance(error, OSError) else None
     match = re.search(r"errno = (\d+)", str(error))

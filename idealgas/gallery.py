@@ -1,4 +1,4 @@
-"""The gallery of the example scenes: a picture of each scene at time 0, and an HTML page with all of them."""
+"""Gallery of the example scenes: a picture of each scene at time 0, and an HTML page with all of them."""
 
 import base64
 import io
@@ -50,7 +50,7 @@ $scenes
 
 
 def described(name: str) -> tuple[str, str]:
-    """Return the title of an example scene, and its description as HTML."""
+    """Return the title of an example scene and its description as HTML."""
     about = tomllib.loads(path_of(name + SCENE).read_text(encoding="utf-8"))["scene"]
     return about["title"], description_html(about.get("description", ""))
 
@@ -65,7 +65,7 @@ def commands(name: str) -> tuple[str, ...]:
 
 
 def draw(name: str) -> bytes | None:
-    """Return a PNG picture of the discs of an example scene at time 0; None for a gas without positions."""
+    """Return a PNG picture of the discs in an example scene at time 0; None for a gas without positions."""
     import numpy as np
     from PIL import Image
 
@@ -103,16 +103,17 @@ def write_gallery(
     """Write a self-contained page with pictures and descriptions of example scenes.
 
     Args:
-        output: path of the page, with the ending .html or .htm.
+        output: path of the page, with extension .html or .htm.
         scenes: names of the scenes.
         force: whether to replace an existing page.
-        on_scene: function that is called before each scene with the number of finished scenes and its name.
+        on_scene: function that is called before each scene with the number of finished scenes and the name of the
+            scene.
 
     Returns:
         Path of the page.
 
     Raises:
-        UserError: if the path has another ending or a name is unknown.
+        UserError: if the path has another extension or a name is unknown.
         OutputError: if the page cannot be written.
     """
     path, kind = Path(output), Path(output).suffix.lower()

@@ -1,6 +1,6 @@
-"""Open regular files, and allow only one writer per file.
+"""Open regular files, with only one writer per file at a time.
 
-The writer holds a lock that all processes respect, and is registered in its own process.
+The writer holds a lock that all processes respect, and is also registered in its own process.
 """
 
 import errno
@@ -14,14 +14,14 @@ from typing import IO, Self
 from idealgas import system
 
 TIMEOUT = 0.5
-"""Time for which a writer waits for a lock, as readers hold it for a moment on some systems, s."""
+"""Time for which a writer waits for a lock, because on some systems readers hold it for a moment, s."""
 
 _held: dict[tuple[int, int], "WriteLock"] = {}
 _guard = threading.Lock()
 
 
 class WriteLock:
-    """The right to be the only writer of a file, until `close`.
+    """The exclusive right to write a file, held until `close`.
 
     Attributes:
         descriptor: descriptor of the file, open for reading and writing.
@@ -36,7 +36,8 @@ class WriteLock:
 
         Raises:
             BlockingIOError: if this or another process is writing the file.
-            OSError: if it cannot be opened for writing, or, with number ENOLCK, if its file system has no locks.
+            OSError: if the file cannot be opened for writing, or, with errno ENOLCK, if its file system does not
+                support locks.
         """
         self.descriptor = regular(path, os.O_RDWR)
         self._key = _key(self.descriptor)
@@ -51,7 +52,7 @@ class WriteLock:
             raise
 
     def is_of(self, path: Path) -> bool:
-        """Return whether a path still leads to the locked file."""
+        """Return whether a path still refers to the locked file."""
         return os.path.samestat(os.fstat(self.descriptor), os.stat(path))
 
     def close(self) -> None:
@@ -74,7 +75,7 @@ def _key(descriptor: int) -> tuple[int, int]:
 
 
 def _locking_disabled() -> bool:
-    """Return whether the user has disabled file locking, by the same environment variable as for HDF5."""
+    """Return whether the user has disabled file locking, with the same environment variable as for HDF5."""
     return os.environ.get("HDF5_USE_FILE_LOCKING", "").upper() in ("FALSE", "0", "BEST_EFFORT")
 
 
@@ -122,7 +123,8 @@ def open_regular(path: Path, mode: str = "rb") -> IO[bytes]:
 def regular(path: str | Path, flags: int) -> int:
     """Open a regular file, as the `opener` of `open`.
 
-    Other files are refused before they are opened, as opening a device may change it, and opening a FIFO waits.
+    Other files are rejected before they are opened, because opening a device may change its state, and opening a FIFO
+    waits.
     """
     _check_regular(os.stat(path))
     descriptor = os.open(path, flags | system.WITHOUT_WAITING)

@@ -12,10 +12,10 @@ MARGIN = 1e-9
 def near_pairs(
     position: np.ndarray, radius: np.ndarray, period: tuple[float, float] = NOT_PERIODIC
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the pairs of discs that touch, overlap or nearly touch, in several parts.
+    """Yield the pairs of discs that touch, overlap or nearly touch, in several batches.
 
-    Discs are grouped by size, from one power of two to the next. Each group is searched for pairs within it and with
-    all smaller discs, so that a few large discs among many small ones cost little.
+    Discs are grouped by size, in ranges of a factor of two. Each group is searched for pairs within the group and for
+    pairs with smaller discs, so that a few large discs among many small ones cost little.
 
     Args:
         position: (N, 2), length.
@@ -44,5 +44,5 @@ def near_pairs(
 
 
 def _reach(contact: float, period: tuple[float, float]) -> float:
-    """Return the distance up to which pairs may touch, with margins larger than the rounding of coordinates."""
+    """Return the distance up to which discs may touch, with margins larger than the rounding errors of coordinates."""
     return contact * (1 + MARGIN) + 1e-15 * max(period)

@@ -1,4 +1,4 @@
-"""The state of the gas at an instant, and the random numbers from which it is drawn."""
+"""State of the gas at an instant, and the random numbers from which it is drawn."""
 
 from dataclasses import dataclass
 
@@ -13,14 +13,14 @@ class Gas:
     """All discs at an instant, in order of id.
 
     Attributes:
-        box: (Lx, Ly), size of the box, length; the origin is the lower left corner.
+        box: (Lx, Ly), size of the box, length; the origin is at the lower left corner.
         position: (N, 2) f8, positions, length.
         velocity: (N, 2) f8, velocities, length/time.
         radius: (N,) f8, radii, length.
         mass: (N,) f8, masses, mass.
         species: (N,) u2, index into species_names.
         species_names: name of each species.
-        solid_area: area of the box from which the gas is excluded by solid walls, length².
+        solid_area: area of the box that is occupied by solid walls, length².
     """
 
     box: tuple[float, float]
@@ -46,24 +46,24 @@ class Gas:
 
     @property
     def partner(self) -> np.ndarray:
-        """(N,), index into `partners` of each disc."""
+        """(N,), index of each disc into `partners`."""
         return self.species if len(self.species_names) <= MOST_PAIRED else np.zeros_like(self.species)
 
     @property
     def unlike(self) -> tuple[str, ...]:
-        """Names of the species whose discs differ from each other in radius or mass."""
+        """Names of the species whose discs differ in radius or mass."""
         _, first, kind = np.unique(self.species, return_index=True, return_inverse=True)
         differs = (self.radius != self.radius[first][kind]) | (self.mass != self.mass[first][kind])
         return tuple(self.species_names[k] for k in np.unique(self.species[differs]))
 
     @property
     def area(self) -> float:
-        """Area of the box without solids, length²."""
+        """Area of the box without solid walls, length²."""
         return self.box[0] * self.box[1] - self.solid_area
 
     @property
     def packing_fraction(self) -> float:
-        """Fraction of the area that the discs cover, no unit."""
+        """Fraction of the area that is covered by discs, no unit."""
         return float(np.pi * (self.radius**2).sum() / self.area)
 
     @property
@@ -74,12 +74,12 @@ class Gas:
 
     @property
     def temperature(self) -> float:
-        """Kinetic temperature E/N, mass·length²/time², as a disc has two degrees of freedom and k_B = 1."""
+        """Kinetic temperature E/N, mass·length²/time², for two degrees of freedom per disc and k_B = 1."""
         return self.kinetic_energy / len(self)
 
 
 def rng(seed: int, use: str) -> "np.random.Generator":
-    """Return the generator of random numbers of a seed for a purpose, independent of the generators for all others.
+    """Return the random-number generator of a seed for one purpose, independent of the generators for other purposes.
 
     Args:
         seed: seed of the scene.

@@ -1,4 +1,4 @@
-"""Functions that differ between operating systems: locks, open files, folders of users.
+"""Functions that differ between operating systems: locks, open files, user folders.
 
 The rest of the package uses only what Python offers on all systems.
 """
@@ -25,7 +25,7 @@ except ImportError:
     msvcrt = None  # type: ignore[assignment]
 
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
-"""Error numbers of file systems and kernels that do not support locks."""
+"""Error numbers that file systems and kernels without support for locks report."""
 
 MOVES_OPEN_FILES = os.name != "nt"
 """Whether an open file can be moved and replaced."""
@@ -34,7 +34,7 @@ STDIN = "/dev/stdin"
 """Path that stands for the standard input, even on systems without such a file."""
 
 WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0)
-"""Flag of `os.open` that prevents waiting when a FIFO is opened."""
+"""Flag for `os.open` that prevents it from waiting when it opens a FIFO."""
 
 _FLOCK = "hhqqi0q"
 """Format of Linux's `struct flock`: type, whence, start, length, process."""
@@ -42,27 +42,27 @@ _FLOCK = "hhqqi0q"
 _FAR = 1 << 30
 """High 32 bits of the position of the byte that is locked on Windows.
 
-It lies far beyond the end of any file, as a locked byte cannot be read by others.
+The byte lies far beyond the end of any file, because other processes cannot read a locked byte.
 """
 
 
 def lock(descriptor: int) -> None:
-    """Lock a file, which is open for writing, until it is closed. The lock is advisory.
+    """Lock a file, which must be open for writing, until it is closed. The lock is advisory.
 
     The lock belongs to the open file, not to the process: opening and closing the same file elsewhere in the process
     does not release it.
 
     Raises:
-        BlockingIOError: if another open file has the lock, in this or another process.
-        OSError: with number ENOLCK, if the file system does not support locks.
+        BlockingIOError: if another open file in this or another process holds the lock.
+        OSError: with errno ENOLCK, if the file system does not support locks.
     """
     _locking(lambda: _lock(descriptor))
 
 
 def has_other_lock(descriptor: int) -> bool:
-    """Return whether another open file has the lock of a file, which is open for reading.
+    """Return whether another open file holds the lock on a file, which must be open for reading.
 
-    On some systems the test itself holds the lock for a moment.
+    On some systems this check itself holds the lock for a moment.
 
     Raises:
         OSError: as for `lock`.
@@ -128,7 +128,10 @@ else:
 
 
 def sync_folder(folder: Path) -> None:
-    """Wait until the names in a folder are on the disk; on Windows, which writes them in order, do nothing."""
+    """Wait until the names in a folder are on the disk.
+
+    On Windows, which writes names in order, this does nothing.
+    """
     if os.name != "nt":
         descriptor = os.open(folder, os.O_RDONLY)
         try:
@@ -140,7 +143,7 @@ def sync_folder(folder: Path) -> None:
 def move_to_free_name(part: Path, place: Path) -> None:
     """Move a file to a new name, without overwriting an existing file.
 
-    This is atomic, except on a file system without links.
+    The move is atomic, except on a file system that does not support hard links.
 
     Raises:
         FileExistsError: if a file with this name exists.
@@ -166,13 +169,16 @@ def cores() -> int:
 
 
 def free_unused_memory() -> None:
-    """Return freed memory to the system, as glibc keeps much of the memory used for placing a gas and compiling."""
+    """Return freed memory to the system.
+
+    glibc would keep much of the memory that was used for placing a gas and for compiling.
+    """
     if sys.platform == "linux" and hasattr(c_library := ctypes.CDLL(None), "malloc_trim"):
         c_library.malloc_trim(0)
 
 
 def cache_home() -> Path | None:
-    """Return the folder for caches of the user; None for a user without a home folder."""
+    """Return the folder for the user's caches; None for a user without a home folder."""
     if sys.platform == "win32":
         named, usual = "LOCALAPPDATA", "~/AppData/Local"
     else:
@@ -182,12 +188,12 @@ def cache_home() -> Path | None:
 
 
 def user_number() -> int | None:
-    """Return the numeric id of the user of this process; None on Windows, where the folders of a user are private."""
+    """Return the numeric id of the user of this process; None on Windows, where user folders are private."""
     return os.geteuid() if hasattr(os, "geteuid") else None
 
 
 def make_private(folder: Path) -> bool:
-    """Create a folder unless it exists; return whether only the user of this process and root can change it.
+    """Create a folder unless it exists; return whether only root and the user of this process can change it.
 
     The folder is not created inside a folder that another user can change.
     """

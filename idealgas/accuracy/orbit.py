@@ -80,15 +80,15 @@ def is_on_orbit(gas: Gas) -> bool:
 
 @dataclass(frozen=True)
 class Survival:
-    """Lifetime of the orbit in a precision: time at speed 1 until the first collision that the exact motion lacks.
+    """Lifetime of the orbit in one precision: time at speed 1 until a collision that the exact motion does not have.
 
     Attributes:
         precision: name of the arithmetic.
         digits: number of decimal digits.
         scene: lifetime in the box of the scene; None if the orbit never broke.
-        times: lifetimes in the other boxes, for orbits that broke.
-        unbroken: number of orbits in the other boxes that did not break within MOST_PERIODS periods.
-        median: median of the lifetimes in the other boxes, counting unbroken orbits with MOST_PERIODS periods.
+        times: lifetimes of the orbits in other boxes that broke.
+        unbroken: number of orbits in other boxes that did not break within MOST_PERIODS periods.
+        median: median lifetime in the other boxes, where an unbroken orbit counts as MOST_PERIODS periods.
     """
 
     precision: str

@@ -22,13 +22,13 @@ class SpeedRow(NamedTuple):
     Attributes:
         N: number of discs.
         phi: packing fraction.
-        threads: number of threads that were used.
+        threads: number of threads used.
         log: whether events were logged.
         collisions_per_s: pair collisions per second, median over the repeats.
         slowest: smallest number of pair collisions per second.
         fastest: largest number of pair collisions per second.
-        ratio: speed with the log relative to the speed without it, median over pairs of consecutive runs; None without
-            the log.
+        ratio: speed with the log relative to the speed without it, median over pairs of consecutive runs; None for runs
+            without the log.
     """
 
     N: int
@@ -74,12 +74,12 @@ def bench(
     on_row: Callable[[SpeedRow], None] = lambda row: None,
     threads: Iterable[int] = (1,),
 ) -> Bench:
-    """Measure the speed of runs, alternately without and with the log.
+    """Measure the speed of runs, alternating between runs without and with the log.
 
     Args:
         numbers: numbers of discs.
         fractions: packing fractions.
-        collisions: smallest number of pair collisions of a run, which is increased to two per disc.
+        collisions: smallest number of pair collisions in a run; it is increased to at least two per disc.
         repeats: number of runs of each kind.
         on_row: function that is called with each row of the result.
         threads: numbers of threads.

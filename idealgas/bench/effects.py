@@ -1,6 +1,6 @@
-"""Measure the cost of each effect: the time per event with the effect relative to the plain box.
+"""Measure the cost of each effect: the time per event with the effect, relative to a box without effects.
 
-Both are measured alternately in the same process.
+Runs with and without the effect alternate in the same process.
 """
 
 import math
@@ -38,7 +38,7 @@ def _scenes() -> dict[str, Sequence[BenchmarkSample]]:
 
 
 SCENES = _scenes()
-"""Samples that each effect, and all effects together, add to the scene of the plain box."""
+"""Samples that each effect, and all effects together, add to the benchmark scene without effects."""
 
 
 class EffectCost(NamedTuple):
@@ -46,7 +46,7 @@ class EffectCost(NamedTuple):
 
     Attributes:
         effect: name of the effect.
-        ratio: time per event (pair collision or wall hit) relative to the plain box, median over the repeats.
+        ratio: time per event (pair collision or wall hit) relative to the box without effects, median over the repeats.
         smallest: smallest of these ratios.
         largest: largest of these ratios.
         compile_seconds: time for compiling or loading the machine code, s.
@@ -60,7 +60,7 @@ class EffectCost(NamedTuple):
 
 
 def effect_scene(effect: str | None, events: int) -> Scene:
-    """Return the scene of the plain box with an effect of SCENES, or without effects for None."""
+    """Return the scene of the benchmark box with an effect from SCENES, or without effects for None."""
     samples = SCENES[effect] if effect is not None else ()
     keys = "".join(sample.box(SIDE) for sample in samples)
     tables = "".join(sample.tables(SIDE) for sample in samples)
@@ -70,10 +70,10 @@ def effect_scene(effect: str | None, events: int) -> Scene:
 def bench_effects(
     events: int = 500_000, repeats: int = 5, on_row: Callable[[EffectCost], None] = lambda row: None
 ) -> list[EffectCost]:
-    """Measure the cost of every effect alone, and of all compatible effects together.
+    """Measure the cost of each effect alone, and of all compatible effects together.
 
     Args:
-        events: number of events of each run.
+        events: number of events in each run.
         repeats: number of runs of each kind.
         on_row: function that is called with each row of the result.
     """

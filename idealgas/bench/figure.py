@@ -18,7 +18,7 @@ class Peer(NamedTuple):
     Attributes:
         name: name of the program.
         phi: packing fraction.
-        rates: collisions per second, by the number of discs.
+        rates: collisions per second, by number of discs.
         source: source of these numbers.
     """
 
@@ -36,13 +36,13 @@ PEERS = (
         "measured on one core, alternating with idealgas",
     ),
 )
-"""Other programs; their speeds are stated values, which the benchmark does not measure."""
+"""Other programs; their speeds were not measured by this benchmark."""
 
 
 def bench_figure(bench: Bench) -> Figure:
     """Return a figure of collisions per second and time per collision against N, without the log.
 
-    It has a line for each packing fraction and number of threads.
+    There is a curve for each packing fraction and number of threads.
     """
     figure, (rates, times) = panels(1, 2)
     series: dict[tuple[float, int], dict[int, float]] = {}

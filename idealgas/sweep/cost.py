@@ -19,23 +19,23 @@ from idealgas.scene import Scene
 from idealgas.sweep.plan import Sweep
 from idealgas.theory.forecast import BYTES_A_ROW, Forecast, forecast
 
-TRIAL_EVENTS = 20_000  # number of events of a short run, which measures the speed
-MOST_TRIALS = 32  # largest number of short runs; combinations without a short run are given the speed of the last one
-TRIAL_SHARE = 0.02  # largest time of short runs relative to the sweep, if theory predicts the number of events
-START = 3.0  # time in which workers start, execute short runs and end, s
+TRIAL_EVENTS = 20_000  # number of events in a short run that measures the speed
+MOST_TRIALS = 32  # largest number of short runs; combinations without one are assigned the speed of the last short run
+TRIAL_SHARE = 0.02  # largest fraction of the time of the sweep for short runs, if theory predicts the number of events
+START = 3.0  # time that workers need to start, execute short runs and stop, s
 ROWS_PER_SECOND = 1e6  # number of event rows that an analysis reads per second
 _imported: set[tuple[str, ...]] = set()  # analyses whose modules this process has imported in a short run
 
 
 class Cost(NamedTuple):
-    """Estimated cost of a point of a sweep.
+    """Estimated cost of a point in a sweep.
 
     Attributes:
         number: number of discs.
         packing_fraction: packing fraction, no unit.
         events: number of events.
         bytes: size of the log, bytes.
-        seconds: time of the run and its analyses, s.
+        seconds: time taken by the run and its analyses, s.
     """
 
     number: int
@@ -51,8 +51,8 @@ class Trial(NamedTuple):
     Attributes:
         rows: number of event rows per event.
         per_second: number of events per second.
-        per_time: number of events per simulated time.
-        seconds: time of the run and its analyses, s.
+        per_time: number of events per unit of simulated time.
+        seconds: time taken by the run and its analyses, s.
         apart: part of this time in which no events are simulated, s.
     """
 
@@ -74,10 +74,10 @@ def estimate_cost(
 
     Args:
         sweep: the sweep.
-        on_progress: function that is called with the number of finished steps, which are forecasts and then short runs,
-            and the number of all steps.
+        on_progress: function that is called with the number of finished steps (first forecasts, then short runs) and
+            the total number of steps.
         folder: folder for the logs of the short runs, which are removed afterwards; None for a temporary folder.
-        execute: function like `map` that executes the short runs; `map` executes them in this process.
+        execute: function like `map` that executes the short runs; `map` itself executes them in this process.
     """
     combinations = {point.combination: point.scene for point in sweep.points}
     scenes, forecasts = list(combinations.values()), list[Forecast]()
@@ -105,7 +105,7 @@ def estimate_cost(
 
 
 def total_seconds(costs: Sequence[Cost], workers: int) -> float:
-    """Return the time of a sweep on a number of workers of this machine, given the costs of its points, s."""
+    """Return the time that a sweep with these costs takes on a number of workers on this machine, s."""
     seconds = [cost.seconds for cost in costs]
     return START + max(sum(seconds) / workers, max(seconds, default=0.0))
 
@@ -124,7 +124,7 @@ def _cost(scene: Scene, expected: Forecast, trial: Trial, analyses: int) -> Cost
 
 
 def _try(scene: Scene, analyses: tuple[str, ...], folder: Path) -> Trial:
-    """Run a scene for a short time; the first time in a process it is run twice, as the first run imports modules."""
+    """Run a scene for a short time; the first run in a process is repeated, because it also imports modules."""
     if analyses not in _imported:
         _imported.add(analyses)
         _try(scene, analyses, folder)

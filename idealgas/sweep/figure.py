@@ -1,4 +1,4 @@
-"""Draw a quantity of a sweep against one of its axes."""
+"""Draw a quantity from a sweep against one of the axes of the sweep."""
 
 import os
 from collections.abc import Iterable
@@ -36,7 +36,7 @@ UNITS = {
     "velocity": "length/time",
     "width": "length",
 }
-"""Units of keys of a scene, by the last part of their names."""
+"""Units of scene keys, by the last component of their names."""
 
 QUANTITY_UNITS = {
     "*.area": "length²",
@@ -57,20 +57,20 @@ QUANTITY_UNITS = {
     "temperature.species.*.both": "energy",
     "transport.diffusion.*.coefficient": "length²/time",
 }
-"""Units of quantities of results.csv, by patterns of their names; all other quantities that are drawn have no unit."""
+"""Units of quantities in results.csv, by patterns of their names; all other quantities that are drawn have no unit."""
 
 
 def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, axis: str | None = None) -> Figure:
     """Return a figure of a quantity against an axis, with one curve for each combination of values of the other axes.
 
-    Measured values and theory are averages over the replicates. Theory is evaluated only at the points of the sweep,
-    where it has markers; the straight lines between them are a guide to the eye.
+    Measured and theoretical values are averages over the replicates. Theory is evaluated only at the points of the
+    sweep, where it has markers; the straight lines between them are a guide to the eye.
 
     Args:
         folder: folder of the sweep.
-        quantity: name of the quantity in results.csv; None for the main quantity of the first analysis that has one,
-            or otherwise the first quantity with a standard error.
-        axis: key of an axis with numbers; None for the first one.
+        quantity: name of the quantity in results.csv; None for the main quantity of the first analysis that has one, or
+            otherwise for the first quantity with a standard error.
+        axis: key of an axis with numbers; None for the first such axis.
 
     Raises:
         UserError: if the sweep has no such quantity or axis, or no results.
@@ -95,7 +95,7 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
         colour, _, marker = curve_style(k)
         ax.errorbar(places, values, yerr=errors, fmt=marker, color=colour, capsize=3, label=label or "measured")
         known = [(place, *theory) for place in places if (theory := _theory(points[place]))]
-        if known:  # theory has only one entry in the legend, as each line passes through the points of its curve
+        if known:  # one legend entry is enough, because each theory line passes through the points of its curve
             x, theories, theory_errors = np.array(known).T
             ax.theory(x, theories, theory_errors, label="theory, at the points", marker="x")
     ax.set(xlabel=_axis_name(axis), ylabel=_quantity_name(quantity, group))
@@ -104,13 +104,19 @@ def sweep_figure(folder: str | os.PathLike[str], quantity: str | None = None, ax
 
 
 def say_missing(figure: Figure, folder: str | os.PathLike[str]) -> Figure:
-    """Write above the figure of a sweep how many of its runs have no results yet, if any, and return the figure."""
+    """Write above the figure of a sweep how many of its runs have no results yet, and return the figure.
+
+    If no results are missing, nothing is written.
+    """
     missing, total = missing_runs(folder)
     return add_title(figure, f"{missing:,} of {total:,} runs are missing") if missing else figure
 
 
 def _theory(rows: list[Row]) -> tuple[float, float] | None:
-    """Return the averages over replicates of a theory and of its error, which is common to all; None without theory."""
+    """Return the averages over replicates of the theoretical value and its error, which all replicates share.
+
+    The result is None if theory is not available.
+    """
     known = [row for row in rows if row.get("theory") is not None]
     if not known:
         return None
@@ -122,7 +128,7 @@ def _value(value: Any) -> str:
 
 
 def _axis_name(key: str) -> str:
-    """Return the name of an axis in words, with its unit if it has one, such as "temperature of 'gas' (energy)"."""
+    """Return the name of an axis in words, with any unit, such as "temperature of 'gas' (energy)"."""
     if key == PHI:
         return "packing fraction φ"
     *owner, name = key.split(".")
@@ -134,7 +140,7 @@ def _axis_name(key: str) -> str:
 
 
 def _quantity_name(quantity: str, group: str) -> str:
-    """Return the name of a quantity in words with its unit, such as "temperature: species: 'gas': both (energy)"."""
+    """Return the name of a quantity in words, with its unit, such as "temperature: species: 'gas': both (energy)"."""
     unit = next((unit for pattern, unit in QUANTITY_UNITS.items() if fnmatchcase(quantity, pattern)), None)
     groups = {identifier(word): f"'{word}'" for word in (*group.split(", "), group)}
     return ": ".join(groups.get(part) or _words(part) for part in quantity.split(".")) + _unit(unit)

@@ -1,4 +1,4 @@
-"""The folder of a sweep, in which only one process at a time runs a sweep.
+"""Folder of a sweep, in which only one process at a time can run a sweep.
 
 Finished points keep their numbers and seeds when a sweep is continued.
 """
@@ -25,7 +25,7 @@ from idealgas.sweep.results import done_points, plan_path, stored_scene, table_p
 from idealgas.toml.dump import dump_document
 
 LOCK = ".lock"
-"""Name of the lock file, whose contents mark a folder as the folder of a sweep."""
+"""Name of the lock file, whose contents mark a folder as that of a sweep."""
 
 MARK = b"idealgas sweep\n"
 """Contents of the lock file."""
@@ -38,11 +38,11 @@ def hold_folder(folder: Path) -> Iterator[None]:
     """Create the folder of a sweep if it is missing, and lock it until the block ends.
 
     Unfinished files that no process is writing are removed at the beginning and at the end of the block. No file in an
-    existing folder is opened for writing unless a lock file marks it as the folder of a sweep.
+    existing folder is opened for writing unless a lock file marks the folder as that of a sweep.
 
     Raises:
-        UserError: if another process has locked the folder, or if it contains other files.
-        OutputError: if it cannot be written.
+        UserError: if another process has locked the folder, or if the folder contains other files.
+        OutputError: if the folder cannot be written.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,7 @@ def _remove_unfinished(folder: Path) -> None:
     """Remove files that processes left behind when they failed or were killed, if the file system allows it."""
     with suppress(OSError):
         for part in (*temporaries(folder), *temporaries(points_folder(folder)), *unfinished_logs(folder)):
-            if not is_locked(part):  # a worker of a cluster may still be writing it
+            if not is_locked(part):  # a worker on a cluster may still be writing it
                 part.unlink(missing_ok=True)
 
 
@@ -83,7 +83,7 @@ def _is_marked(folder: Path) -> bool:
 
 
 def check_outputs(folder: Path, points: Iterable[int]) -> None:
-    """Raise UserError if a file that the sweep would write exists but was not written by it.
+    """Raise UserError if a file that the sweep would write exists but was not written by this sweep.
 
     Args:
         folder: folder of the sweep.
@@ -101,10 +101,11 @@ def check_outputs(folder: Path, points: Iterable[int]) -> None:
 
 
 def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
-    """Return the sweep with the point numbers and seeds of a folder, and write the file of the sweep there.
+    """Return the sweep with the point numbers and seeds of a folder, and write the sweep file to the folder.
 
-    Finished points keep their numbers, even if new values are inserted between the old ones. All other points get the
-    free numbers in order. Therefore a new sweep is unchanged, and a stopped sweep resumes as it began.
+    Finished points keep their numbers, even if new values are inserted between old values. All other points are
+    assigned the free numbers in order. A new sweep is therefore unchanged, and a stopped sweep resumes with the same
+    numbers.
 
     Raises:
         UserError: if a finished point is not part of this sweep.
@@ -134,13 +135,13 @@ def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise OutputError if the folder has been removed in the meantime."""
+    """Raise OutputError if the folder has been removed since the start."""
     if not points_folder(folder).is_dir():
         raise OutputError(f"{folder}: cannot be written: {os.strerror(errno.ENOENT)}", exit_code=1)
 
 
 def _labelled(entries: Iterable[tuple[dict[str, Any], int, Entry]]) -> Iterator[tuple[tuple[str, int], Entry]]:
-    """Yield entries with a label made of their values, their replicate and a counter of equal labels."""
+    """Yield entries, each with a label that consists of its values, its replicate and a counter of equal labels."""
     seen: Counter[str] = Counter()
     for values, replicate, entry in entries:
         text = json.dumps([values, replicate], sort_keys=True)
@@ -162,7 +163,7 @@ def _foreign_point(folder: Path, stored: dict[str, Any]) -> UserError:
 
 
 def _matches(folder: Path, stored: dict[str, Any], scene: Scene, sweep: Sweep) -> bool:
-    """Return whether stored results belong to this scene and contain the analyses of the sweep."""
+    """Return whether stored results belong to this scene and include the analyses of the sweep."""
     if set(stored["analyses"]) != set(sweep.analyses):
         return False
     return stored["scene"] == dump_document(scene) or stored_scene(folder, stored) == scene

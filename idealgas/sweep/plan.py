@@ -1,4 +1,4 @@
-"""The plan of a sweep: a base scene, axes whose values change it, and the resulting points, each with its scene."""
+"""Plan of a sweep: a base scene, axes whose values change it, and the resulting points, each with its scene."""
 
 import copy
 import math
@@ -34,14 +34,14 @@ from idealgas.toml.text import TextOrigin, parse_document, read_text
 
 @dataclass(frozen=True)
 class Point:
-    """A point of a sweep, that is a single run.
+    """A point of a sweep: a single run.
 
     Attributes:
         index: number of the point.
         combination: number of its combination of values.
         replicate: number of its replicate.
-        values: value of each axis, by its key, in the order of the axes.
-        scene: the scene to run.
+        values: value on each axis, by the key of the axis, in the order of the axes.
+        scene: scene to be run.
     """
 
     index: int
@@ -56,12 +56,12 @@ class Sweep:
     """A sweep.
 
     Attributes:
-        analyses: names of the analyses of each point.
+        analyses: names of the analyses that are applied to each point.
         keep_logs: whether logs are kept.
         points: all runs.
-        seed: seed from which the seeds of all points follow.
-        text: text of the file of the sweep, which is copied to its folder.
-        published: values of papers.
+        seed: seed from which the seeds of all points are derived.
+        text: text of the sweep file, which is copied to the folder of the sweep.
+        published: published values.
     """
 
     analyses: tuple[str, ...]
@@ -77,14 +77,14 @@ def load_sweep(
     overrides: Sequence[str] = (),
     on_progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Sweep:
-    """Read the file of a sweep and make all of its points.
+    """Read a sweep file and make all points of the sweep.
 
     Args:
         path: path of the file.
-        overrides: changes "table.key=value" of a table of the file ("sweep.replicates=2") or of every base scene
+        overrides: changes "table.key=value" to a table of the file ("sweep.replicates=2") or to every base scene
             ("run.events=1000").
         on_progress: function that is called with the number of combinations of values that have been checked, and the
-            number of all combinations.
+            total number of combinations.
 
     Raises:
         SceneError: with all errors in the file, in its base scenes and in its points.
@@ -110,7 +110,7 @@ def load_sweep(
 
 
 def _override(document: dict[str, Any], overrides: Iterable[str]) -> dict[Key, str]:
-    """Apply overrides to a document, and return them by the keys that they set. Raises SceneError."""
+    """Apply overrides to a document, and return each override by the key that it sets. Raises SceneError."""
     places: dict[Key, str] = {}
     for override in overrides:
         place = f"--set {override}"
@@ -122,7 +122,7 @@ Base = tuple[dict[str, Any], TextOrigin]
 
 
 def _bases(tables: SweepTables, path: Path, origin: TextOrigin, overrides: Sequence[str]) -> dict[Value | None, Base]:
-    """Return the base scenes, with overrides, by their value of the axis "base"; a single one has the key None."""
+    """Return the base scenes, with overrides, by their value on the axis "base"; a single base scene has key None."""
     bases: dict[Value | None, Base]
     if tables.base is not None:
         places = {key[1:]: place for key, place in origin.overridden.items() if key[0] == "base"}
@@ -146,10 +146,10 @@ def _read_base(path: Path) -> Base:
 def _points(
     tables: SweepTables, bases: dict[Value | None, Base], origin: TextOrigin, on_progress: Callable[[int, int], None]
 ) -> Iterator[Point]:
-    """Return the points in the order of the axes; the last axis changes fastest, and replicates are consecutive."""
+    """Return the points in the order of the axes; the last axis varies fastest, and replicates are consecutive."""
     settings, groups = tables.sweep, axis_groups(tables.axis)
     total = math.prod(map(len, groups))
-    errors: dict[str, None] = {}  # a dict, so that each line occurs only once
+    errors: dict[str, None] = {}  # a dict, so that each line is listed only once
     points: list[Point] = []
     for combination, steps in enumerate(product(*groups)):
         on_progress(combination, total)
@@ -171,11 +171,11 @@ def _points(
 def _scene(
     axes: Sequence[Axis], pairs: Sequence[tuple[int, Value]], bases: dict[Value | None, Base], origin: TextOrigin
 ) -> Scene:
-    """Return the scene of a combination of values, each given with the number of its axis. Raises SceneError."""
+    """Return the scene for a combination of values, each given with the number of its axis. Raises SceneError."""
     base, base_origin = bases[next((value for i, value in pairs if axes[i].key == BASE), None)]
     document = copy.deepcopy(base)
     places: dict[Key, str] = {}
-    for i, value in sorted(pairs, key=lambda pair: axes[pair[0]].key == PHI):  # phi last: it depends on the discs
+    for i, value in sorted(pairs, key=lambda pair: axes[pair[0]].key == PHI):  # phi depends on the discs
         key, line = axes[i].key, origin.line(("axis", i, "key"))
         place = f"{origin.name}:{line}: {key} = {toml_value(value)}"
         if key == BASE:
@@ -193,7 +193,7 @@ def _scene(
 
 
 def _placed(origin: TextOrigin, places: Mapping[Key, str]) -> TextOrigin:
-    """Return the origin of a document in which keys have been changed at the given places."""
+    """Return the origin of a document in which the keys at the given places have been changed."""
     return TextOrigin(origin.text, origin.name, {**origin.overridden, **places}, origin.above)
 
 
@@ -221,22 +221,22 @@ def with_seed(scene: Scene, seed: int) -> Scene:
 
 
 def seed_of(seed: int, combination: int, replicate: int) -> int:
-    """Return the seed of the scene of a point; it depends neither on other points nor on the worker that runs it."""
+    """Return the seed for the scene of a point; it does not depend on other points or on the worker that runs it."""
     drawn = np.random.SeedSequence(seed, spawn_key=(combination, replicate)).generate_state(1, np.uint64)
     return int(drawn[0]) >> 1
 
 
 def scale_box(document: dict[str, Any], scene: Scene, phi: Value, place: str) -> None:
-    """Scale the box of a document so that its discs have the packing fraction phi.
+    """Scale the box in a document so that its discs have packing fraction phi.
 
     Args:
-        document: the document to change.
-        scene: its scene.
+        document: document to change.
+        scene: scene of the document.
         phi: packing fraction.
         place: place of the value of phi, with which error messages begin.
 
     Raises:
-        SceneError: if phi is not a packing fraction, or if parts of the scene have positions in the box.
+        SceneError: if phi is not a packing fraction, or if something in the scene has a fixed position in the box.
     """
     fixed = ["start" if scene.start else "disc"] if len(scene.explicit_discs) else []
     fixed += [str(effect.keys[0][0]) for effect in scene.active_effects if not effect.properties.is_scalable]

@@ -1,4 +1,4 @@
-"""Run a point of a sweep on a worker: write its log, analyse it, and write the file of its results."""
+"""Run a point of a sweep on a worker: write its log, analyse the log, and write the result file."""
 
 import json
 import os
@@ -11,11 +11,11 @@ from idealgas.sweep.plan import Point
 from idealgas.toml.dump import dump_document
 
 COMMAND = "idealgas sweep"
-"""Command in the logs of all points."""
+"""Command that is recorded in the logs of all points."""
 
 
 def points_folder(folder: str | os.PathLike[str]) -> Path:
-    """Return the folder of the files of all points of a sweep."""
+    """Return the folder that contains the files of all points of a sweep."""
     return Path(folder) / "points"
 
 
@@ -30,19 +30,22 @@ def log_path(folder: str | os.PathLike[str], index: int) -> Path:
 
 
 def unfinished_log(folder: str | os.PathLike[str], index: int) -> Path:
-    """Return the path of the log of a point while it is not complete."""
+    """Return the path of the log of a point before it is complete."""
     return points_folder(folder) / f"{index:04d}.h5.part"
 
 
 def unfinished_logs(folder: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yield the paths of all logs that are not complete."""
+    """Yield the paths of all incomplete logs."""
     for path in points_folder(folder).glob("*.h5.part"):
         if path.name.partition(".")[0].isdecimal():
             yield path
 
 
 def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: bool) -> None:
-    """Simulate and analyse a point. Files appear under their names when they are complete, the result file last."""
+    """Simulate and analyse a point.
+
+    Each file is given its name once it is complete; the result file comes last.
+    """
     from idealgas.log import open_log
     from idealgas.run.simulate import simulate
 
@@ -50,7 +53,7 @@ def run_point(point: Point, folder: Path, analyses: tuple[str, ...], keep_log: b
     if done.exists():
         return
     scene = point.scene
-    if not keep_log:  # the log will be removed, so that compression would only cost time
+    if not keep_log:  # compressing a log that will be removed would only cost time
         scene = scene.model_copy(update={"log": scene.log.model_copy(update={"compression": "none"})})
     part = unfinished_log(folder, point.index)
     simulate(scene, part, force=True, command=COMMAND)

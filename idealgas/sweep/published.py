@@ -1,4 +1,4 @@
-"""Compare the values of sweeps with the values that papers publish for the same points."""
+"""Compare the values from sweeps with published values at the same points."""
 
 import json
 import math
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 HEADS = ("", "value", "± s.e.", "published", "± error", "deviation (σ)")
 
 FARTHEST = 6.0
-"""Largest deviation that is drawn to scale, σ; larger deviations are drawn at the edge with their values."""
+"""Largest deviation drawn to scale, σ; larger deviations are drawn at the edge, with their values."""
 
 
 class PublishedComparison(NamedTuple):
-    """A published value and the value of a sweep, which is the average over its replicates.
+    """A published value and the value from a sweep, averaged over the replicates.
 
     Attributes:
         point: values of the axes, as text.
-        value: value of the sweep.
-        error: its standard error.
+        value: value from the sweep.
+        error: standard error of the value from the sweep.
         published: published value.
-        published_error: its standard error.
+        published_error: standard error of the published value.
     """
 
     point: str
@@ -40,13 +40,13 @@ class PublishedComparison(NamedTuple):
 
     @property
     def deviation(self) -> float:
-        """Difference in units of the combined standard error; infinite for two exact values that differ."""
+        """Difference in units of the combined standard error; infinite for two different exact values."""
         off, both = self.value - self.published, math.hypot(self.error, self.published_error)
         return off / both if both else math.copysign(math.inf, off) if off else 0.0
 
 
 def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[Published, list[PublishedComparison]]]:
-    """Yield each table `[[published]]` of a sweep with the comparisons at all points that have results.
+    """Yield each `[[published]]` table of a sweep with the comparisons at all points that have results.
 
     Raises:
         UserError: if the sweep has no such quantity or no results.
@@ -67,7 +67,9 @@ def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[
 
 
 def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[Table]:
-    """Yield a table for each paper: values of the sweep, published values, and deviations in units of both errors.
+    """Yield a table for each paper: values from the sweep, published values, and deviations.
+
+    Deviations are in units of the combined standard error.
 
     Raises:
         UserError: if the sweep has no such quantity or no results.
@@ -86,7 +88,7 @@ def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[T
 
 
 def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> "Figure":
-    """Return a figure of the deviations from published values, a row per paper. sweeps: sweeps with their folders."""
+    """Return a figure of the deviations from published values, one row per paper. sweeps: (sweep, folder) pairs."""
     from idealgas.presentation.style import COLOURS, GREY, WIDTH, name_rows, panels
 
     papers: dict[str, list[PublishedComparison]] = {}
@@ -117,5 +119,5 @@ def published_figure(sweeps: Iterable[tuple[Sweep, str | os.PathLike[str]]]) -> 
 
 
 def _label(values: dict[str, Any]) -> str:
-    """Return the values of the axes of a point as text, which is the same for values from a plan and from results."""
+    """Return the values of a point on the axes as text, which is the same for values from a plan and from results."""
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items()) or "base scene"

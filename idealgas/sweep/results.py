@@ -1,4 +1,4 @@
-"""Collect the results of a sweep in one table, with a row for each number from an analysis of a point."""
+"""Collect the results of a sweep in one table, with a row for each number that an analysis of a point returned."""
 
 import csv
 import io
@@ -25,7 +25,7 @@ from idealgas.scene import Scene, SceneError, parse_scene
 from idealgas.sweep.point import points_folder, result_path
 
 MOST_BYTES = 2**26
-"""Largest size of the result file of a point."""
+"""Largest accepted size of the result file of a point, bytes."""
 
 _Count = Annotated[int, Field(ge=0, lt=2**63)]
 
@@ -46,7 +46,7 @@ class _StoredResult(BaseModel):
 
 
 class _Caveats(BaseModel):
-    """The part that is common to the results of all analyses."""
+    """Caveats, which the results of all analyses have in common."""
 
     caveats: list[str]
 
@@ -54,11 +54,11 @@ class _Caveats(BaseModel):
 _estimate = TypeAdapter(dict[str, float | None], config=ConfigDict(allow_inf_nan=False))
 
 RESULT = ("quantity", "group", *ESTIMATE, "caveats")
-"""Columns of results.csv after the columns that identify the point."""
+"""Columns in results.csv after those that identify the point."""
 
 
 def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """Read the result files of a sweep in the order of its points.
+    """Read the result files of a sweep in the order of the points.
 
     Raises:
         UserError: if there are no results, or if a file cannot be read.
@@ -69,7 +69,7 @@ def read_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 
 def missing_runs(folder: str | os.PathLike[str]) -> tuple[int, int]:
-    """Return the number of runs of a sweep that have no results yet, and the number of all runs; 0, 0 if unknown."""
+    """Return the number of runs of a sweep without results, and the total number of runs; 0, 0 if unknown."""
     done = sum(path.stem.isdecimal() for path in points_folder(folder).glob("*.json"))
     try:
         with open(plan_path(folder), encoding="utf-8", opener=regular) as file:
@@ -80,7 +80,7 @@ def missing_runs(folder: str | os.PathLike[str]) -> tuple[int, int]:
 
 
 def done_points(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """Return the same as `read_points`, but an empty list if the sweep has no results yet."""
+    """Return the same as `read_points`, or an empty list if the sweep has no results yet."""
     try:
         paths = sorted(path for path in points_folder(folder).glob("*.json") if path.stem.isdecimal())
     except OSError as error:
@@ -126,9 +126,9 @@ def stored_scene(folder: str | os.PathLike[str], result: dict[str, Any]) -> Scen
 
 
 def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tuple[dict[str, Any], Origin]]:
-    """Yield the stored result of an analysis and the origin of each point of a sweep.
+    """Yield the stored result of an analysis, and its origin, for each point of a sweep.
 
-    The label of the origin consists of the values of the axes.
+    The label of the origin consists of the values on the axes.
 
     Raises:
         UserError: if the sweep does not include this analysis.
@@ -142,7 +142,7 @@ def stored_results(folder: str | os.PathLike[str], analysis: str) -> Iterator[tu
 
 
 def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """Return the rows of `results.csv`: one for each number of each point, by the names of the columns.
+    """Return the rows of `results.csv`, one for each number at each point, by column name.
 
     Raises:
         UserError: if there are no results, or if a file cannot be read.
@@ -151,7 +151,7 @@ def result_rows(folder: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 
 def plan_path(folder: str | os.PathLike[str]) -> Path:
-    """Return the path of the copy of the file of a sweep, whose first line contains the number of runs."""
+    """Return the path of the copy of the sweep file, whose first line states the number of runs."""
     return Path(folder) / "sweep.toml"
 
 
@@ -163,7 +163,7 @@ def table_paths(folder: str | os.PathLike[str]) -> tuple[Path, Path]:
 def write_tables(folder: str | os.PathLike[str]) -> tuple[list[Path], list[str]]:
     """Write `results.csv` and, if pyarrow is installed, `results.parquet` from all result files.
 
-    An existing `results.csv` with a line that is not in the new table is kept under another name.
+    If an existing `results.csv` contains a line that is not in the new table, it is kept under another name.
 
     Returns:
         Paths of the tables, and a sentence about each table that was kept.
@@ -211,7 +211,8 @@ def _set_aside(table: Path, text: str) -> Iterator[str]:
 def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
     """Return the average over replicates and its standard error.
 
-    The standard error follows from the errors of the replicates, or from their scatter if they have none.
+    The standard error follows from the errors of the replicates, or from their scatter if the replicates have no
+    errors.
     """
     values = np.array([row["value"] for row in rows], float)
     errors = [row.get("standard_error") for row in rows]
@@ -221,7 +222,7 @@ def average(rows: Sequence[dict[str, Any]]) -> tuple[float, float]:
 
 
 def rows_of(point: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a point, given as in `read_points`."""
+    """Yield the rows of a point, which is given as in `read_points`."""
     labels = {name: point[name] for name in ("point", "replicate", "seed")}
     labels |= {key: json.dumps(v) if isinstance(v, list) else v for key, v in point["values"].items()}
     for name, value in point["summary"].items():

@@ -1,7 +1,7 @@
-"""Run a sweep with one dask.distributed task for each point, on this machine or on a cluster.
+"""Run a sweep with one dask.distributed task per point, on this machine or on a cluster.
 
-A point is done when its result file exists. If a process is killed, at most the points that were running are lost, and
-the next start continues from the files. The files of a point do not depend on the worker that ran it.
+A point is done when its result file exists. If a process is killed, only the points that were running are lost; when
+the sweep is started again, it continues from the files. The files of a point do not depend on the worker that ran it.
 """
 
 import asyncio
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from distributed import Client
 
 RETRIES = 2
-"""Number of further attempts for a point that failed or whose worker died."""
+"""Number of additional attempts for a point that failed or whose worker died."""
 
 IGNORE_SIGINT = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""First statement of a local worker: ignore Ctrl-C, which the main process handles."""
+"""First statement of a local worker: ignore Ctrl-C, which is handled by the main process."""
 
 LOCAL = {
     "distributed.scheduler.allowed-failures": RETRIES,
@@ -42,16 +42,16 @@ LOCAL = {
     "distributed.admin.tick.interval": "1s",
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": None,
 }
-"""Settings of the local cluster: no profiling, and workers reuse their memory."""
+"""Settings of the local cluster: no profiling, and memory is reused by the workers."""
 
 CONTINUE = "; run the same command again to continue"
 
-TIMEOUT = 10.0  # time limit for the answer of a scheduler, s
+TIMEOUT = 10.0  # time limit for a reply from a scheduler, s
 
 
 @dataclass(frozen=True)
 class SweepProgress:
-    """Progress of a sweep: numbers of finished points, of points that failed for good, and of all points."""
+    """Progress of a sweep: number of finished points, number of points that failed permanently, and total number."""
 
     done: int
     failed: int
@@ -63,11 +63,11 @@ class Outcome:
     """Outcome of a sweep.
 
     Attributes:
-        ran: number of points that were run now.
-        before: number of points that were done before.
-        failures: reasons of failures, by the index of the point.
+        ran: number of points that were run this time.
+        before: number of points that were already done.
+        failures: reason for each failure, by the index of the point.
         seconds: time taken, s.
-        estimated: estimated time, s; None if the machines are unknown or a point could not be estimated.
+        estimated: estimated time, s; None if the machines are unknown or the cost of a point could not be estimated.
         files: paths of the tables of all results; empty if no point is done.
         notices: sentences for the user.
     """
@@ -82,7 +82,7 @@ class Outcome:
 
 
 def require_dask() -> None:
-    """Raise UserError if dask.distributed, which runs the points, is not installed."""
+    """Raise UserError if dask.distributed, with which the points are run, is not installed."""
     if find_spec("distributed") is None:
         raise UserError(f"a sweep requires dask.distributed: {install('sweep')}")
 
@@ -100,13 +100,14 @@ def run_sweep(
 
     Args:
         sweep: the sweep to run.
-        folder: folder of logs and results; it is created, or resumed even if the axes have new values.
+        folder: folder for logs and results; it is created if missing. An existing sweep is resumed, even if its axes
+            have new values.
         workers: number of processes on this machine; None for one per core.
-        scheduler: address of a dask scheduler, instead of local workers; its workers have to see the folder at the
-            same path.
+        scheduler: address of a dask scheduler to be used in place of local workers; its workers must see the folder at
+            the same path.
         on_progress: function that is called when a point has finished or failed.
-        on_estimate: function that is called before the points are run, with the number of finished steps of the
-            estimate and the number of all steps.
+        on_estimate: function that is called before the points are run, with the number of finished steps of the cost
+            estimate and the total number of steps.
 
     Raises:
         UserError: if the sweep cannot be run, or cannot continue for a reason that concerns all points.
@@ -126,7 +127,7 @@ def run_sweep(
             with _client(workers, scheduler) as client:
                 if not scheduler:
                     estimated = _estimate(client, remaining, folder, workers, on_estimate)
-                    on_progress(SweepProgress(before, 0, len(sweep.points)))  # the estimate is over
+                    on_progress(SweepProgress(before, 0, len(sweep.points)))  # the estimate is complete
                 for k, (index, failure) in enumerate(_run(client, remaining, folder)):
                     if failure is not None:
                         check_folder(folder)
@@ -143,7 +144,7 @@ def run_sweep(
 def _estimate(
     client: "Client", sweep: Sweep, folder: Path, workers: int, on_estimate: Callable[[int, int], None]
 ) -> float | None:
-    """Return the estimated time of a sweep on a number of workers, s; None if a point cannot be run."""
+    """Return the estimated time that a sweep takes on a number of workers, s; None if a point cannot be run."""
     from distributed.scheduler import KilledWorker
 
     def execute(run: Callable[[Scene], Trial], scenes: Sequence[Scene]) -> Iterator[Trial]:
@@ -156,7 +157,7 @@ def _estimate(
 
 
 def _lost(folder: Path, points: Iterable[int]) -> dict[int, str]:
-    """Return a reason of failure for each point that ended without an error but has no result file in the folder."""
+    """Return a reason for each point that ended without an error but has no result file in the folder."""
     lost, deadline = [*points], time.monotonic() + TIMEOUT  # a network file system may show new files with a delay
     while lost := [index for index in lost if not result_path(folder, index).exists()]:
         check_folder(folder)
@@ -168,7 +169,7 @@ def _lost(folder: Path, points: Iterable[int]) -> dict[int, str]:
 
 
 def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, str | None]]:
-    """Yield the index of each point when it ends, with the reason of its failure, or None if it succeeded."""
+    """Yield the index of each point when it ends, with the reason if it failed, or None if it succeeded."""
     from distributed import as_completed
 
     run = partial(run_point, folder=folder, analyses=sweep.analyses, keep_log=sweep.keep_logs)
@@ -188,11 +189,11 @@ def _run(client: "Client", sweep: Sweep, folder: Path) -> Iterator[tuple[int, st
 
 
 def _key(point: Point, sweep: Sweep, folder: Path) -> str:
-    """Return the key of the task of a point, which is a digest of everything that determines what the task does.
+    """Return the key of a point's task: a digest of everything that determines what the task does.
 
-    Therefore two sweeps that run on a scheduler at the same time have no task in common, even if they are equal sweeps
-    in two folders. A sweep that is started again takes over its tasks that are still running, as a file must not have
-    two writers.
+    Two sweeps that run on a scheduler at the same time therefore have no task in common, even if they are the same
+    sweep in two folders. A sweep that is started again takes over its tasks that are still running, because a file must
+    not have two writers.
     """
     what = str(folder), point.index, point.scene.scene.seed, dump_document(point.scene), sweep.analyses, sweep.keep_logs
     return f"point-{point.index}-{sha256(repr(what).encode()).hexdigest()[:32]}"
@@ -210,7 +211,7 @@ def _reason(error: Any) -> str:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """Yield a client of the scheduler at an address, or of a local cluster with `workers` processes."""
+    """Yield a client of the scheduler at the given address, or of a local cluster with `workers` processes."""
     import dask
     from distributed import Client, LocalCluster
     from distributed.utils import silence_logging_cmgr

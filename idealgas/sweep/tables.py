@@ -1,4 +1,4 @@
-"""Tables of the file of a sweep, and checks of their contents."""
+"""Tables in a sweep file, and checks of their contents."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,11 +14,11 @@ from idealgas.toml.issues import Issue
 from idealgas.toml.table import NotNegative, Number, Positive, Table
 
 PHI, BASE = "phi", "base"
-"""Keys of an axis that are not keys of a scene: the packing fraction, which scales the box, and the base scene."""
+"""Keys of an axis that are not scene keys: the packing fraction, which scales the box, and the base scene."""
 
 
 MOST_POINTS = 100_000
-"""Largest number of runs of a sweep, counting all replicates of all points."""
+"""Largest number of runs in a sweep, counting all replicates of all points."""
 
 Value = bool | int | float | str | tuple[Any, ...]
 Count = Annotated[int, Field(ge=1, le=100_000)]
@@ -37,7 +37,7 @@ class Settings(Table):
 
 
 class Axis(Table):
-    """Table `[[axis]]`: a key and its values. All axes are combined; axes with the same `zip` vary together."""
+    """Table `[[axis]]`: a key and its values. All axes are combined, but axes with the same `zip` vary together."""
 
     key: str = Field(description='a key of the scene, as for --set, or "phi" or "base"')
     values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1)] | None = Field(
@@ -66,7 +66,7 @@ class Axis(Table):
 
 
 class Published(Table):
-    """Table `[[published]]`: values of a quantity in a paper, one for each combination of the axes, in order."""
+    """Table `[[published]]`: published values of a quantity, one for each combination of the axes, in order."""
 
     source: str = Field(description="the paper")
     quantity: str = Field(description='its name in results.csv, such as "run.events"')
@@ -78,7 +78,7 @@ class Published(Table):
 
 
 class SweepTables(Table):
-    """Tables of the file of a sweep."""
+    """Tables in a sweep file."""
 
     sweep: Settings = Field(
         default_factory=Settings, description="[sweep]: scene, seed, replicates, analyses, keep_logs"
@@ -93,7 +93,7 @@ class SweepTables(Table):
 def axis_groups(axes: Sequence[Axis]) -> list[list[tuple[tuple[int, Value], ...]]]:
     """Return the groups of axes that vary together.
 
-    Each group is a list of steps, and each step is a tuple of axes, by their numbers, and their values.
+    Each group is a list of steps. A step is a tuple of pairs (number of the axis, value).
     """
     together: dict[Any, list[int]] = {}
     for i, axis in enumerate(axes):
@@ -135,7 +135,7 @@ def table_errors(tables: SweepTables) -> Iterator[Issue]:
 
 
 def size_errors(tables: SweepTables) -> Iterator[Issue]:
-    """Yield an error if a sweep has too many runs; called before the points are made."""
+    """Yield an error if a sweep has too many runs; to be called before the points are made."""
     numbers = [len(group) for group in axis_groups(tables.axis)]
     total = math.prod(numbers) * tables.sweep.replicates
     if total > MOST_POINTS:
@@ -145,7 +145,7 @@ def size_errors(tables: SweepTables) -> Iterator[Issue]:
 
 
 def published_errors(published: Sequence[Published], combinations: int) -> Iterator[Issue]:
-    """Yield errors of lists of published values that do not have a number for each combination of the axes."""
+    """Yield an error for each list of published values that does not have one number per combination of the axes."""
     for i, paper in enumerate(published):
         for name, numbers in (("values", paper.values), ("errors", paper.errors)):
             if len(numbers) != combinations and (numbers or name == "values"):
