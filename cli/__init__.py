@@ -1,1 +1,1 @@
-"""The command `idealgas`: one module per command, which translates its arguments into a call of the library."""
+"""The program `idealgas`: one module per command, which translates its arguments into a call of the library."""

@@ -1,4 +1,4 @@
-"""Common parts of commands that read a log, and the commands of the analyses, which are made from the registry."""
+"""Functions shared by commands that read a log, and the commands of the analyses, built from the registry."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ def log_argument(command: Callable) -> Callable:
 
 
 def open_log(path: str) -> "Log":
-    """Open a log for reading, and print a line if it was not closed."""
+    """Open a log for reading, and print a notice to stderr if the log was not closed."""
     from idealgas import log
 
     opened = log.open_log(path)
@@ -48,9 +48,9 @@ def print_json(result: dict[str, Any]) -> None:
 
 
 class AnalysisCommand(click.Command):
-    """Command of an analysis: its logs, its options, and the options of all analyses.
+    """Command of an analysis, with the logs, its own options, and the options common to all analyses.
 
-    The help is the docstring of the module of the analysis, which is imported only when its options are required.
+    The help text is the docstring of the analysis module, which is imported only when its options are needed.
     """
 
     def __init__(self, name: str) -> None:
@@ -201,7 +201,7 @@ def _results(
     progress: Callable[[int, int], None],
     options: dict[str, Any],
 ) -> Iterator[Any]:
-    """Yield the result of a log, or the results of all points of a sweep from its folder."""
+    """Yield the result of a log, or the stored results of all points if the path is the folder of a sweep."""
     if analysis.combine and os.path.isdir(path):
         from idealgas.sweep.results import stored_results
 
@@ -213,7 +213,7 @@ def _results(
 
 
 def _missing(path: str) -> str:
-    """Return a sentence about runs that are missing in the folder of a sweep; empty if it is complete, or for a log."""
+    """Return a sentence about the runs missing from a sweep's folder; empty for a complete sweep or a log."""
     if not os.path.isdir(path):
         return ""
     from idealgas.sweep.results import missing_runs

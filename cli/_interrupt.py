@@ -1,11 +1,11 @@
-"""Handle Ctrl-C and SIGTERM as requests to stop, which are not lost even if a library swallows KeyboardInterrupt."""
+"""Treat Ctrl-C and SIGTERM as requests to stop that survive even if a library swallows KeyboardInterrupt."""
 
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
-"""Signals that stop a command: Ctrl-C, and the signal that batch systems and `kill` send."""
+"""Signals that stop a command: SIGINT from Ctrl-C, and SIGTERM from batch systems and `kill`."""
 
 
 @contextmanager
@@ -13,8 +13,8 @@ def stop_signals(raises: bool) -> Iterator[Callable[[], int]]:
     """Yield a function that returns the exit code if a stop signal has arrived, and 0 otherwise.
 
     Args:
-        raises: whether the first signal also raises KeyboardInterrupt, which ends a wait; later signals do not, so that
-            they do not interrupt the cleanup.
+        raises: whether the first signal also raises KeyboardInterrupt, in order to end a wait. Later signals never
+            raise it, so that they cannot interrupt the cleanup.
     """
     exit_code = 0
 

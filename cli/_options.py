@@ -16,12 +16,12 @@ FIGURE_ENDINGS = (".png", ".pdf", ".svg")
 
 
 class _File(click.ParamType):
-    """A path, which shells complete and commands check themselves."""
+    """Parameter type of paths: the shell completes them, and the commands check them."""
 
     name = "file"
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        """Let the shell complete the path."""
+        """Return a completion item that makes the shell complete the path."""
         return [CompletionItem(incomplete, type="file")]
 
 
@@ -29,7 +29,7 @@ FILE = _File()
 
 
 def integer(text: str) -> int:
-    """Return an integer from a text, which may have the form 1e6."""
+    """Return the integer that a text such as "1000000" or "1e6" represents."""
     with suppress(ValueError):
         return int(text)
     with suppress(ValueError):
@@ -39,7 +39,7 @@ def integer(text: str) -> int:
 
 
 def scene_argument(command: Callable) -> Callable:
-    """Add the argument `SCENE.toml` as `path` and the option `--set` as `overrides`, for `load_scene`; - is stdin."""
+    """Add the argument `SCENE.toml` as `path` (- is stdin) and the option `--set` as `overrides`, for `load_scene`."""
     path = click.argument(
         "path", type=FILE, metavar="SCENE.toml", callback=lambda _, __, path: STDIN if path == "-" else path
     )
@@ -47,7 +47,7 @@ def scene_argument(command: Callable) -> Callable:
 
 
 def overrides_option(more: str = "") -> Callable:
-    """Return the option `--set`, as `overrides`. more: additional help text."""
+    """Return a decorator that adds the option `--set` as `overrides`. more: additional help text."""
     return click.option(
         "--set", "overrides", multiple=True, metavar="TABLE.KEY=VALUE", shell_complete=_complete_key,
         help="Change a key of the scene (species.0.count=50, species.argon.count=50); an empty value restores the "
@@ -56,7 +56,7 @@ def overrides_option(more: str = "") -> Callable:
 
 
 def _complete_key(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Return the keys of scenes that begin with the incomplete text."""
+    """Return completion items for the scene keys that begin with the incomplete text."""
     return [CompletionItem(f"{key}=", help=text) for key, text in keys().items() if key.startswith(incomplete)]
 
 
@@ -82,6 +82,6 @@ plot_option = click.option(
 
 plot_errors_option = click.option(
     "--plot-errors", type=FILE, metavar="FILE.png", callback=_check_ending,
-    help="Write a figure of each standard error against the length of the blocks of time, which reveals slow "
-    "fluctuations.",
+    help="Write a figure of each standard error against the length of the time blocks; slow fluctuations show as a "
+    "rise.",
 )  # fmt: skip

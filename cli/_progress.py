@@ -1,4 +1,4 @@
-"""The progress bar of a command, which is shown only on a terminal."""
+"""Progress bar of a command, shown only on a terminal."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from ._terminal import terminal
 
 
 class Show(Protocol):
-    """A function that shows the progress."""
+    """Function that shows the progress."""
 
     def __call__(self, done: float, total: float = 1.0, description: str | None = None, notice: str = "") -> None:
         """Update the bar. A description replaces the previous one; a notice is printed above the bar."""
@@ -16,7 +16,7 @@ class Show(Protocol):
 
 @contextmanager
 def progress_bar(description: str) -> Iterator[Show]:
-    """Yield a function that shows the fraction done, a description and the remaining time.
+    """Yield a function that shows the completed fraction, a description and the remaining time.
 
     Notices are printed to stderr even if it is not a terminal.
     """

@@ -1,4 +1,4 @@
-"""Common parts of commands that simulate: Ctrl-C, progress bar and summary."""
+"""Functions shared by commands that simulate: Ctrl-C, progress bar and summary."""
 
 import json
 import os
@@ -31,16 +31,16 @@ def run_with_progress(
     stream: "EventStream | None" = None,
     shows: Sequence[str] = (),
 ) -> None:
-    """Call `simulate` with a progress bar, stop it at Ctrl-C or SIGTERM, and print the summary of its log.
+    """Call `simulate` with a progress bar, stop it on Ctrl-C or SIGTERM, and print the summary of its log.
 
     Args:
         simulate: function that runs a scene.
         path: path of the log.
         as_json: whether to print JSON.
-        from_start: whether this run writes all events of the log.
-        on_start: function that is called when the first events are in the log.
+        from_start: whether this run writes all events in the log; False for a resumed run.
+        on_start: function to call once the log contains its first events.
         stream: stream that prints the events instead of the summary; the run ends if the stream fails.
-        shows: names of the main analyses of the scene, whose commands are suggested at the end.
+        shows: names of the main analyses of the scene; their commands are suggested at the end.
     """
     from ._interrupt import stop_signals
 

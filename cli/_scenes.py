@@ -1,4 +1,4 @@
-"""Files that are installed with the example scenes."""
+"""Access to the files installed with the example scenes."""
 
 import json
 import re
@@ -13,15 +13,15 @@ from ._terminal import written
 NOTEBOOK = ".ipynb"
 
 SCHEMA = "scene.schema.json"
-"""Name of the JSON Schema of scenes, to which the first line of a scene in the same folder refers."""
+"""File name of the JSON Schema of scenes; the first line of a scene in the same folder refers to it."""
 
 
 DIGESTS = "digests.json"
-"""Name of the table with the digests of the scenes, see `idealgas.run.digest`."""
+"""File name of the table of scene digests; see `idealgas.run.digest`."""
 
 
 def keys() -> dict[str, str]:
-    """Return the descriptions of all keys of a scene, by their names for `--set`."""
+    """Return the descriptions of all scene keys, indexed by the names that `--set` uses."""
     schema = json.loads(path_of(SCHEMA).read_text(encoding="utf-8"))
     descriptions: dict[str, str] = {}
     for table, entry in schema["properties"].items():
@@ -32,14 +32,15 @@ def keys() -> dict[str, str]:
 
 
 def notebooks() -> dict[str, Path]:
-    """Return the files of the notebooks, by name."""
+    """Return the paths of the notebooks, by name."""
     return {path.stem: path for path in sorted(path_of("notebooks").glob(f"*{NOTEBOOK}"))}
 
 
 def shown_by(name: str) -> str:
-    """Return what an example shows.
+    """Return a sentence about what an example shows.
 
-    For a scene it is the first sentence of its description, or its title if it has none; for a notebook, its title.
+    For a scene, return the first sentence of its description, or its title if there is no description; for a notebook,
+    return its title.
     """
     if notebook := notebooks().get(name):
         cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
@@ -49,11 +50,11 @@ def shown_by(name: str) -> str:
 
 
 def copy_example(name: str, output: str | None, force: bool) -> None:
-    """Copy a notebook, or a scene together with the schema to which its first line refers.
+    """Copy a notebook, or a scene together with the JSON Schema that its first line refers to.
 
     Args:
-        name: name of the example, with or without the ending.
-        output: path of the copy; None for the name of the example in the current folder.
+        name: name of the example, with or without the file ending.
+        output: path of the copy; None copies to the current folder under the name of the example.
         force: whether to overwrite an existing file of the same kind.
 
     Raises:

@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from idealgas.presentation.tables import Number, Table
 
 MANY_COLUMNS = 8
-"""Largest number of columns of a table with lines between the columns; wider tables have no lines."""
+"""Largest number of columns for which a table has lines between its columns."""
 
 TEXT = 16
-"""Width to which a column of text is narrowed, unless a word is longer, before a table is divided into parts."""
+"""Width in characters to which text columns may shrink (or to their longest word) before a table is divided."""
 
 
 def print_tables(tables: "Iterable[Table]") -> None:
-    """Print tables one below the other, each after its notes."""
+    """Print tables one below the other, each preceded by its notes."""
     console = terminal()
-    width, console.width = console.width, UNBOUNDED  # Rich must not break lines, as `as_rich` fits tables to the width
+    width, console.width = console.width, UNBOUNDED  # Rich must not break the lines that `as_rich` has fitted
     for table in tables:
         for note in table.notes:
             echo(note)
@@ -33,7 +33,7 @@ def print_tables(tables: "Iterable[Table]") -> None:
 
 
 def shown(text: str) -> "Number":
-    """Return a cell with a number that is already formatted: it is aligned to the right and never broken."""
+    """Return a cell for a number that is already formatted; the cell is right-aligned and never broken."""
     from idealgas.presentation.tables import Number
 
     return Number(None, absent=text)
@@ -47,7 +47,7 @@ def facts(title: str, values: Mapping[str, str]) -> "Table":
 
 
 class _Column(NamedTuple):
-    """A column: its heading, its cells, whether they are texts, and its natural and smallest width."""
+    """Column of a table: heading, cells, whether the cells are text, and natural and smallest width in characters."""
 
     head: str
     cells: Sequence[str]
@@ -57,10 +57,10 @@ class _Column(NamedTuple):
 
 
 def as_rich(table: "Table", width: int) -> "Iterator[Text | _Drawing]":
-    """Yield the title and the table for a terminal of a given width.
+    """Yield the title of a table and then the table itself, for a terminal of a given width in characters.
 
-    If the terminal is too narrow, the table is divided into parts, each with the first column. Text is broken between
-    words; numbers are never broken.
+    If the terminal is too narrow, the table is divided into parts, each of which repeats the first column. Text is
+    broken between words; numbers are never broken.
     """
     from rich.text import Text
 
@@ -93,7 +93,7 @@ def _columns(table: "Table") -> list[_Column]:
 
 
 def _fitting(first: _Column, remaining: Sequence[_Column], width: int, between: int) -> int:
-    """Return how many of the remaining columns (at least one) fit into a width together with the first column."""
+    """Return how many of the remaining columns (at least one) fit into a width beside the first column."""
     number, used = 0, first.least + between
     for column in remaining:
         used += column.least + between
@@ -104,7 +104,7 @@ def _fitting(first: _Column, remaining: Sequence[_Column], width: int, between: 
 
 
 def _widths(columns: Sequence[_Column], width: int) -> list[int]:
-    """Return the widths of columns that have to fit into a total width; the widest columns are narrowed first."""
+    """Return column widths that fit into a total width if possible; the widest columns are narrowed first."""
     widths = [column.natural for column in columns]
     while sum(widths) > width:
         wide = [k for k, column in enumerate(columns) if widths[k] > column.least]
@@ -115,7 +115,7 @@ def _widths(columns: Sequence[_Column], width: int) -> list[int]:
 
 
 class _Drawing(NamedTuple):
-    """A table with lines between its columns, drawn as by Rich but in a fraction of the time."""
+    """Table drawn in the style of Rich but in a fraction of the time."""
 
     columns: Sequence[_Column]
     widths: Sequence[int]
@@ -146,7 +146,7 @@ class _Drawing(NamedTuple):
         yield Segment(f"{frame.get_bottom(padded)}\n")
 
     def _lines(self, console: "Console", row: Sequence[str], at_bottom: bool = False) -> "Iterator[tuple[str, ...]]":
-        """Yield the lines of a row as the padded parts of its cells, aligned to the top or the bottom of the row."""
+        """Yield each line of a row as a tuple of padded pieces of cells; cells are aligned to the top or the bottom."""
         from rich.cells import cell_len
         from rich.text import Text
 

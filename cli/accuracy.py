@@ -1,4 +1,4 @@
-"""Command `idealgas accuracy`: measure errors and CPU time of the methods for a scene."""
+"""Command `idealgas accuracy`: measure the errors and CPU times of the methods for a scene."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", type=FILE, metavar="DIR", help="Folder for a table (CSV), all numbers (JSON) and figures (PNG)."
 )
-@click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timings of each case.")
+@click.option("--repeats", type=click.IntRange(1), default=3, show_default=True, help="Number of timed runs per case.")
 @force_option
 @json_option
 @quiet_option
 def accuracy(
     path: str, overrides: tuple[str, ...], output: str | None, repeats: int, force: bool, as_json: bool
 ) -> None:
-    """Measure errors and CPU time of the event-driven and time-driven methods and of several precisions.
+    """Measure the errors and CPU times of the event-driven and time-driven methods and of several precisions.
 
     For three discs on their unstable periodic orbit (configs/three-discs.toml), measure instead how long the orbit
-    lasts in each precision, in boxes of many sizes.
+    lasts at each precision, in boxes of many sizes.
     """
     from idealgas.accuracy import figure as accuracy_figure
     from idealgas.accuracy import report as accuracy_report

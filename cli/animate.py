@@ -47,15 +47,15 @@ def _pixels(_: click.Context, __: click.Parameter, text: str | None) -> tuple[in
     "--size",
     callback=_pixels,
     metavar="WIDTHxHEIGHT",
-    help="Size of a frame, pixels.  [default: 960x540, 720x720 or 540x960, by the shape of the box]",
+    help="Size of a frame in pixels.  [default: 960x540, 720x720 or 540x960, depending on the shape of the box]",
 )
 @click.option(
     "--colour", default="speed", show_default=True, type=click.Choice(["speed", "species", "order"]),
-    help="Property that the colours of the discs show; order is the angle of the local order ψ₆.",
+    help="Property shown by the colours of the discs; order is the angle of the local order parameter ψ₆.",
 )  # fmt: skip
 @click.option(
     "--panel", default="speeds", show_default=True, type=click.Choice(["speeds", "density", "left-right", "none"]),
-    help="Panel beside the discs; left-right is the fraction of discs to the right of the first gate or the middle.",
+    help="Panel beside the discs; left-right is the fraction of discs to the right of the first gate or of the middle.",
 )  # fmt: skip
 @click.option(
     "--trail", "trails", type=click.IntRange(0), multiple=True, metavar="ID",
@@ -84,7 +84,7 @@ def animate(
 ) -> None:
     """Make a film of a log: the discs at their exact positions, beside the distribution of their speeds.
 
-    An MP4 film requires ffmpeg, from the system or by .venv/bin/pip install -e ".[film]"; a GIF does not.
+    An MP4 film requires ffmpeg, installed on the system or with .venv/bin/pip install -e ".[film]"; a GIF does not.
     """
     from idealgas.movie.film import animate as make
     from idealgas.movie.film import paint_frame

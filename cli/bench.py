@@ -32,14 +32,14 @@ def _numbers(_context: click.Context, _parameter: click.Parameter, text: str) ->
 )
 @click.option(
     "--collisions", type=click.IntRange(1), default=1_000_000, show_default=True,
-    help="Smallest number of pair collisions of a run.",
+    help="Smallest number of pair collisions in a run.",
 )  # fmt: skip
 @click.option(
     "--repeats", type=click.IntRange(1), default=3, show_default=True,
     help="Number of runs of each kind; the median is shown.",
 )  # fmt: skip
 @click.option("--threads", default="1", show_default=True, callback=_numbers, help="Numbers of threads.")
-@click.option("--effects", is_flag=True, help="Measure instead the cost of each effect relative to the plain box.")
+@click.option("--effects", is_flag=True, help="Measure instead what each effect costs, relative to a plain box.")
 @plot_option
 @force_option
 @json_option
@@ -56,7 +56,7 @@ def bench(
 ) -> None:
     """Measure the speed of the event-driven engine for several N and φ, with and without the event log.
 
-    The figure also shows stated speeds of other programs.
+    The figure also shows reported speeds of other programs.
     """
     if min(numbers) < 1 or not all(0 < phi <= 0.9 for phi in fractions):
         raise click.UsageError("N must be at least 1, φ above 0 and at most 0.9")
@@ -116,7 +116,7 @@ def _show(result: "Bench", as_json: bool) -> None:
     ]
     heads = ("N", "φ", "threads", "log", "M collisions/s", "slowest – fastest", "log / no log")
     print_tables([Table("", heads, cells)])
-    echo(f"compilation or loading of the machine code: {result.compile_seconds:.2f} s, not counted above")
+    echo(f"compilation or loading of the machine code: {result.compile_seconds:.2f} s, not included above")
 
 
 def _bench_effects(events: int, repeats: int, as_json: bool) -> None:

@@ -1,4 +1,4 @@
-"""Command `idealgas check`: report errors of a scene, and estimate the size of its run."""
+"""Command `idealgas check`: report the errors in a scene, and estimate the size of its run."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from idealgas.theory.forecast import Forecast
 
 LEAST_STRAIN = 1e-9
-"""Smallest strain of a lattice that is not attributed to rounding of the numbers in a scene."""
+"""Lattice strains smaller than this are attributed to rounding of the numbers in a scene."""
 
 MANY_HITS = 100.0
-"""Number of hits of a disc at rest per mean free time of the gas above which `check` prints a warning."""
+"""Largest number of hits of a resting disc per mean free time of the gas without a warning from `check`."""
 
 ROUGH_REST = (
-    "Rough collisions dissipate the kinetic energy; discs that a force presses together then collide ever more often, "
-    "and no contact duration bounds their rate. The run may end in an inelastic collapse before `run.until`."
+    "Rough collisions dissipate kinetic energy; discs that a force presses together then collide ever more often, "
+    "and no contact duration limits their collision rate. The run may end in an inelastic collapse before `run.until`."
 )
 """Warning for rough discs under a constant force."""
 
@@ -34,7 +34,7 @@ ROUGH_REST = (
 @scene_argument
 @json_option
 def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Check a scene, and show it in full with the rates and the size of the run that kinetic theory predicts."""
+    """Check a scene, and show it in full with the rates and the size of the run predicted by kinetic theory."""
     from idealgas.scene import load_scene
     from idealgas.toml.dump import dump_document
 
@@ -74,7 +74,7 @@ def check(path: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
 
 def _lattice_line(lattice: "TriangularLattice") -> str:
-    """Return a line about the initial lattice: its rows, its strain, and the size of the box without strain."""
+    """Return a line about the initial lattice: its rows, its strain, and a box size for which there is no strain."""
     shape = f"lattice: {lattice.rows} rows along {'xy'[lattice.axis]} of {lattice.columns} discs"
     if abs(lattice.strain) < LEAST_STRAIN:
         return f"{shape}, without strain"
@@ -82,7 +82,7 @@ def _lattice_line(lattice: "TriangularLattice") -> str:
 
 
 def _rest_lines(resting: "RestingDisc", number: int) -> Iterator[str]:
-    """Yield lines about the bouncing of discs that have come to rest, with a warning if it dominates the run."""
+    """Yield lines about how discs at rest keep bouncing, with a warning if their hits dominate the run."""
     least, most = resting.hits
     if most is None or resting.per_free_time is None:
         yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."

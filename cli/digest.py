@@ -1,4 +1,4 @@
-"""Command `idealgas digest`: print the digest of a log, or compare the example scenes with their recorded digests."""
+"""Command `idealgas digest`: print the digest of a log, or check the example scenes against recorded digests."""
 
 import json
 
@@ -14,7 +14,7 @@ from ._terminal import data
 
 @click.command(epilog="Example: idealgas digest gas.h5")
 @click.argument("arguments", type=FILE, nargs=-1, metavar="RUN.h5 | --check [SCENE...]")
-@click.option("--check", is_flag=True, help="Run example scenes (all by default), and compare them with digests.json.")
+@click.option("--check", is_flag=True, help="Run example scenes (default: all), and compare digests with digests.json.")
 @click.pass_context
 def digest(context: click.Context, arguments: tuple[str, ...], check: bool) -> None:
     """Print the SHA-256 digest of the events and the final state of a log.

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from idealgas.columns import EventBatch
 
 KINDS = ("disc", "wall", "wall_end", "piston", "thermostat", "steered", "escaped", "fixed_disc")
-LINES = 200  # number of lines in a write, so that a pipe accepts it as a whole
-SECONDS = 0.2  # time between two updates from a log that is being written
+LINES = 200  # number of lines per write, few enough that a pipe accepts them as a whole
+SECONDS = 0.2  # time between two looks at a log that is being written
 
 
 @click.command(epilog="Example: idealgas events gas.h5 --disc 0 --follow")
@@ -29,7 +29,7 @@ SECONDS = 0.2  # time between two updates from a log that is being written
 def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: float | None, follow: bool) -> None:
     """Print the event rows of a log as lines of JSON: time, disc, kind, partner, and the state after the event.
 
-    A collision of two discs is two rows. A partner is the id of a disc, or -1 - k for wall k.
+    A collision of two discs is printed as two rows. The partner is the id of the other disc, or -1 - k for wall k.
     """
     with open_log(path) as log:
         log.require_events()
@@ -49,16 +49,16 @@ def events(path: str, disc: int | None, kind: str | None, t0: float | None, t1: 
 
 
 class EventStream:
-    """A function that prints event rows as long as the output accepts them.
+    """Callable that prints event rows as long as the output accepts them.
 
     Attributes:
-        failure: BrokenPipeError if the reader has closed the pipe, OutputError if the output cannot be written.
+        failure: BrokenPipeError if the reader has closed the pipe, OutputError if a write has failed, None otherwise.
     """
 
     failure: BrokenPipeError | OutputError | None = None
 
     def __call__(self, batch: "EventBatch") -> None:
-        """Print the rows of a batch; wait while the pipe is full."""
+        """Print the rows of a batch, waiting while the pipe is full; after a failure, do nothing."""
         if self.failure is not None:
             return
         try:
@@ -68,7 +68,7 @@ class EventStream:
 
 
 def print_events(batch: "EventBatch", disc: int | None = None, kind: int | None = None) -> None:
-    """Print the rows of a batch for a disc and a kind of events; None stands for any."""
+    """Print those rows of a batch that belong to a disc and a kind of event; None selects all."""
     import numpy as np
 
     from idealgas.log.dataframes import flat

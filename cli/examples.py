@@ -30,7 +30,7 @@ def _complete(_: click.Context, __: click.Parameter, incomplete: str) -> list[st
 def examples(name: str | None, output: str | None, gallery: str | None, force: bool) -> None:
     """List what the example scenes and the notebooks show, or copy one of them.
 
-    Together with a scene, a JSON Schema is written to the same folder; editors use it to complete and check keys.
+    When a scene is copied, a JSON Schema is written to the same folder; editors use it to complete and check keys.
     """
     if gallery is not None:
         if output is not None:
@@ -48,7 +48,7 @@ def examples(name: str | None, output: str | None, gallery: str | None, force: b
 
 
 def _write_gallery(path: str, name: str | None, force: bool) -> None:
-    """Write the page with pictures of all scenes, or of a single scene."""
+    """Write a page with a picture of each scene, or of the named scene only."""
     from idealgas.gallery import SCENES, write_gallery
 
     scenes = SCENES if name is None else (name.removesuffix(SCENE),)

@@ -1,4 +1,4 @@
-"""Command `idealgas export`: write a log to files for other programs."""
+"""Command `idealgas export`: convert a log to files for other programs."""
 
 import sys
 from pathlib import Path
@@ -20,14 +20,16 @@ KINDS: "tuple[Kind, ...]" = ("csv", "parquet", "gsd", "extxyz", "h5md3d")
 
 @click.command(epilog="Example: idealgas export gas.h5 --frames 100 -o gas.extxyz")
 @log_argument
-@click.option("--format", "kind", type=click.Choice(KINDS), help="Format of the file.  [default: by the ending of OUT]")
+@click.option(
+    "--format", "kind", type=click.Choice(KINDS), help="Format of the file.  [default: from the ending of OUT]"
+)
 @click.option("--events", is_flag=True, help="Write all events (csv, parquet).")
 @click.option("--flights", is_flag=True, help="Write the flights of all discs from event to event (csv, parquet).")
-@click.option("--parts", type=click.IntRange(1), help="Write a folder with so many parquet files, divided in time.")
+@click.option("--parts", type=click.IntRange(1), help="Write a folder with this many parquet files, divided by time.")
 @click.option(
     "--frames",
     metavar="N|every=DT",
-    help="Write all discs at N times from start to end, or at intervals DT of simulated time.",
+    help="Write all discs at N times from start to end, or at intervals of DT in simulated time.",
 )
 @click.option(
     "-o",
@@ -71,7 +73,7 @@ def export(
 
 
 def _kind_of(output: str | None) -> "Kind":
-    """Return the format of a file, given its path with an ending."""
+    """Return the export format that the ending of a path stands for; raise UserError if there is none."""
     from idealgas.log.export.export import FORMATS
 
     ending = Path(output or "").suffix.lower()

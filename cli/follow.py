@@ -23,9 +23,9 @@ SECONDS = 1.0  # time between two updates
 @log_argument
 @click.option("--once", is_flag=True, help="Show the status once and exit.")
 def follow(path: str, once: bool) -> None:
-    """Show the status of a run until it ends; if the output is not a terminal, only the final status.
+    """Show the status of a run until it ends; if the output is not a terminal, show only the final status.
 
-    Pressure and Z are measured from the latest events, and the speeds from the latest state.
+    Pressure and Z are measured from the latest events, and the distribution of speeds from the latest state.
     """
     from rich.live import Live
 
@@ -46,7 +46,7 @@ def follow(path: str, once: bool) -> None:
                 break
             if console.is_terminal:
                 screen.update(_view(log, seen, rate, console.width), refresh=True)
-    with open_log(path) as log:  # opened again, as the run may have closed it
+    with open_log(path) as log:  # opened again, because the run may have closed it
         if log.complete and log.summary["seconds"] > 0:
             rate = log.summary["events"] / log.summary["seconds"]
         shown = _view(log, status(log), rate, console.width)
@@ -72,7 +72,7 @@ def _view(log: "Log", seen: "Status", rate: float | None, width: int) -> "Group"
 
 
 def _histogram(seen: "Status") -> str:
-    """Return a text histogram of the speeds, with a mark at the Maxwell-Boltzmann density on each line."""
+    """Return a text histogram of the speeds; a mark on each line shows the Maxwell-Boltzmann density."""
     from idealgas.presentation.tables import bars
 
     if seen.density is None:

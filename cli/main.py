@@ -1,8 +1,8 @@
-"""The command `idealgas`: a command for each module in this folder and for each analysis in the registry.
+"""The program `idealgas`, with a command for each module in this folder and for each analysis in the registry.
 
-Command NAME is the function NAME of the module NAME, which is imported when the command is called. This module and the
-modules whose names start with an underscore are not commands. The commands that analyse a log are made from the classes
-of the analyses.
+Command NAME is the function NAME in module NAME, which is imported when the command is called. This module and modules
+whose names start with an underscore are not commands. The commands that analyse a log are built from the analysis
+classes.
 """
 
 import gc
@@ -40,18 +40,18 @@ EXAMPLES = {
     "Share": "idealgas report gas.h5 -o gas.html",
     "Study": "idealgas sweep phi.toml -o phi",
 }
-"""An example command of each group."""
+"""Example of a command in each group."""
 
 
 class Commands(click.Group):
-    """The group of all commands, which are the modules in this folder and the analyses; it prints user errors."""
+    """Group of all commands, which come from the modules in this folder and from the analyses; prints user errors."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands, group by group."""
         return [name for names in GROUPS.values() for name in names]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Return the command with a name; None if it does not exist."""
+        """Return the command with the given name; None if there is no such command."""
         if name not in self.list_commands(ctx):
             return None
         if name in registry.commands():
@@ -60,7 +60,7 @@ class Commands(click.Group):
         return getattr(import_module(f".{module}", __package__), module)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of the commands: each group with an example, and each command with its first sentence."""
+        """Write the list of commands: an example for each group, and the first sentence of help for each command."""
         widest = max(map(len, self.list_commands(ctx)))
         for group, names in GROUPS.items():
             commands = [(name, self.get_command(ctx, name)) for name in names]
@@ -69,7 +69,7 @@ class Commands(click.Group):
                 formatter.write_dl(rows)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse a command line and return the arguments left; `help NAME` is the same as `NAME --help`."""
+        """Parse a command line and return the remaining arguments; `help NAME` is the same as `NAME --help`."""
         return super().parse_args(ctx, [*args[1:], "--help"] if args[:1] == ["help"] else args)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[Any, ...]:
@@ -85,18 +85,18 @@ class Commands(click.Group):
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the program."""
         set_up_streams()
-        gc.set_threshold(100_000, 50, 50)  # imports create many permanent objects, which it would scan repeatedly
-        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # the search for plugins would read all packages
+        gc.set_threshold(100_000, 50, 50)  # imports create many permanent objects that it would scan repeatedly
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins would read all packages
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no warnings if its cache cannot be written
         return super().main(*args, **options)
 
     def make_context(self, *args: Any, **options: Any) -> click.Context:
-        """Parse the command line, and print help if requested."""
+        """Parse the command line, and print the help if requested; print user errors."""
         with _plain_errors():
             return super().make_context(*args, **options)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command."""
+        """Run a command; print user errors."""
         with _plain_errors():
             _check_threads(os.environ.get("NUMBA_NUM_THREADS", "1"))
             return super().invoke(ctx)
@@ -104,9 +104,9 @@ class Commands(click.Group):
 
 @contextmanager
 def _plain_errors() -> Iterator[None]:
-    """Print errors that a user can correct on one line, and exit with their codes.
+    """Print errors that a user can correct on one line each, and exit with the code of the error.
 
-    Names of arguments of the library are replaced by options of the command.
+    Arguments of the library that an error message names are replaced by the options of the command.
     """
     try:
         yield
@@ -133,12 +133,12 @@ def _plain_errors() -> Iterator[None]:
 
 
 def first_sentence(command: click.Command) -> str:
-    """Return the first sentence of the help of a command, on one line."""
+    """Return the first sentence of the help text of a command, on one line."""
     return command.get_short_help_str(limit=1000)
 
 
 def _check_threads(number: str) -> None:
-    """Raise UserError for a value of NUMBA_NUM_THREADS with which numba could not be imported."""
+    """Raise UserError if NUMBA_NUM_THREADS has a value with which numba cannot be imported."""
     if not (number.isascii() and number.isdigit() and int(number)):
         raise UserError(f"NUMBA_NUM_THREADS: not a number of threads (got {number}; allowed a whole number >= 1)")
 

@@ -17,7 +17,7 @@ from ._terminal import echo
 def recover(path: str, output: str | None, force: bool) -> None:
     """Close the log of a run that was killed, so that any HDF5 program can read its committed rows.
 
-    The commands of idealgas also read a log that was not closed.
+    All idealgas commands can also read a log that was not closed.
     """
     from idealgas.log import recover as close
 

@@ -1,4 +1,4 @@
-"""Command `idealgas report`: write a page with all results of a log."""
+"""Command `idealgas report`: write a page with the results of all analyses of a log."""
 
 import click
 
@@ -21,10 +21,10 @@ from ._terminal import written
 @force_option
 @quiet_option
 def report(path: str, output: str, start: float | None, force: bool) -> None:
-    """Write an HTML page with all applicable analyses and a player of the motion.
+    """Write an HTML page with all applicable analyses and a player that shows the motion.
 
-    The page is a single file and requires no network. If the run is long, the player shows only a part of it, which the
-    page states.
+    The page is a single file and requires no network connection. If the run is long, the player shows only part of it,
+    and the page states which part.
     """
     from idealgas.report.page import write_report
 

@@ -22,9 +22,9 @@ from ._options import integer, json_option, quiet_option
 @json_option
 @quiet_option
 def resume(path: str, as_json: bool, **ends: Any) -> None:
-    """Continue a run that was interrupted or killed from its last checkpoint, or continue it to a later end.
+    """Continue an interrupted or killed run from its last checkpoint, or a finished run to a later end.
 
-    The result is bit for bit the log of an uninterrupted run. A new end replaces all stop conditions of the scene.
+    The resulting log is bit for bit that of an uninterrupted run. A new end replaces all stop conditions of the scene.
     """
     from idealgas.run.resume import resume as resume_run
 

@@ -24,7 +24,8 @@ def run(
 ) -> None:
     """Run a scene and write every event to an HDF5 log. After Ctrl-C, `resume` continues the run from its log.
 
-    With --stream, the events are also printed as by `idealgas events`; the run ends when the reader closes the pipe.
+    With --stream, the events are also printed, in the format of `idealgas events`; the run ends when the reader closes
+    the pipe.
     """
     from idealgas.scene import load_scene
 
@@ -33,7 +34,7 @@ def run(
     scene = load_scene(path, overrides)
     if stream and not scene.log.events:
         raise UserError(f"{path}: --stream requires events (got log.events = false)")
-    check_output(output, LOG, force, [path])  # before the imports below, which take a second
+    check_output(output, LOG, force, [path])  # checked before the imports below, which take a second
     from idealgas.analysis import registry
     from idealgas.run.simulate import simulate
 

@@ -29,7 +29,7 @@ def _instant(_: click.Context, __: click.Parameter, value: str) -> float | Liter
 @click.option("-o", "--output", type=FILE, required=True, metavar="SCENE.toml", help="The scene to write.")
 @force_option
 def scene(path: str, time: float | Literal["end"], output: str, force: bool) -> None:
-    """Write a scene that starts from a state of a log, with the same box, effects and run, and the clock at 0."""
+    """Write a scene that starts at time 0 from a state of a log, with the box, effects and run settings of the log."""
     check_output(output, "scene", force, [path])
     from idealgas.log import open_log
     from idealgas.log.start import continued_scene

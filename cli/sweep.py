@@ -1,4 +1,4 @@
-"""Command `idealgas sweep`: run a scene at many points, on this machine or on a cluster."""
+"""Command `idealgas sweep`: run a scene for many parameter values, on this machine or on a cluster."""
 
 import json
 import os
@@ -38,20 +38,20 @@ Example: idealgas sweep temperatures.toml -o temperatures --plot pressure.png"""
 @click.argument("paths", type=FILE, metavar="SWEEP.toml...", nargs=-1)
 @click.option(
     "-o", "--output", type=FILE, metavar="DIR",
-    help="Folder for logs and results, in which several sweeps have a folder each; an existing sweep is continued.",
+    help="Folder for logs and results; several sweeps get a subfolder each, and an existing sweep is continued.",
 )  # fmt: skip
 @click.option(
     "--workers", type=click.IntRange(1), metavar="N",
     help="Number of processes on this machine.  [default: one per core]",
 )  # fmt: skip
-@overrides_option(" A key of a table in SWEEP.toml (sweep.replicates=2) changes the sweep.")
+@overrides_option(" Keys of the tables in SWEEP.toml (sweep.replicates=2) can also be changed.")
 @click.option("--scheduler", metavar="ADDRESS", help="Address of a dask scheduler whose workers run the points.")
 @click.option("--dry-run", is_flag=True, help="Only list the points and estimate the cost (time and disk space).")
 @plot_option
 @click.option(
     "--of", "quantity", metavar="QUANTITY",
-    help="Quantity to plot, by its name in results.csv.  [default: deviations from published values, if there are any, "
-    "or otherwise the main quantity of the first analysis]",
+    help="Quantity to plot, as named in results.csv.  [default: deviations from published values if there are any, "
+    "otherwise the main quantity of the first analysis]",
 )  # fmt: skip
 @click.option("--against", "axis", metavar="KEY", help="Axis to plot against.  [default: the first axis]")
 @click.option("--list", "listing", is_flag=True, help="List the quantities of all analyses; * stands for any group.")
@@ -72,10 +72,11 @@ def sweep(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Run scenes at many points and collect the results of their analyses in DIR/results.csv.
+    """Run a scene for many parameter values (points) and collect the results in DIR/results.csv.
 
-    The same command continues a sweep that was stopped; finished points are not run again. A point that fails is tried
-    twice more and then reported, while the other points continue. With --plot, a figure is drawn at the end.
+    To continue a sweep that was stopped, run the same command again; finished points are not repeated. A point that
+    fails is tried twice more and then reported, while the other points continue. With --plot, a figure is drawn at the
+    end.
     """
     if listing:
         _list_quantities()
@@ -127,7 +128,7 @@ def sweep(
 
 
 def _folders(paths: tuple[str, ...], output: str) -> list[str]:
-    """Return the folder of each sweep: the output folder of a single sweep, or folders in it with the sweeps' names."""
+    """Return the folder of each sweep: the output folder itself for a single sweep, otherwise named subfolders."""
     if len(paths) == 1:
         return [output]
     names = [Path(path).stem for path in paths]
@@ -137,7 +138,7 @@ def _folders(paths: tuple[str, ...], output: str) -> list[str]:
 
 
 def _print_json(results: list[dict[str, Any]], as_json: bool) -> None:
-    """Print the result of a single sweep, or the list of the results of several sweeps, if JSON is requested."""
+    """If JSON is requested, print the result of a single sweep, or the list of results of several sweeps."""
     if as_json:
         data(json.dumps(results[0] if len(results) == 1 else results, indent=2, allow_nan=False))
 
@@ -164,7 +165,7 @@ def _run(
                 raise KeyboardInterrupt
 
         def on_estimate(done: int, total: int) -> None:
-            show(done, total, "estimating the time by short runs")
+            show(done, total, "estimating the time from short runs")
 
         outcome = run_sweep(
             plan, output, workers=workers, scheduler=scheduler, on_progress=on_progress, on_estimate=on_estimate
@@ -201,7 +202,7 @@ def _planned(path: str, plan: "Sweep", workers: int | None, as_json: bool) -> di
     from idealgas.sweep.cost import estimate_cost, total_seconds
 
     workers = workers or os.cpu_count() or 1
-    with progress_bar("estimating the cost by short runs") as show:
+    with progress_bar("estimating the cost from short runs") as show:
         costs = estimate_cost(plan, show)
     seconds = total_seconds(costs, workers)
     labels = ({"point": p.index, "replicate": p.replicate, "values": p.values} for p in plan.points)

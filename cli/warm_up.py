@@ -17,8 +17,8 @@ from ._terminal import data, terminal
 def warm_up(paths: tuple[str, ...], as_json: bool) -> None:
     """Compile the machine code of scenes in advance, so that their first run starts at once.
 
-    Machine code is compiled for the effects of a scene and cached on disk. Without a scene, it is compiled for all
-    example scenes.
+    The machine code for the effects of a scene is cached on disk. If no scene is given, the code for all example scenes
+    is compiled.
     """
     from idealgas.run.simulate import warm_up as compile_for
     from idealgas.scene import load_scene

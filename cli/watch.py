@@ -1,4 +1,4 @@
-"""Command `idealgas watch`: show a log in the browser, even while it is written."""
+"""Command `idealgas watch`: show a log in the browser, even while the log is being written."""
 
 import os
 import subprocess
@@ -17,15 +17,15 @@ from ._terminal import echo
 
 @click.command(epilog="Example: idealgas watch gas.h5")
 @log_argument
-@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page.  [default: a free one]")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page.  [default: any free port]")
 @click.option("--no-browser", is_flag=True, help="Only print the address of the page.")
 @click.option("--until-eof", is_flag=True, hidden=True, help="End when the standard input ends, as with `run --watch`.")
 @quiet_option
 def watch(path: str, port: int, no_browser: bool, until_eof: bool) -> None:
-    """Show a log in the browser until Ctrl-C, even while it is written.
+    """Show a log in the browser until Ctrl-C, even while the log is being written.
 
-    The page shows the discs, their speeds with the Maxwell-Boltzmann distribution, and temperature and pressure against
-    time. Only browsers on this machine can open it.
+    The page shows the discs, their speeds with the Maxwell-Boltzmann distribution, and the temperature and pressure
+    against time. Only browsers on this machine can open it.
     """
     from idealgas.log import open_log
     from idealgas.report.live import serve
@@ -42,19 +42,19 @@ def watch(path: str, port: int, no_browser: bool, until_eof: bool) -> None:
 
 
 def _end_at_eof() -> None:
-    """End this process when its standard input ends, which also happens if the process at the other end is killed."""
+    """End this process when its standard input ends, as it does even if the parent process is killed."""
     sys.stdin.buffer.read()
     os._exit(0)
 
 
 def has_screen() -> bool:
-    """Return whether a browser opens in a window; without a screen, it would open in the terminal of the command."""
+    """Return whether a browser would open in a window; without a screen, it would take over the terminal."""
     return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 @contextmanager
 def watching(path: str) -> Iterator[Callable[[], None]]:
-    """Yield a function that starts `idealgas watch` for the log of a run once; the page stays open until Ctrl-C.
+    """Yield a function whose first call starts `idealgas watch` for a log; the page stays open until Ctrl-C.
 
     The page is served by a separate process, so that it does not slow down the run.
     """
