@@ -1,7 +1,7 @@
-"""Follow Boltzmann's H and the entropy of the positions in time, without the bias of finite numbers.
+"""Follow Boltzmann's H and the entropy of the positions over time, corrected for the bias of finite numbers.
 
 H = ∫ f ln f d²v of each species is estimated from distances between velocities, and the entropy of the positions from
-numbers of discs in cells.
+the numbers of discs in cells.
 """
 
 import math
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 
 INSTANTS = 129
 MOST_DISCS = 2**13
-"""Largest number of discs of a species whose velocities are compared; a larger species is thinned evenly."""
+"""Largest number of discs per species from which H is estimated; larger species are thinned evenly."""
 
 NEIGHBOUR = 4
-"""Rank of the neighbour to which the distance is measured; a smaller one scatters more, a larger one blurs more."""
+"""Rank of the neighbour to which distances are measured; lower ranks scatter more, higher ranks blur more."""
 
 FEWEST_DISCS = 2 * NEIGHBOUR
-"""Smallest number of discs of a species."""
+"""Smallest number of discs in a species for which the entropy is estimated."""
 
 DISCS_PER_CELL = 16
-"""Mean number of discs of a species in a cell; the next term of the bias is then below 1 % of the removed one."""
+"""Mean number of discs of a species per cell; the next term of the bias is then below 1 % of the term removed."""
 
 NODES = 64
-"""Number of nodes of the quadratures of the bias, along each of two dimensions."""
+"""Number of quadrature nodes in each of the two dimensions over which the bias is integrated."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,13 @@ class SpeciesEntropy:
 
     Attributes:
         species: name of the species.
-        h: (F,), Boltzmann's H, ⟨ln f⟩ of the velocities.
-        positions: (F,), entropy of the positions in cells of equal area: 0 for a uniform density and -ln 2 for one half
-            of the box; None without positions.
+        h: (F,), Boltzmann's H = ⟨ln f⟩, where f is the density of the velocities.
+        positions: (F,), entropy of the positions in cells of equal area: 0 for a uniform density, and -ln 2 if the
+            discs are spread uniformly over one half of the box; None without positions.
         cells: numbers of cells along x and y.
-        mean_h: mean of H once both series are steady; None if they never are.
-        mean_positions: mean entropy of the positions from the same time on; None if the series never are steady.
+        mean_h: mean of H once all series are steady; None if they never become steady.
+        mean_positions: mean entropy of the positions over the same times; None without positions, or if the series
+            never become steady.
     """
 
     species: str
@@ -70,10 +71,10 @@ class SpeciesEntropy:
 
 @dataclass(frozen=True)
 class Entropy(Result):
-    """Entropy of a gas in time.
+    """Entropy of a gas over time.
 
     Attributes:
-        time: (F,), instants.
+        time: (F,), times.
         species: entropy of each species with at least FEWEST_DISCS discs.
     """
 
@@ -81,7 +82,7 @@ class Entropy(Result):
     species: tuple[SpeciesEntropy, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the means in equilibrium and of the series."""
+        """Return the table of means in equilibrium and that of the time series."""
         rows = [
             (f"{entropy.species}: {name}", average)
             for entropy in self.species
@@ -102,13 +103,13 @@ class Entropy(Result):
         ]
 
     def summary(self) -> str:
-        """Return H at the start and at the end, and whether it agrees with the Maxwell–Boltzmann distribution."""
+        """Return H at the start and at the end, and whether its mean agrees with the Maxwell–Boltzmann distribution."""
         first, rows = self.species[0], [(s.species, s.mean_h) for s in self.species if s.mean_h is not None]
         change = f"H per disc of {first.species} goes from {first.h[0]:.4g} to {first.h[-1]:.4g}"
         if not rows:
-            return f"{change} and is not steady."
+            return f"{change} and does not become steady."
         verdict = agreement(rows, "the Maxwell–Boltzmann distribution")
-        return f"{change}; steady at {format_estimate(rows[0][1])}; {verdict}."
+        return f"{change}; its mean once steady is {format_estimate(rows[0][1])}; {verdict}."
 
     def figure(self) -> "Figure":
         """Draw H and the entropy of the positions against time, with their equilibrium values dashed."""
@@ -150,12 +151,12 @@ class EntropyAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Entropy:
-        """Follow Boltzmann's H of the velocities and the entropy of the positions, per disc.
+        """Follow Boltzmann's H of the velocities and the entropy of the positions over time, both per disc.
 
         The gas need not be in equilibrium.
 
         Raises:
-            UserError: if the log does not cover the times, has no events, or has no species of at least 8 discs.
+            UserError: if the log does not cover the times, has no events, or has no species with at least 8 discs.
         """
         equilibrium = known_ensemble(log)
         species = [kind for kind in _species(log, equilibrium) if len(kind.members) >= FEWEST_DISCS]
@@ -185,7 +186,7 @@ class EntropyAnalysis(Analysis):
 
 
 def neighbour_entropy(points: np.ndarray) -> float:
-    """Return the entropy -∫ f ln f of points (n, 2), from distances to a neighbour; nan if points coincide.
+    """Return the entropy -∫ f ln f of points (n, 2) from distances between neighbours; nan if too many points coincide.
 
     Kozachenko & Leonenko, Probl. Inf. Transm. 23, 95 (1987); Kraskov et al., Phys. Rev. E 69, 066138 (2004).
     """
@@ -201,13 +202,13 @@ def neighbour_entropy(points: np.ndarray) -> float:
 def _bias(number: int) -> float:
     """Return the exact bias of `neighbour_entropy` for a number of independent, normally distributed points.
 
-    The probability p inside the distance to neighbour k has the distribution Beta(k, n - k). The estimator would be
-    unbiased if the density were uniform up to that distance. Around a point at a distance r from the centre, p is a
-    noncentral χ² distribution function.
+    Let p be the probability within the circle around a point that reaches to its neighbour of rank k. For n points, p
+    has the distribution Beta(k, n - k). The estimator would be unbiased if the density were uniform within the circle.
+    Around a point at distance r from the centre, p is a noncentral χ² distribution function of the squared distance.
     """
     from scipy import special
 
-    middle, weight = np.polynomial.laguerre.laggauss(NODES)  # r²/2, exponential
+    middle, weight = np.polynomial.laguerre.laggauss(NODES)  # r²/2 is distributed exponentially
     chance = (np.arange(NODES) + 0.5) / NODES
     within = special.betaincinv(NEIGHBOUR, number - NEIGHBOUR, chance)
     used = weight > 1e-12
@@ -216,10 +217,11 @@ def _bias(number: int) -> float:
 
 
 def _bias_of_energy(equilibrium: Ensemble | None) -> float:
-    """Return the mean of ln(T/T') over canonical velocities whose energy gives T' with D degrees of freedom.
+    """Return the bias of the entropy of velocities that is due to a fixed total energy; 0 in a heat bath.
 
-    Velocities at fixed energy are canonical ones times √(T/T'), which changes the entropy of each sample by ln(T/T').
-    In a heat bath the bias is 0.
+    Let T' be the temperature that follows from the energy of a canonical sample with D degrees of freedom.
+    Multiplying its velocities by √(T/T') gives a sample at fixed energy and changes its entropy by ln(T/T'). The bias
+    is the mean of ln(T/T') over canonical samples.
     """
     from scipy import special
 
@@ -233,15 +235,15 @@ class _Species(NamedTuple):
 
     Attributes:
         name: name of the species.
-        members: ids of its discs.
-        compared: ids of those discs whose velocities are compared.
-        low: (2,), lower corner of the area that the centres of its discs reach, length.
-        size: (2,), size of this area, length.
+        members: ids of the discs of the species.
+        compared: ids of the discs from whose velocities H is estimated.
+        low: (2,), lower left corner of the rectangle that the centres of the discs can reach, length.
+        size: (2,), width and height of this rectangle, length.
         grid: numbers of cells along x and y.
-        bias: bias of H.
-        variance: variance of the number of discs in a cell, over its mean.
-        expected_h: H in equilibrium by theory; None without theory.
-        expected_spread: entropy of the positions in equilibrium by theory; None without theory.
+        bias: bias of the estimated entropy of the velocities (no unit).
+        variance: variance over mean of the number of discs in a cell.
+        expected_h: theoretical H in equilibrium; None without theory.
+        expected_spread: theoretical entropy of the positions in equilibrium; None without theory.
     """
 
     name: str
@@ -256,9 +258,10 @@ class _Species(NamedTuple):
     expected_spread: Theory | None
 
     def spread(self, position: np.ndarray) -> float:
-        """Return -Σ p ln(p K) over K cells with the shares p of the discs, for positions (N, 2) of all discs.
+        """Return the entropy of the positions of the species, -Σ p ln(p K), from the positions (N, 2) of all discs.
 
-        The bias for independent discs (Miller 1955), times the variance of a number in the gas, is removed.
+        The sum is over K cells, and p is the fraction of the discs in a cell. The bias is removed: it is the bias for
+        independent discs (Miller 1955) times the variance over mean of the number of discs in a cell.
         """
         share = (position[self.members] - self.low) / self.size
         x, y = (np.clip((share[:, a] * self.grid[a]).astype(int), 0, self.grid[a] - 1) for a in range(2))
@@ -269,7 +272,7 @@ class _Species(NamedTuple):
 
 
 def _species(log: Log, equilibrium: Ensemble | None) -> Iterator[_Species]:
-    """Yield the quantities of each species of a log."""
+    """Yield the quantities that determine the entropy for each species in a log."""
     kinds, periodic, phi = composition(log.discs), np.array(log.periodic), log.discs.packing_fraction
     compressibility = 1 / float(hard_discs.inverse_compressibility(phi)) if phi <= hard_discs.HIGHEST else 0.0
     even = log.has_positions and becomes_uniform(log, None) and log.scene.properties.fixed_walls
@@ -300,14 +303,14 @@ def _species(log: Log, equilibrium: Ensemble | None) -> Iterator[_Species]:
 
 
 def _maxwell(thermal: float) -> float:
-    """Return H of the Maxwell–Boltzmann distribution for the variance T/m of a velocity component, (length/time)²."""
+    """Return H of the Maxwell–Boltzmann distribution from the variance T/m of a velocity component, (length/time)²."""
     return -1 - math.log(2 * math.pi * thermal)
 
 
 def _grid(size: np.ndarray, number: int) -> tuple[int, int]:
-    """Return the numbers of nearly square cells along x and y for a number of discs.
+    """Return the numbers of nearly square cells along x and y for a given number of discs.
 
-    Each number is 1 or even, so that halves of the box consist of whole cells.
+    Each number is 1 or even, so that each half of the box consists of whole cells.
     """
     cells = max(number / DISCS_PER_CELL, 1.0)
     along_x = max(2 * round(math.sqrt(cells * size[0] / size[1]) / 2), 1)

@@ -1,8 +1,8 @@
-"""Measure how a gas cools whose discs lose energy in collisions: Haff's law, a₂, spin and clusters.
+"""Measure how a gas whose discs lose energy in collisions cools: Haff's law, a₂, spin and clusters.
 
-The analysis gives the loss per collision and Haff's time, both with the Sonine correction, the fourth cumulant a₂ of
-the velocities, the ratio of the temperatures of spin and motion of rough discs, and the scatter of the numbers of discs
-in small cells, which shows when clusters form.
+The analysis measures the loss per collision and Haff's time, which are compared with theory to first order in the
+Sonine expansion. It also measures the fourth cumulant a₂ of the velocities, for rough discs the ratio of the rotational
+to the translational temperature, and the scatter of the numbers of discs in small cells, which grows as clusters form.
 """
 
 import math
@@ -30,49 +30,50 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INSTANTS = 257
-"""Number of instants of the time series."""
+"""Number of times in the time series."""
 
 FEW = 10
-"""Number of discs below which a caveat says that theory assumes many discs."""
+"""Number of discs below which a caveat states that theory assumes many discs."""
 
 FEWEST = 16
-"""Smallest number of instants in the window of the averages."""
+"""Smallest number of times in the averaging window."""
 
 SETTLED, FOLDS = 20.0, 5.0
-"""Collisions per disc, and relaxation times of the temperature ratio, after which averages begin."""
+"""Collisions per disc and relaxation times of the temperature ratio after which averaging starts."""
 
 SPREAD = 1.0
-"""Upper limit of the relative standard deviation of the temperature over runs, times the root of the number of discs.
+"""Upper bound on √N times the relative standard deviation of the temperature among runs, for N discs.
 
-In 24 runs each it is 0.50 with e = 0.95 (300 discs, down to e⁻³·⁴ T₀), 0.53 with 100 discs, and 0.86 with e = 0.8.
+In 24 runs each, the product is 0.50 for e = 0.95 (300 discs, cooled to exp(−3.4) T₀), 0.53 for 100 discs, and 0.86 for
+e = 0.8.
 """
 
 
 @dataclass(frozen=True)
 class Cooling(Result):
-    """Cooling of a gas at F times, compared with the theory of a uniform gas.
+    """Cooling of a gas, followed over F times and compared with the theory of a uniform gas.
 
     Attributes:
         time: (F,), times.
         collisions: (F,), mean number of collisions per disc up to each time.
-        temperature: (F,), mean m v²/2 in the frame of the centre of mass, energy.
-        spin: (F,), mean I ω², energy; None without spin.
+        temperature: (F,), translational temperature in the frame of the centre of mass, energy.
+        spin: (F,), rotational temperature, the mean of I ω², energy; None without spin.
         cumulant: (F,), fourth cumulant a₂ of the velocities.
         scatter: (F,), variance over mean of the numbers of discs in equal cells; 1 for points at random positions.
-        flow: (F,), mean square of the momentum in a cell over that of discs that move independently.
+        flow: (F,), mean square momentum of a cell, relative to that of discs that move independently.
         cells: number of cells.
-        law: (F,), temperature of the motion by theory, energy; None without theory.
-        spin_law: (F,), temperature of the spins by theory, energy; None without theory.
-        start: start of the window of the averages, time.
-        end: end of this window, time.
-        last_temperature: temperature at the end, energy; its theory is the law of a uniform gas at that time.
+        law: (F,), theoretical translational temperature, energy; None without theory.
+        spin_law: (F,), theoretical rotational temperature, energy; None without theory.
+        start: start of the averaging window, time.
+        end: end of the averaging window, time.
+        last_temperature: translational temperature at the end, energy; theory predicts it for a uniform gas.
         loss: fraction of the temperature that is lost per collision of a disc.
-        haff: Haff's time τ in T = T₀/(1 + t/τ)², where T₀ is the temperature at time 0.
+        haff: Haff's time τ in T = T₀/(1 + t/τ)², where T₀ is the temperature at time 0, time.
         fourth: mean of a₂.
-        temperature_ratio: mean of spin over temperature; None without rough discs.
-        first_scatter: mean of scatter in the first tenth of the collisions.
-        last_scatter: mean of scatter in the last tenth.
-        last_flow: mean of flow in the last tenth.
+        temperature_ratio: mean of `spin` over `temperature`; None unless discs are rough.
+        first_scatter: mean of `scatter` over the first tenth of the collisions.
+        last_scatter: mean of `scatter` over the last tenth of the collisions.
+        last_flow: mean of `flow` over the last tenth of the collisions.
     """
 
     time: np.ndarray
@@ -97,7 +98,7 @@ class Cooling(Result):
     last_flow: Estimate
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the averages and of the time series."""
+        """Return the table of averages and that of the time series."""
         rows = [
             ("T at the end (energy)", self.last_temperature),
             ("T lost per collision of a disc (share)", self.loss),
@@ -113,7 +114,7 @@ class Cooling(Result):
         ]
         notes = (
             f"window: t = {self.start:.6g} to {self.end:.6g}",
-            f"{self.cells} cells; scatter of numbers: variance over mean; 1 for independent discs, as for momenta",
+            f"{self.cells} cells; scatter of numbers: variance over mean; it and momenta are 1 for independent discs",
         )
         columns = {
             "t": self.time,
@@ -128,18 +129,18 @@ class Cooling(Result):
         return [estimates("Cooling", rows, notes), time_series("Time series", columns)]
 
     def summary(self) -> str:
-        """Return how far and how fast the gas cools, and whether this agrees with the theory of a uniform gas."""
+        """Return how far and how fast the gas cools, and whether both agree with the theory of a uniform gas."""
         last = self.last_temperature
         rows = [("T at the end", last), ("loss per collision", self.loss), ("Haff's time", self.haff)]
         law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
         return (
             f"The temperature falls from {self.temperature[0]:.4g} to {last.value:.4g}{law} in "
-            f"{self.collisions[-1]:.4g} collisions per disc, by {format_estimate(self.loss)} of it per collision. "
+            f"{self.collisions[-1]:.4g} collisions per disc, a fraction of {format_estimate(self.loss)} per collision. "
             f"T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
         )
 
     def figure(self) -> "Figure":
-        """Draw the temperature against time, and the other series against collisions per disc."""
+        """Draw the temperature against time, and the other series against the number of collisions per disc."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         means = [("a₂ (no unit)", self.cumulant, self.fourth)]
@@ -163,7 +164,7 @@ class Cooling(Result):
                 panel.theory(None, average.theory, average.theory_error, color=GREY)
             panel.set(xlabel="collisions per disc", ylabel=label)
         last.plot(self.collisions, self.scatter, color=COLOURS[0], label="numbers: variance over mean")
-        last.plot(self.collisions, self.flow, color=COLOURS[1], label="momenta: square over that by chance")
+        last.plot(self.collisions, self.flow, color=COLOURS[1], label="momenta: relative mean square")
         last.set(ylabel=f"in {self.cells} cells (no unit)", xlabel="collisions per disc", yscale="log")
         for panel in (ax, *middle, last):
             panel.legend()
@@ -180,8 +181,8 @@ class CoolingAnalysis(Analysis):
     sections = (
         Section(
             "Cooling",
-            "Temperature against time, then cumulant, temperature ratio of rough discs, and the scatter of numbers and "
-            "momenta in cells against collisions per disc; theory dashed",
+            "Temperature against time; then the cumulant, the temperature ratio of rough discs, and the scatter of "
+            "numbers and momenta in cells against collisions per disc; theory dashed",
         ),
     )
     start = "20 collisions per disc, or more with slow spins"
@@ -191,17 +192,17 @@ class CoolingAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Cooling:
-        """Measure how a gas of equal discs cools by its collisions, and compare it with the theory of a uniform gas.
+        """Measure how a gas of equal discs cools due to collisions, and compare it with the theory of a uniform gas.
 
         Raises:
-            NotApplicableError: if anything but collisions of equal discs changes the energy, or if the log is too
-                short.
+            NotApplicableError: if anything other than collisions between equal discs changes the energy, or if the log
+                is too short.
         """
         parameters, dof, number = parameters_of(log), degrees_of_freedom(log.scene, log.discs), len(log.discs)
         first, last = span(log, None, end)
         t0, s0, _ = _moments(log, log.state_at(log.start_time), dof)
         rate = _collision_rate(log, t0)
-        # by Haff's law, equal numbers of collisions lie between successive times
+        # if Haff's law holds, equal numbers of collisions happen between successive times
         tau = granular.cooling_time(parameters, rate) if math.isfinite(rate) else last - first
         time = np.clip(np.geomspace(tau + first, tau + last, INSTANTS) - tau, first, last)
         temperature, spin, cumulant, scatter, flow = np.empty((5, len(time)))
@@ -212,10 +213,10 @@ class CoolingAnalysis(Analysis):
         collisions = collisions_per_disc(log, time)
         window = _window(log, time, collisions, granular.relaxation(parameters), start)
         theory = cooling_theory(parameters, rate, (t0, s0), time, number, dof)
-        # the energy that motion and spin exchange is removed from `cooled`
+        # fluctuations of the exchange of energy between motion and spin are removed from `cooled`
         energy = temperature[window] + number / dof * spin[window]
         cooled = energy * (temperature[window] / energy).mean()
-        slopes = np.diff(cooled**-0.5) / np.diff(time[window])  # constant by Haff's law
+        slopes = np.diff(cooled**-0.5) / np.diff(time[window])  # constant if Haff's law holds
         tenths, at_end = collisions / collisions[-1], float(temperature[-1])
         early, late = (mean_of_part(scatter, part) for part in (tenths <= 0.1, tenths >= 0.9))
         together = mean_of_part(flow, tenths >= 0.9)
@@ -244,7 +245,7 @@ class CoolingAnalysis(Analysis):
             last_scatter=late,
             last_flow=together,
             caveats=(
-                *([] if number >= FEW else [f"The laws are for many discs, and this gas has {number}."]),
+                *([] if number >= FEW else [f"Theory assumes many discs, and this gas has {number}."]),
                 *([] if parameters.normal >= granular.TESTED_FROM else [UNTESTED]),
                 *narrow(log),
                 *nonuniform(early.value, late.value, together.value, int(shape.prod())),
@@ -253,35 +254,41 @@ class CoolingAnalysis(Analysis):
 
 
 def _collision_rate(log: Log, temperature: float) -> float:
-    """Return the collision rate of a disc at a temperature, 1/time; inf if the gas is too dense for theory."""
+    """Return the theoretical collision rate of a disc, 1/time; inf if the gas is too dense for theory."""
     discs = log.discs
     contacts = hard_discs.box_contacts(discs.radius[:1], [len(discs)], log.box, log.periodic)[0, 0]
     return float(contacts) * hard_discs.mean_relative_speed(temperature, float(discs.mass[0]))
 
 
 def _window(log: Log, time: np.ndarray, collisions: np.ndarray, relaxation: float, start: float | None) -> np.ndarray:
-    """Return the indices of the instants that are averaged.
+    """Return the indices of the times over which averages are taken.
 
-    They begin at `start`, or by default when the ratio of temperatures, with its relaxation time in collisions per
-    disc, and the distribution of the velocities have settled.
+    Args:
+        log: log of the gas.
+        time: (F,), times.
+        collisions: (F,), number of collisions per disc up to each time.
+        relaxation: relaxation time of the temperature ratio, in collisions per disc.
+        start: start of the window, time; by default the window starts when the distribution of the velocities and the
+            temperature ratio have settled.
 
     Raises:
-        NotApplicableError: if there are too few of them.
+        NotApplicableError: if there are too few times in the window.
     """
     settled = max(SETTLED, FOLDS * relaxation)
     window = np.flatnonzero(collisions >= settled if start is None else time >= start)
     if len(window) < FEWEST:
         raise NotApplicableError(
-            f"{log.path}: the log has {collisions[-1]:.3g} collisions per disc, and averages begin after "
+            f"{log.path}: the log has {collisions[-1]:.3g} collisions per disc, and averaging starts after "
             f"{settled:.3g}; run longer, or use --from T to set the start by hand"
         )
     return window
 
 
 def _moments(log: Log, state: LogState, dof: int) -> tuple[float, float, float]:
-    """Return the temperatures of motion and spin and a₂ at one instant.
+    """Return the translational and rotational temperatures, energy, and a₂ for one state of the gas.
 
-    The bias of a₂ for few discs is removed: at fixed energy a₂ of Gaussian velocities is -2/(D + 2) on average.
+    The bias of a₂ due to the finite number of discs is removed: for D degrees of freedom at fixed energy, a₂ is
+    -2/(D + 2) on average in equilibrium.
     """
     square = ((state.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1)
     spin = 0.0

@@ -1,4 +1,4 @@
-"""Theory of a gas that cools uniformly, with the errors of its predictions."""
+"""Theory of a gas that cools uniformly, with the errors of the predictions."""
 
 import math
 from dataclasses import dataclass
@@ -14,28 +14,28 @@ from idealgas.theory.values import Theory
 LOSS_ERROR, TIME_ERROR, RATIO_ERROR = 0.015, 0.025, 0.05
 """Relative errors of theory for the loss per collision, Haff's time and the temperature ratio.
 
-They are from simulations of 300 discs at φ = 0.05, 20 runs each, with e = 0.8 to 0.98 without spin, and with e = 0.9 or
-0.95 and β = 0, 0.5 and 0.9.
+They were estimated from simulations of 300 discs at φ = 0.05, with 20 runs for each set of coefficients: e = 0.8 to
+0.98 for smooth discs, and e = 0.9 or 0.95 with β = 0, 0.5 and 0.9 for rough discs.
 """
 
 CUMULANT_ERROR = 0.05
-"""Relative error of a₂ by theory, due to neglected terms of higher order in a₂."""
+"""Relative error of the predicted a₂, due to neglected terms of higher order in a₂."""
 
 UNTESTED = f"Theory is not available below e = {granular.TESTED_FROM:g}."
 
 
 @dataclass(frozen=True)
 class CoolingTheory:
-    """Predictions for a gas that cools uniformly; None where theory has no value.
+    """Predictions for a gas that cools uniformly; None where theory is not available.
 
     Attributes:
-        law: (F,), temperature of the motion, energy.
-        spin_law: (F,), temperature of the spins, energy.
-        last_temperature: temperature of the motion at the last time, energy.
+        law: (F,), translational temperature, energy.
+        spin_law: (F,), rotational temperature, energy.
+        last_temperature: translational temperature at the last time, energy.
         loss: fraction of the temperature that is lost per collision of a disc.
-        haff: Haff's time.
-        fourth: fourth cumulant a₂ of smooth discs.
-        temperature_ratio: temperature of the spins over that of the motion.
+        haff: Haff's time, time.
+        fourth: fourth cumulant a₂ of the velocities of smooth discs.
+        temperature_ratio: ratio of the rotational to the translational temperature.
     """
 
     law: np.ndarray | None = None
@@ -50,12 +50,12 @@ class CoolingTheory:
 def cooling_theory(
     parameters: GranularParameters, rate: float, start: tuple[float, float], time: np.ndarray, number: int, dof: int
 ) -> CoolingTheory:
-    """Return the predictions of the theory of homogeneous cooling; none below the tested coefficients.
+    """Return the predictions of the theory of homogeneous cooling; all None if e is below the tested range.
 
     Args:
         parameters: coefficients of the collisions.
         rate: collision rate of a disc at time 0, 1/time; inf if it is not known.
-        start: temperatures of motion and spin at time 0, energy.
+        start: translational and rotational temperatures at time 0, energy.
         time: (F,), times.
         number: number of discs.
         dof: number of degrees of freedom.
@@ -65,12 +65,12 @@ def cooling_theory(
     few = 1 / dof
 
     def expected(value: float, *errors: float) -> Theory:
-        """Return a value with the relative errors of its theory."""
+        """Return a predicted value with the given relative errors, added in quadrature."""
         return Theory(value, math.hypot(*errors) * abs(value), "homogeneous cooling")
 
     law = spin_law = haff = last = None
     if math.isfinite(rate):
-        rate /= dof / (2 * number)  # conserved momentum: fewer degrees of freedom share the energy
+        rate /= dof / (2 * number)  # if momentum is conserved, fewer degrees of freedom share the energy
         law, spin_law = granular.homogeneous_cooling(parameters, rate, *start, time)
         haff = expected(granular.cooling_time(parameters, rate), TIME_ERROR, few)
         last = Theory(float(law[-1]), float(law_error(law, haff.error / haff.value)[-1]), haff.source)
@@ -87,7 +87,7 @@ def cooling_theory(
 
 
 def parameters_of(log: Log) -> GranularParameters:
-    """Return the coefficients of the collisions.
+    """Return the coefficients of the collisions in a log.
 
     Raises:
         NotApplicableError: unless equal discs lose energy in their collisions and nothing else changes the energy.
@@ -102,10 +102,10 @@ def parameters_of(log: Log) -> GranularParameters:
     elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
     why = ""
     if parameters.normal == 1 and abs(parameters.roughness) == 1:
-        why = "collisions that lose energy, and discs of this gas conserve it"
+        why = "collisions that lose energy, and collisions in this gas conserve it"
     elif effects or not (all(log.periodic) or elastic_walls):
         others = ", ".join(effects) or "walls"
-        why = f"that only collisions of discs change the energy (got {others}); use `idealgas evolution`"
+        why = f"that only collisions between discs change the energy (got {others}); use `idealgas evolution`"
     elif not log.has_positions or not log.has_events:
         why = "events with positions"
     elif len(log.discs.species_names) > 1:
@@ -118,8 +118,12 @@ def parameters_of(log: Log) -> GranularParameters:
 
 
 def law_error(law: np.ndarray, relative: float) -> np.ndarray:
-    """Return the errors (F,) of temperatures (F,) by Haff's law, for a relative error dτ/τ of its time.
+    """Return the errors (F,) of temperatures predicted by Haff's law, for a relative error dτ/τ of Haff's time.
 
-    dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ.
+    Since T = T₀/(1 + t/τ)², dT/T = 2 (t/τ)/(1 + t/τ) dτ/τ.
+
+    Args:
+        law: (F,), predicted temperatures, energy.
+        relative: relative error dτ/τ.
     """
     return 2 * (1 - np.sqrt(np.minimum(law / law[0], 1))) * relative * law

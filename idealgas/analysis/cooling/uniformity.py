@@ -1,4 +1,4 @@
-"""Uniformity of a gas that cools: numbers and momenta of discs in small cells."""
+"""Uniformity of a cooling gas, from the numbers and momenta of discs in small cells."""
 
 import math
 from collections.abc import Iterator
@@ -12,21 +12,26 @@ DISCS_PER_CELL = 8
 """Approximate mean number of discs in a cell."""
 
 SIGNIFICANT = 4.0
-"""Deviation from which on a gas counts as nonuniform, in standard errors of a single state."""
+"""Deviation at which a gas counts as nonuniform, in standard errors of a single state."""
 
 
 def cells_of(log: Log) -> np.ndarray:
-    """Return the numbers of equal cells along x and y in which discs are counted, (2,)."""
+    """Return the numbers (2,) of equal cells along x and y in which discs are counted."""
     side = math.sqrt(DISCS_PER_CELL * math.prod(log.box) / len(log.discs))
     shape = np.maximum(np.round(np.array(log.box) / side).astype(int), 1)
     return shape if (shape > 1).any() else np.array([2, 2])
 
 
 def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
-    """Return the scatter of the numbers of discs in cells, and the mean square momentum of cells.
+    """Return the variance over mean of the numbers of discs in cells, and the relative mean square momentum of cells.
 
-    The scatter is the variance over the mean. The momentum is taken per mass, from sums of velocities, and relative to
-    that of discs that move independently.
+    The mean square momentum of a cell is relative to that of discs that move independently. As all discs have the same
+    mass, it is computed from sums of velocities.
+
+    Args:
+        log: log of the gas.
+        state: state of the gas.
+        shape: (2,), numbers of cells along x and y.
     """
     velocity, cells = state.velocity - centre_of_mass_velocity(log.scene, log.discs), int(shape.prod())
     at = np.minimum((state.position / np.array(log.box) * shape).astype(int), shape - 1)
@@ -37,12 +42,19 @@ def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, flo
 
 
 def nonuniform(early: float, late: float, flow: float, cells: int) -> Iterator[str]:
-    """Yield caveats for a gas that is not uniform at the end, beyond the fluctuations of single states in M cells.
+    """Yield caveats if the gas is less uniform at the end than the fluctuations of single states can explain.
 
-    The relative standard error of the scatter of a single state is √(2/(M - 1)), and that of the flow 1/√M.
+    For a single state and M cells, the relative standard error of the scatter is √(2/(M - 1)), and that of the flow
+    1/√M.
+
+    Args:
+        early: mean scatter of the numbers of discs in cells in the first tenth of the collisions.
+        late: mean scatter in the last tenth of the collisions.
+        flow: mean square momentum of cells in the last tenth, relative to that of independent discs.
+        cells: number of cells M.
     """
     end = "theory assumes a uniform gas."
     if late > early * (1 + SIGNIFICANT * math.sqrt(4 / (cells - 1))):
         yield f"Clusters form: numbers of discs in cells scatter {late / early:.3g} times as much as before; {end}"
     if flow > 1 + SIGNIFICANT / math.sqrt(cells):
-        yield f"Discs move together: momenta of cells have {flow:.3g} times the mean square of independent discs; {end}"
+        yield f"Discs move together: the squared momentum of cells is {flow:.3g} times that of independent discs; {end}"

@@ -1,8 +1,8 @@
 """Measure the distribution of a quantity and test it against theory.
 
-Velocities and energies are weighted with the time that discs spend at them. Waiting times are those between successive
-events of the whole gas. Impact parameters are those of collisions. Collisions are counted disc by disc in ten mean free
-times. The Kolmogorov-Smirnov tests use independent samples.
+Velocities and energies are weighted by the time that discs spend at each value. Waiting times are the times between
+successive events in the whole gas. Impact parameters are those of collisions between discs. Collisions are counted for
+each disc in ten mean free times. The Kolmogorov-Smirnov tests use independent samples.
 """
 
 import math
@@ -54,32 +54,33 @@ QUANTITIES: dict[Quantity, str] = {
 """Quantities whose distribution can be measured, with their units."""
 
 INVERSE = {"length/time": "time/length", "no unit": "no unit"}
-"""Units of densities that are not written as 1/unit."""
+"""Units of the densities of quantities for which it is not written as 1/unit, by unit of the quantity."""
 
 OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, "collisions": collision_counts}
-"""Functions that measure the distribution of one quantity each."""
+"""Functions that measure the distribution of a quantity, by quantity."""
 
-LINES = 24  # lines of the histogram in characters; bins are merged to fit
+LINES = 24  # number of lines of the text histogram; bins are merged to fit
 SAMPLED = 1024  # largest number of discs of a species whose velocities are tested
 
 GROUPS = 16
 """Number of groups of discs that are sampled in turn.
 
-The discs share energy and momentum, but a sixteenth of them hardly correlates with itself for this reason. A disc
-hardly correlates with itself sixteen statistical inefficiencies later, even if it is confined between walls.
+As the discs share a fixed energy and momentum, samples of all discs would be correlated; samples of a sixteenth of them
+hardly are. A disc is sampled again only after sixteen statistical inefficiencies, by which time its velocity is hardly
+correlated with its earlier value, even if the disc is confined between walls.
 """
 
 
 @dataclass(frozen=True)
 class Histogram(Result):
-    """Distributions of one quantity in a window of time, one for each species.
+    """Distributions of one quantity in a time window, one for each species or one for the whole gas.
 
     Attributes:
         quantity: name of the quantity.
-        unit: its unit.
-        window: window of time.
-        distributions: distribution of each species, or of the whole gas.
-        no_law: why theory gives no distribution, as part of a sentence; None if it does.
+        unit: unit of the quantity.
+        window: time window.
+        distributions: distribution for each species, or for the whole gas.
+        no_law: why theory predicts no distribution, as part of a sentence; None if it predicts one.
     """
 
     quantity: str
@@ -89,7 +90,7 @@ class Histogram(Result):
     no_law: str | None = None
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of the means, and of the Kolmogorov-Smirnov distances between samples and laws."""
+        """Return the tables of means, of cumulants if there are any, and of Kolmogorov-Smirnov tests."""
         tests: list[tuple[Cell, ...]] = []
         for distribution in self.distributions:
             spacing = Number(distribution.correlation_time, ".4g")
@@ -118,12 +119,12 @@ class Histogram(Result):
         return tables
 
     def summary(self) -> str:
-        """Return the mean of each species and the laws that its values follow."""
+        """Return the mean for each species, and whether its distribution agrees with the laws."""
         sentences = [_follows(self, distribution) for distribution in self.distributions]
         return " ".join([*sentences, *([f"Theory gives no distribution: {self.no_law}."] if self.no_law else [])])
 
     def text(self) -> str:
-        """Return a histogram of each species in characters, with the first of its laws."""
+        """Return a text histogram for each species, with the first of its laws."""
         lines = []
         for distribution in self.distributions:
             groups, widths = np.array_split(np.arange(len(distribution.density)), LINES), np.diff(distribution.edges)
@@ -140,7 +141,7 @@ class Histogram(Result):
         return "\n".join(lines)
 
     def figure(self) -> "Figure":
-        """Draw the measured density with its error bars and the laws, in one panel for each species."""
+        """Draw the measured density with error bars and the laws, in one panel per species."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(self.distributions))
@@ -159,7 +160,7 @@ class Histogram(Result):
             ax.set_ylabel(f"density ({INVERSE.get(self.unit, f'1/{self.unit}')})")
             ax.legend()
         ends, heights = (np.array([getattr(ax, of)() for ax in axes]) for of in ("get_xlim", "get_ylim"))
-        for ax in axes:  # common axes, so that species can be compared by eye
+        for ax in axes:  # equal axes, so that species can be compared by eye
             ax.set(xlim=(ends[:, 0].min(), ends[:, 1].max()), ylim=(0, heights[:, 1].max()))
         return figure
 
@@ -173,7 +174,7 @@ class HistogramAnalysis(Analysis):
     sections = tuple(
         Section(
             title,
-            f"Density of {title.lower()}: measured with its standard errors, and its laws as lines",
+            f"Density of {title.lower()}: measured with standard errors, and predicted by theory (lines)",
             {"quantity": quantity},
         )
         for title, quantity in (
@@ -191,7 +192,7 @@ class HistogramAnalysis(Analysis):
         Option(
             "quantity",
             str,
-            "Quantity whose distribution is measured. Free flights are those between two collisions with discs, impact "
+            "Quantity whose distribution is measured. Free flights are those between collisions with discs, impact "
             "parameters are relative to the sum of the radii, and collisions are counted in ten mean free times.",
             default="speed",
             choices=tuple(QUANTITIES),
@@ -206,17 +207,18 @@ class HistogramAnalysis(Analysis):
         end: float | None = None,
         progress: ReadProgress | None = None,
     ) -> Histogram:
-        """Measure a distribution between two times of a log, species by species, and test it against theory.
+        """Measure the distribution of a quantity in a time window, for each species, and test it against theory.
 
         Velocities are compared with the Maxwell-Boltzmann distribution and that of N discs at fixed energy, free
         flights with the law of a dilute gas, waiting times with an exponential distribution, impact parameters with a
-        uniform one, and numbers of collisions with Boltzmann's equation for one disc in a dilute gas of equal discs.
-        `law_error` is the error of the theory itself. The p-values are those of the Kolmogorov-Smirnov test of
-        independent samples. Under gravity or with a piston, the law is evaluated at the measured temperature. For a gas
-        that never reaches equilibrium theory is not available, and the window is the whole log by default.
+        uniform distribution, and numbers of collisions with the Boltzmann equation for a tagged disc in a dilute gas of
+        equal discs. `law_error` is the largest error of the theoretical distribution function. The p-values are those
+        of Kolmogorov-Smirnov tests of independent samples. Under gravity or with a piston of finite mass, the law is
+        evaluated at the measured temperature. For a gas that never reaches equilibrium, theory is not available, and
+        the window is the whole log by default.
 
         Raises:
-            UserError: if no disc moves, or if the window has too few events.
+            UserError: if no disc moves, or if the window contains too few events.
         """
         if start is None and nonstationary_reason(log):
             start = log.start_time
@@ -232,12 +234,12 @@ class HistogramAnalysis(Analysis):
 
 
 def _in_words(quantity: str) -> str:
-    """Return the name of a quantity in the singular."""
+    """Return the name of a quantity in words, in the singular."""
     return "number of collisions" if quantity == "collisions" else quantity.replace("-", " ")
 
 
 def _follows(result: Histogram, distribution: Distribution) -> str:
-    """Return a sentence on the mean of a distribution and the laws that it follows."""
+    """Return a sentence on the mean of a distribution and its agreement with each law."""
     whose = "All discs" if distribution.name == ALL_DISCS else f"Species '{distribution.name}'"
     mean = f"{whose}: mean {_in_words(result.quantity)} {format_estimate(distribution.mean)}"
     words = {
@@ -291,8 +293,15 @@ def _velocities(
 
 
 def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bool) -> Estimate:
-    """Return the mean of a series of values of magnitude `scale`; confined: for velocities between walls."""
-    if np.ptp(series) < 1e-12 * scale:  # conserved, except for rounding
+    """Return the mean of a series.
+
+    Args:
+        series: (B,), values at successive times.
+        scale: magnitude of the values.
+        expected: theoretical mean; None without theory.
+        confined: whether the values are components of the velocity normal to walls that confine the gas.
+    """
+    if np.ptp(series) < 1e-12 * scale:  # conserved, except for rounding errors
         return Estimate(float(series.mean()), 0.0, 1.0, expected)
     if confined:
         return mean_of_flux(series, np.zeros(len(series)), expected)
@@ -300,11 +309,11 @@ def _mean(series: np.ndarray, scale: float, expected: float | None, confined: bo
 
 
 def independent_samples(values: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return independent samples (n,) of values (B, M) of M discs at B instants, and the spacing of the samples.
+    """Return independent samples (n,) from values (B, M) of M discs at B times, and the spacing between samples.
 
-    The spacing, in instants, is the largest statistical inefficiency of single discs and of their mean, which
-    fluctuates slowly if walls or a thermostat exchange energy with the gas. The squares of the values are also
-    considered, as a light disc among heavy ones keeps its speed for longer than its direction.
+    The spacing is a number of time steps: the largest statistical inefficiency of single discs and of their mean, which
+    fluctuates slowly if walls or a thermostat exchange energy with the gas. The squares of the values are considered as
+    well, because a light disc among heavy discs keeps its speed for longer than its direction.
     """
     memory = 1.0
     for x in (values, values**2):

@@ -1,4 +1,4 @@
-"""Distribution of one quantity in bins with error bars, and its tests against laws."""
+"""Binned distribution of one quantity with error bars, and tests against laws."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -13,13 +13,13 @@ from idealgas.statistics.estimates import Estimate, ks_distance, ks_p_value, rat
 from idealgas.theory import distributions
 
 BINS = 120
-"""Number of bins of a quantity that is not a whole number."""
+"""Number of bins for a continuous quantity."""
 
 ALL_DISCS = "all discs"
-"""Name of a distribution that belongs to all discs and not to one species."""
+"""Name of a distribution that covers all discs instead of a single species."""
 
 FEWEST_BLOCKS = 10
-"""Smallest effective number of blocks of time with values in a bin for which the bin has an error bar."""
+"""Smallest effective number of time blocks that contribute to a bin for which its error bar is given."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class Test:
     Attributes:
         law_name: name of the law.
         law: the law.
-        distance: largest difference of the distribution functions, no unit.
-        law_error: largest error of the distribution function of the law, no unit.
-        p_value: probability of at least this distance by chance, given that error.
-        agrees: whether the samples follow the law; None if they are too few for a verdict.
+        distance: largest difference between the distribution functions, no unit.
+        law_error: largest error of the theoretical distribution function, no unit.
+        p_value: probability of at least this distance by chance, allowing for `law_error`.
+        agrees: whether the samples agree with the law; None if there are too few samples for a verdict.
     """
 
     law_name: Annotated[str, Key("law")]
@@ -48,16 +48,16 @@ class Distribution:
     """Distribution of one quantity for one species, or for the whole gas.
 
     Attributes:
-        name: name of the species.
+        name: name of the species, or ALL_DISCS.
         edges: (bins + 1,), edges of the bins, in the unit of the quantity.
         density: (bins,), probability density, 1/unit.
-        error: (bins,), standard error of the density, 1/unit; nan for a bin with values in few blocks.
+        error: (bins,), standard error of the density, 1/unit; nan for a bin to which too few time blocks contribute.
         mean: mean of the quantity.
         samples: number of independent samples.
-        correlation_time: time between the instants of independent samples; None for intervals.
-        tests: a test against each law.
-        counted_in: time in which collisions are counted; None for other quantities.
-        cumulants: cumulants of the number of collisions over its mean, by name (no unit).
+        correlation_time: time between independent samples; None for quantities other than velocities and energies.
+        tests: test against each law.
+        counted_in: duration over which collisions are counted, time; None for other quantities.
+        cumulants: cumulants of the number of collisions, divided by the mean number, by name (no unit).
     """
 
     name: str
@@ -73,18 +73,18 @@ class Distribution:
 
     @property
     def middles(self) -> np.ndarray:
-        """Middles of the bins, (bins,), in the unit of the quantity."""
+        """Centres of the bins, (bins,), in the unit of the quantity."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def judged(self, rows: int) -> "Distribution":
-        """Return the distribution with the verdicts of its tests, in a comparison of `rows` rows."""
+        """Return the distribution with verdicts added to its tests, for a comparison of `rows` rows."""
         verdicts = (replace(test, agrees=PValue(test.p_value, self.samples).agrees(rows)) for test in self.tests)
         return replace(self, tests=tuple(verdicts))
 
     @property
     @reported
     def laws(self) -> dict[str, np.ndarray]:
-        """Probability density of each law in the middles of the bins, (bins,), 1/unit."""
+        """Probability density of each law at the centres of the bins, (bins,), 1/unit."""
         return {test.law_name: test.law.pdf(self.middles) for test in self.tests}
 
 
@@ -98,20 +98,20 @@ def distribution_of(
     possible: Mapping[str, distributions.Law],
     law_error: float = 0.0,
 ) -> Distribution:
-    """Return a distribution from its counts and samples.
+    """Return a distribution from counts and samples.
 
     Args:
-        name: name of the species or of the whole gas.
+        name: name of the species, or ALL_DISCS.
         edges: (bins + 1,), edges of the bins.
-        counts: (B, bins + 2), counts in B blocks of time; the first and last bin count values outside the edges.
+        counts: (B, bins + 2), counts in B time blocks; the first and the last bins count the values outside the edges.
         average: mean of the quantity.
         samples: (n,), independent samples.
-        correlation_time: time between the instants of the samples; None for intervals.
+        correlation_time: time between the samples; None for quantities other than velocities and energies.
         possible: laws by name.
-        law_error: largest error of their distribution functions.
+        law_error: largest error of the distribution functions of the laws.
 
     Raises:
-        UserError: if there are no counts or no samples.
+        UserError: if all counts are zero or there are no samples.
     """
     if not (total := counts.sum(axis=1)).any() or len(samples) == 0:
         raise UserError(f"too few events in the window for a distribution of {name}")
@@ -127,9 +127,13 @@ def distribution_of(
 
 
 def _error(count: np.ndarray, total: np.ndarray) -> float:
-    """Return the standard error of the share of a bin from its counts (B,) and the total counts (B,).
+    """Return the standard error of the fraction of values in a bin.
 
-    The result is nan if the counts come from few blocks.
+    The result is nan if too few time blocks contribute to the bin.
+
+    Args:
+        count: (B,), counts in the bin in B time blocks.
+        total: (B,), counts in all bins.
     """
     part = count / total.sum()
     known = part.sum() ** 2 > FEWEST_BLOCKS * (part**2).sum()

@@ -28,24 +28,24 @@ from idealgas.theory.collision_counts import CollisionCountLaw
 from idealgas.theory.ensemble import classes
 from idealgas.theory.values import Theory
 
-INTERVALS = 10_000  # approximate number of intervals that are tested
-STRIDE = 7  # at least every 7th interval is a sample, as successive flights of a disc are correlated
-TAIL = 12  # flights that start in the last 12 mean free times are not counted, as long ones would be cut off
+INTERVALS = 10_000  # approximate number of intervals that are sampled for the tests
+STRIDE = 7  # at most every 7th interval is sampled, as successive flights of a disc are correlated
+TAIL = 12  # flights that start in the last 12 mean free times are not counted, as long flights would be cut off
 
 COUNTED = 10.0
-"""Time in which collisions are counted, in mean free times; in short logs a 64th of the log if that is less."""
+"""Duration over which collisions are counted, in mean free times; at most one 64th of the log."""
 
 MOST_COUNTED = 24
-"""Number of bins for the number of collisions."""
+"""Number of bins for numbers of collisions."""
 
 Found = tuple[Window, list[Distribution], str]
-"""Window, distributions, and the reason if theory gives no law (empty if it does)."""
+"""Window, distributions, and the reason why theory predicts no distribution (empty if it predicts one)."""
 
 
 def free_flights(
     log: Log, quantity: str, start: float | None, end: float | None, progress: ReadProgress | None
 ) -> Found:
-    """Measure the distribution of the free paths or free times of each species."""
+    """Measure the distribution of the free paths or the free times of each species."""
     discs, path = classes(log.discs), quantity == "free-path"
     temperature, rates, errors, speed, reason = free_flight_rates(log, discs, start, end)
     per_disc = rates.sum(axis=1)
@@ -63,7 +63,7 @@ def free_flights(
     for s, name in enumerate(log.discs.species_names):
         kinds = np.flatnonzero(discs.species == s)
         laws = tuple(law(temperature, discs.mass[k], tuple(discs.mass), tuple(rates[k])) for k in kinds)
-        flights = tuple((discs.number * per_disc)[kinds].tolist())  # a disc that collides more often has more flights
+        flights = tuple((discs.number * per_disc)[kinds].tolist())  # discs that collide more often have more flights
         dilute = laws[0] if len(laws) == 1 else distributions.MeanLaw(laws, flights)
         possible = {} if reason else {"dilute gas": dilute}
         expected = None if reason else Theory(float(average[s]), float(average[s] * relative[s]), "kinetic theory")
@@ -72,14 +72,14 @@ def free_flights(
 
 
 def waiting_times(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
-    """Measure the distribution of the times between events of the whole gas."""
-    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a pair collision has two rows
+    """Measure the distribution of the times between successive events in the whole gas."""
+    longest = 20 * (log.end_time - log.start_time) / max(len(log), 1)  # a collision between two discs has two rows
     tally = WaitingTimes(np.array([longest]), BINS, max(STRIDE, len(log) // INTERVALS), 2 * INTERVALS)
     window = measure(log, [tally], start, end, progress)
     blocks = slice(window.first, len(tally.counts))
     reason = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
-        reason = reason or f"the law is for many discs, and this gas has {len(log.discs)}"
+        reason = reason or f"theory assumes many discs, and this gas has {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible, error = {} if reason else {"exponential": law}, FINITE_NUMBER / len(log.discs)
@@ -87,9 +87,9 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Re
 
 
 def impact_parameters(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
-    """Measure the distribution of |b| over the sum of the radii in collisions of all discs.
+    """Measure the distribution of impact parameters |b|, divided by the sum of the radii, for collisions of all discs.
 
-    In equilibrium velocities do not depend on positions, so that the distribution is uniform at any density.
+    In equilibrium, velocities are independent of positions, so that the distribution is uniform at any density.
     """
     if not log.has_positions:
         raise NotApplicableError(f"{log.path}: impact parameters require discs with positions")
@@ -106,16 +106,16 @@ def impact_parameters(log: Log, start: float | None, end: float | None, progress
 
 
 def collision_counts(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Found:
-    """Measure the distribution of the number of collisions of a disc in a given time, and its cumulants."""
+    """Measure the distribution of the number of collisions of a disc in a fixed duration, and its cumulants."""
     discs = classes(log.discs)
     _, rates, errors, _, reason = free_flight_rates(log, discs, start, end)
     if len(discs.mass) > 1:
         reason = reason or "it is known only for equal discs"
     if log.has_positions and log.discs.packing_fraction > DENSEST_COUNTS:
-        reason = reason or f"above φ = {DENSEST_COUNTS:g} it is not known for numbers of collisions"
+        reason = reason or f"the distribution of numbers of collisions is not known above φ = {DENSEST_COUNTS:g}"
     per_disc, (first, last) = rates.sum(axis=1), span(log, start, end)
     rate = discs.shares @ per_disc
-    fewest, most = 64, max(len(log), 64)  # at most one interval per row of the log, even if most are empty
+    fewest, most = 64, max(len(log), 64)  # at most one interval per row of the log, even if most intervals are empty
     time = float(np.clip(COUNTED / rate.max(), (last - first) / most, (last - first) / fewest))
     tally = CollisionCounts(time, MOST_COUNTED, max(STRIDE, int((last - first) / time * len(log.discs) / INTERVALS)))
     window = measure(log, [tally], start, end, progress)
@@ -153,13 +153,13 @@ def collision_counts(log: Log, start: float | None, end: float | None, progress:
 
 
 def _variance(number: float, first: float, second: float) -> float:
-    """Return the variance over the mean, from sums of powers."""
+    """Return the variance over the mean, from sums of the zeroth to second powers."""
     mean = first / number
     return (second / number - mean**2) / mean
 
 
 def _third(number: float, first: float, second: float, third: float) -> float:
-    """Return the third cumulant over the mean, from sums of powers."""
+    """Return the third cumulant over the mean, from sums of the zeroth to third powers."""
     mean = first / number
     return (third / number - 3 * mean * second / number + 2 * mean**3) / mean
 
@@ -174,7 +174,7 @@ def _intervals(
     expected: Theory | float | None,
     law_error: float,
 ) -> Distribution:
-    """Return the distribution of the intervals of species s in a range of blocks of time."""
+    """Return the distribution of the intervals of species s in a range of time blocks."""
     counts = tally.counts[blocks, s].astype(float)
     chosen = (tally.sample_species == s) & (tally.sample_block >= blocks.start) & (tally.sample_block < blocks.stop)
     average = of_events(ratio(tally.sums[blocks, s], counts.sum(axis=1), theory=expected), float(counts.sum()))

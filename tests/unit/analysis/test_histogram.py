@@ -77,7 +77,10 @@ def test_free_flights_in_a_gas_that_is_not_uniform(make):
     assert result.distributions[0].tests == ()
     assert 0.5 < result.distributions[0].mean.value < 10
     raised(
-        "too few collisions of discs", histogram, make("gravity.acceleration=[0, -0.3]", "species.count=1"), "free-path"
+        "too few collisions between discs",
+        histogram,
+        make("gravity.acceleration=[0, -0.3]", "species.count=1"),
+        "free-path",
     )
 
 

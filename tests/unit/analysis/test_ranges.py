@@ -148,14 +148,14 @@ def test_fourier_s_law_takes_many_mean_free_paths():
 def test_laws_of_many_discs_take_many():
     few = ("species.gas.count=10", PERIODIC)
     path = analysed("histogram", *few, quantity="free-path")
-    assert path.no_law == "the law is for many discs, and this gas has 10"
+    assert path.no_law == "theory assumes many discs, and this gas has 10"
     many = analysed("histogram", PERIODIC, quantity="free-path")
     assert many.no_law is None
     assert many.distributions[0].mean.theory == pytest.approx(analysed("transport", PERIODIC).free_paths[0].path.theory)
     two = analysed("histogram", TWO, PERIODIC)
-    assert two.no_law == "2 degrees of freedom are too few for a law"
+    assert two.no_law == "2 degrees of freedom are too few"
     result = made("species.gas.count=1", "run.collisions_per_disc=", "run.until=50")
-    assert registry.analyse(result, "histogram", quantity="vx").no_law == "2 degrees of freedom are too few for a law"
+    assert registry.analyse(result, "histogram", quantity="vx").no_law == "2 degrees of freedom are too few"
     found = registry.analyse(result, "temperature")
     only(found, "A single disc does not share its energy evenly")
     assert (found.species[0].x.theory, found.species[0].both.theory) == (None, 1.0)

@@ -65,6 +65,6 @@ def test_the_energy_that_thermostat_collisions_give_is_on_the_account(log):
 @pytest.mark.slow
 def test_what_has_no_law(make, log):
     assert histogram(log).no_law is None
-    assert histogram(log, "free-path").no_law == "a heat bath changes velocities in flight"
+    assert histogram(log, "free-path").no_law == "a heat bath changes velocities during flights"
     two = make("box.left={ thermal = 1 }")
     assert histogram(two).no_law == "walls and heat bath have 2 temperatures"
