@@ -67,7 +67,7 @@ def wall_event(record, i, effects, length_x, length_y, best):
 def side_time(disc, side, length, shear, effects):
     """Local time at which a disc touches a side of the box, or crosses a sheared side; NEVER if it does not."""
     if shear is not None:
-        return crossing_time(disc, side, length)
+        return crossing_time(disc, side, length, shear, NEVER)
     return contact_with_side(disc, side, length, effects.gravity, effects.vibration)
 
 
@@ -93,19 +93,10 @@ def segment_event(disc, i, segments, effects, best):
                 for image_x in range(*image_range(effects.periodic, False)):
                     for image_y in range(*image_range(effects.periodic, True)):
                         images = images_to_wall(effects.periodic, disc, (image_x, image_y))
-                        time = contact_with_wall(disc, i, k, passage, effects, images)
+                        time = wall_contact(disc, i, k, effects.arcs, passage, images, effects)
                         if time < best[0]:
                             best = (time, SEGMENT, i, k, image_x, image_y)
     return best
-
-
-@inline
-def contact_with_wall(disc, i, k, passage, effects, images):
-    """Local time of disc i's contact with wall k inside the box; NEVER if there is none."""
-    segments, arcs = effects.segments, effects.arcs
-    return wall_contact(
-        disc, i, k, segments, arcs, passage, effects.gravity, effects.restitution, effects.periodic, images
-    )
 
 
 @inline
@@ -235,15 +226,13 @@ def take_out(disc, i, kind, absorbing, rotation):
 
 
 @njit
-def advance_events(record, ids, box, effects, limits, epoch_start, batch, counters):
+def advance_events(discs, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; records are in order of id.
 
     Returns the number of rows written, and whether all events up to the time limit have happened.
     """
-    rows = 0
-    events = 0
-    collisions = 0
-    thermostat_collisions = 0
+    record, ids, box = discs
+    rows = events = collisions = thermostat_collisions = 0
     now = happened = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
     reached = False
@@ -296,5 +285,4 @@ class BruteForce(Method):
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Process events, see `advance_events`."""
-        record, ids, box = self.discs
-        return advance_events(record, ids, box, self._effects, limits, epoch_start, batch, counters)
+        return advance_events(self.discs, self._effects, limits, epoch_start, batch, counters)

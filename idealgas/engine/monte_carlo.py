@@ -15,6 +15,7 @@ to raise v_ref only when a pair that is too fast is drawn: until then the pair w
 
 import math
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,38 +69,40 @@ def too_fast(a, b, fastest_square):
     return 0.0
 
 
-@njit
-def advance_trials(
-    record, ids, effects, until, most_collisions, most_trials,
-    key, trial_time, fastest, fastest_square, one_sided, epoch_start, batch, counters,
-):  # fmt: skip
-    """Try pairs until the local time `until`, a limit or the end of the batch is reached, or a disc is too fast.
+class Trials(NamedTuple):
+    """Parameters of the trials of an epoch.
 
-    Args:
-        record: (N,) DISC by index.
-        ids: (N,) u4, id of the disc at each index.
-        effects: parameters and state of the effects.
-        until: local time, time.
-        most_collisions: number of collisions still allowed.
-        most_trials: number of trials still allowed.
+    Attributes:
         key: key of the epoch's random numbers.
-        trial_time: mean time between trials.
+        mean_wait: mean time between trials.
         fastest: largest allowed product of relative speed and sum of the radii, length²/time.
         fastest_square: square of the largest allowed speed of a disc, (length/time)²; None without a bound.
         one_sided: whether all impact parameters have the same sign.
-        epoch_start: time at the start of the epoch.
-        batch: memory for the rows of events; None without a log.
-        counters: (1,) COUNTERS, updated.
+    """
+
+    key: np.uint64
+    mean_wait: float
+    fastest: float
+    fastest_square: float | None
+    one_sided: bool
+
+
+@njit
+def advance_trials(discs, trials, effects, limits, epoch_start, batch, counters):
+    """Try pairs until a limit or the end of the batch is reached, or a disc is too fast.
 
     Returns:
-        The number of rows written; whether all events up to `until` have happened; the product of relative speed and
-        sum of the radii (length²/time) of a pair that exceeds `fastest`, or 0; the squared speed of a disc that
-        exceeds `fastest_square` after the last collision, (length/time)², or 0.
+        The number of rows written; whether all events up to the time limit have happened; the product of relative
+        speed and sum of the radii (length²/time) of a pair that exceeds `fastest`, or 0; the squared speed of a disc
+        that exceeds `fastest_square` after the last collision, (length/time)², or 0.
     """
+    record, ids, _ = discs
+    key, trial_time, fastest, fastest_square, one_sided = trials
+    most_collisions = min(limits.events, limits.collisions)
     counter = counters[0]
     number = record.shape[0]
     capacity = batch_capacity(batch)
-    last_trial = counter.trials + most_trials
+    last_trial = counter.trials + limits.trials
     collisions = 0
     rows = 0
     reached = False
@@ -108,7 +111,7 @@ def advance_trials(
     while collisions < most_collisions and counter.trials < last_trial and rows < capacity:
         start = key + GOLDEN * DRAWS * np.uint64(counter.trials)
         time = counter.trial_time - trial_time * log(draw(start, 0))
-        if time > until:
+        if time > limits.until:
             reached = True
             break
         counter.trial_time = time
@@ -174,14 +177,17 @@ class MonteCarlo(Method):
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Try pairs, see `advance_trials`; UserError if a pair is too fast for a given v_ref."""
-        record, ids, _ = self.discs
-        v_ref, most = self.v_ref, min(limits.events, limits.collisions)
-        fastest_square = (FASTEST_DISC * v_ref) ** 2 if V_REF in self.extra_state else None
+        v_ref = self.v_ref
+        trials = Trials(
+            epoch_key(self._seed, epoch_start),
+            self._trial_time(v_ref),
+            self._reach * v_ref,
+            (FASTEST_DISC * v_ref) ** 2 if V_REF in self.extra_state else None,
+            self._one_sided,
+        )
         rows, reached, excess, square = advance_trials(
-            record, ids, self._effects, limits.until, most, limits.trials,
-            epoch_key(self._seed, epoch_start), self._trial_time(v_ref), self._reach * v_ref, fastest_square,
-            self._one_sided, epoch_start, batch, counters,
-        )  # fmt: skip
+            self.discs, trials, self._effects, limits, epoch_start, batch, counters
+        )
         if excess > 0:
             needed = excess / self._reach
             raise UserError(

@@ -181,15 +181,14 @@ def write_record(c, i, disc):
 
 
 @njit
-def advance_precisely(c, upcoming, record, ids, effects, limits, epoch_start, batch, counters):
+def advance_precisely(c, upcoming, discs, effects, limits, epoch_start, batch, counters):
     """Process events up to the limits, or until the batch is full; discs are in order of id.
 
-    Returns the number of rows written, and whether all events up to the time limit have happened. record: the discs
+    Returns the number of rows written, and whether all events up to the time limit have happened. discs: the discs
     rounded to float64, updated.
     """
-    rows = 0
-    events = 0
-    collisions = 0
+    record, ids, _ = discs
+    rows = events = collisions = 0
     now = counters[0].time
     events_at_this_time = counters[0].events_at_this_time
     reached = False
@@ -262,7 +261,6 @@ class PreciseBruteForce(Method):
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Process events, see `advance_precisely`."""
-        record, ids, _ = self.discs
         return advance_precisely(
-            self.columns, self._upcoming, record, ids, self._effects, limits, epoch_start, batch, counters
+            self.columns, self._upcoming, self.discs, self._effects, limits, epoch_start, batch, counters
         )

@@ -98,12 +98,13 @@ def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now
 
 
 @njit
-def synchronise(record, ids, time, gravity, periodic, flow, absorbing, position, velocity):
+def synchronise(discs, time, gravity, periodic, flow, absorbing, position, velocity):
     """Move every disc to a local time, wrap its position into the box, and store position and velocity by id.
 
     If the momentum flow is recorded, it is completed up to that time. position, velocity: (N, 2) f8, length and
     length/time.
     """
+    record, ids, _ = discs
     if flow is not None:
         complete_flights(record, time, gravity, flow, absorbing)
     for i in range(record.shape[0]):

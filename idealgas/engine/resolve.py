@@ -64,24 +64,24 @@ def finish(disc, disc_id, time, restitution, periodic):
 @inline
 def resolve_pair(a, b, a_id, b_id, time, images, effects):
     """Collide two discs at a local time."""
-    flights = (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
+    delays, start = (time - a.t, time - b.t), (a.vx, a.vy, b.vx, b.vy)
     advance(a, time, effects.gravity)
     advance(b, time, effects.gravity)
-    before = a.vx, a.vy, b.vx, b.vy
-    collide_and_record(a, b, a_id, b_id, images, before, effects.shear, effects.dissipated, effects)
-    record_collision_stress(effects.flow, a, b, a_id, b_id, flights, before, effects.periodic, images, effects.gravity)
+    end = collide_and_record(a, b, a_id, b_id, images, effects.shear, effects.dissipated, effects)
+    record_collision_stress(effects.flow, a, b, a_id, b_id, (delays, start, end), images, effects)
     finish(a, a_id, time, effects.restitution, effects.periodic)
     finish(b, b_id, time, effects.restitution, effects.periodic)
 
 
 @inline
-def collide_and_record(a, b, a_id, b_id, images, before, shear, dissipated, effects):
+def collide_and_record(a, b, a_id, b_id, images, shear, dissipated, effects):
     """Collide two discs whose records are at the time of contact, and record the energy dissipated.
 
     Through sheared sides the discs collide in the frame half-way between their two frames. The moving image of a
     partner beyond the top does work equal to u times the momentum transferred through the top, which is recorded too.
-    before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    Returns the velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
     """
+    before = a.vx, a.vy, b.vx, b.vy
     if shear is not None:
         enter_common_frame(a, b, shear, images)
     energy = 0.0
@@ -96,6 +96,7 @@ def collide_and_record(a, b, a_id, b_id, images, before, shear, dissipated, effe
         if images[1] != 0:
             to_a, to_b = a.m * (a.vx - before[0]), b.m * (b.vx - before[2])
             add_energy(effects.wall_energy, TOP, 0.5 * shear.speed * images[1] * (to_a - to_b))
+    return before
 
 
 @inline
@@ -136,18 +137,14 @@ def absorb(disc, disc_id, wall, time, effects):
 
 
 @inline
-def meet_segment(disc, disc_id, nx, ny, segment, segments, at_end, time, absorbing, effects):
+def meet_segment(disc, disc_id, nx, ny, segment, time, absorbing, effects):
     """Reflect, emit or absorb a disc at a wall inside the box.
 
-    Returns the momentum (px, py) that the disc received, mass length/time, and the kind of the event.
+    Returns the momentum (px, py) that the disc received, mass length/time, and whether it was absorbed.
     """
     if absorbing is not None and absorbing[U(segment)]:
-        px, py = absorb(disc, disc_id, FIRST_SEGMENT + segment, time, effects)
-        return px, py, ESCAPED
-    px, py = bounce(disc, disc_id, nx, ny, FIRST_SEGMENT + segment, time, effects)
-    if segments[U(segment)].radius > 0.0:
-        return px, py, FIXED_DISC
-    return px, py, WALL_END if at_end else WALL
+        return absorb(disc, disc_id, FIRST_SEGMENT + segment, time, effects), True
+    return bounce(disc, disc_id, nx, ny, FIRST_SEGMENT + segment, time, effects), False
 
 
 @inline
@@ -185,11 +182,11 @@ def meet_side(disc, disc_id, side, time, shear, vibration, flow, effects):
         return
     nx, ny = inward_normal(side)
     if vibration is not None:
-        px, py = bounce_off_vibrating(disc, disc_id, nx, ny, side, time, vibration, effects)
+        impulse = bounce_off_vibrating(disc, disc_id, nx, ny, side, time, vibration, effects)
     else:
-        px, py = bounce(disc, disc_id, nx, ny, side, time, effects)
+        impulse = bounce(disc, disc_id, nx, ny, side, time, effects)
     if flow is not None:
-        record_hit(flow, disc, side, nx, ny, abs(ny), abs(nx), px, py)
+        record_hit(flow, disc, side, (nx, ny), (abs(ny), abs(nx)), impulse)
 
 
 @inline
@@ -217,10 +214,14 @@ def resolve_segment(disc, disc_id, segment, time, images, segments, effects):
         nx, ny, at_end, tx, ty, left = wall_frame(
             disc, segment, segments, effects.arcs, passage, effects.periodic, images
         )
-        px, py, kind = meet_segment(disc, disc_id, nx, ny, segment, segments, at_end, time, effects.absorbing, effects)
+        impulse, is_absorbed = meet_segment(disc, disc_id, nx, ny, segment, time, effects.absorbing, effects)
         face = face_of(FIRST_SEGMENT + segment, left > 0.0)
-        record_hit(effects.flow, disc, face, -left * ty, left * tx, tx, ty, px, py)
-        return kind
+        record_hit(effects.flow, disc, face, (-left * ty, left * tx), (tx, ty), impulse)
+        if is_absorbed:
+            return ESCAPED
+        if segments[U(segment)].radius > 0.0:
+            return FIXED_DISC
+        return WALL_END if at_end else WALL
     return WALL
 
 
@@ -241,11 +242,11 @@ def resolve_piston(disc, disc_id, k, time, piston, effects):
         loss -= energy_at_piston(disc, after, p)
         record_wall_energy(p.wall, after - energy, loss, effects.wall_energy, effects.dissipated, effects.thermal)
         finish(disc, disc_id, time, effects.restitution, effects.periodic)
-        px, py = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
+        impulse = disc.m * (disc.vx - vx), disc.m * (disc.vy - vy)
         face = np.int64(p.wall)
         if p.outward == 0.0:
             face = face_of(face, nx + ny < 0.0)
-        record_hit(effects.flow, disc, face, nx, ny, abs(ny), abs(nx), px, py)
+        record_hit(effects.flow, disc, face, (nx, ny), (abs(ny), abs(nx)), impulse)
         return p.wall
     return 0
 

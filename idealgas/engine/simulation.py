@@ -20,7 +20,7 @@ from idealgas.effects.bundle import (
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
 from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length, fall_along_sides
 from idealgas.engine.method import Limits, Method
-from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, InelasticCollapseError, synchronise
+from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
 from idealgas.physics import shear, stress
 from idealgas.physics.exact_sum import SumRangeError, add_term
@@ -221,8 +221,9 @@ class Simulation:
         """Return the gas and the effects at the time reached; images and momentum flow are copies."""
         periodic, flow = copy_of(self.effects.periodic), stress.copy_of(self.effects.flow)
         record = self.method.discs.record
-        moved = np.array(record.view(np.uint8)).view(record.dtype)  # copying bytes is seven times as fast
-        gas = self._synchronised(moved, self._local_now, periodic, flow)
+        moved: Any = np.array(record.view(np.uint8)).view(record.dtype)  # copying bytes is seven times as fast
+        discs = self.method.discs._replace(record=moved)
+        gas = self._synchronised(discs, self._local_now, periodic, flow)
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
@@ -230,14 +231,13 @@ class Simulation:
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(
-        self, record: np.ndarray, local_time: float, periodic: Periodic | None, flow: StressAccumulator | None
+        self, discs: Discs, local_time: float, periodic: Periodic | None, flow: StressAccumulator | None
     ) -> Gas:
         """Bring records, images and momentum flow to a local time, and return the gas at that time."""
-        ids = self.method.discs.id
-        position, velocity = np.empty((2, len(record), 2))
+        position, velocity = np.empty((2, len(discs.record), 2))
         try:
             gravity, absorbing = self.effects.gravity, self.effects.absorbing
-            synchronise(record, ids, local_time, gravity, periodic, flow, absorbing, position, velocity)
+            synchronise(discs, local_time, gravity, periodic, flow, absorbing, position, velocity)
         except SumRangeError as error:
             raise self._dated(error) from error
         if not self.method.has_positions:
@@ -275,7 +275,7 @@ class Simulation:
     def _end_epoch(self) -> None:
         """Move all discs to the time reached, and apply the scheduled changes up to that time."""
         self.length = self._local_now
-        self.gas = self._synchronised(self.method.discs.record, self.length, self.effects.periodic, self.effects.flow)
+        self.gas = self._synchronised(self.method.discs, self.length, self.effects.periodic, self.effects.flow)
         self.totals = self.counters
         self.steered = _nobody()
         end_epoch(self.effects, self.length)

@@ -30,11 +30,13 @@ CELLS_PER_DISC = 4  # largest number of cells per disc
 
 STEP = np.dtype(
     [
+        ("dt", "f8"),  # length of a step, time
         ("number", "i8"),  # number of the step, counted from time 0
         ("cursor", "i8"),  # number of discs, and then pairs, that are finished in this step
         ("pairs", "i8"),  # number of listed pairs
         ("furthest", "f8"),  # square of the largest displacement of a disc in this step, length²
         ("spent", "f8"),  # distance by which two discs may have approached since the pairs were listed, length
+        ("deepest", "f8"),  # deepest overlap in a collision of this epoch, divided by the sum of the radii
     ]
 )
 
@@ -195,13 +197,13 @@ def find_overlap(record, step, near, periodic):
 
 
 @njit
-def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, epoch_start, batch, counters):
+def advance_steps(discs, near, step, effects, limits, epoch_start, batch, counters):
     """Take steps up to the limits, or until the batch or the list of pairs is full.
 
     Returns the number of rows written, and whether all events up to the time limit have happened. A limit may be
-    reached in the middle of a step; the next call continues from there. step: (1,) STEP, updated. dt: length of a step,
-    time. deepest: (1,) f8, deepest overlap in a collision, divided by the sum of the radii, updated.
+    reached in the middle of a step; the next call continues from there. step: (1,) STEP, updated.
     """
+    record, ids, box = discs
     s = step[0]
     number = record.shape[0]
     capacity = batch_capacity(batch)
@@ -209,7 +211,7 @@ def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, ep
     now = counters[0].time
     reached = False
     while events < limits.events and collisions < limits.collisions and rows < capacity:
-        time = s.number * dt - epoch_start
+        time = s.number * s.dt - epoch_start
         if time > limits.until:
             reached = True
             break
@@ -241,7 +243,7 @@ def advance_steps(record, ids, box, near, step, dt, deepest, effects, limits, ep
         images = nearest_images(a.x - b.x, a.y - b.y, effects.periodic)
         resolve_pair(a, b, ids[U(i)], ids[U(j)], time, images, effects)
         rows += write_pair(batch, rows, epoch_start + time, record, ids, i, j, effects)
-        deepest[0] = max(deepest[0], depth)
+        s.deepest = max(s.deepest, depth)
         events += 1
         collisions += 1
         now = time
@@ -264,8 +266,8 @@ class TimeDriven(Method):
 
     def __init__(self, dt: float) -> None:
         """Set the length of a step, dt (time)."""
-        self._dt = dt
-        self._deepest = np.zeros(1)
+        self._step = np.zeros(1, STEP).view(np.recarray)
+        self._step[0].dt = dt
         self._overlap = 0.0
 
     def start(self, gas: Gas, effects: Effects) -> None:
@@ -274,25 +276,23 @@ class TimeDriven(Method):
         self._near = make_nearby(gas, periodic_axes(effects.periodic))
         list_pairs(*self.discs, self._near, effects.periodic)
         self.discs = make_discs(gas, self._near.order.copy())
-        self._step = np.zeros(1, STEP).view(np.recarray)
-        self._step[0].spent = math.inf
-        self._overlap, self._deepest = float(self._deepest[0]), np.zeros(1)
+        step = self._step[0]
+        self._overlap = float(step.deepest)
+        step.number = step.cursor = step.pairs = 0
+        step.furthest = step.deepest = 0.0
+        step.spent = math.inf
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Take steps, see `advance_steps`."""
-        record, ids, box = self.discs
         step = self._step[0]
         if step.number == 0:
-            step.number = first_step_after(epoch_start, self._dt)
+            step.number = first_step_after(epoch_start, step.dt)
         if step.pairs > len(self._near.pairs):
             self._near = self._near._replace(pairs=np.empty((2 * step.pairs, 2), np.int32))
-        return advance_steps(
-            record, ids, box, self._near, self._step, self._dt, self._deepest, self._effects, limits,
-            epoch_start, batch, counters,
-        )  # fmt: skip
+        return advance_steps(self.discs, self._near, self._step, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
         """Deepest overlap in a collision of this epoch (at its start: the previous one), over the sum of the radii."""
-        return self._overlap if self._step[0].number == 0 else float(self._deepest[0])
+        return self._overlap if self._step[0].number == 0 else float(self._step[0].deepest)

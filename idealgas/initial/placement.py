@@ -49,20 +49,20 @@ def place_at_random(
         max_refusals: number of refused positions after which to stop.
     """
     first, behind = _linked_lists(room, position, placed, len(radius))
-    state = [first, behind, position[:, 0].copy(), position[:, 1].copy()]
+    lists: tuple[np.ndarray, ...] = first, behind, position[:, 0].copy(), position[:, 1].copy()
     crowding = max(len(radius) / len(first), 1.0)  # mean number of discs per cell, at least 1
     number, refusals = 0, min(int(FEW_REFUSALS / crowding), max_refusals)
     if len(radius) * crowding > FEW:
         refusals = 0
     if refusals:
         plain: Any = room._replace(wall_start=room.wall_start.tolist(), wall_item=room.wall_item.tolist())
-        lists: Any = [array.tolist() for array in (*state, radius, bounds, ids)]
-        number = insert(*(plain, *lists, random, number, refusals))
-        state = [np.array(values) for values in lists[:4]]
+        plain_lists = tuple(array.tolist() for array in lists)
+        number = insert(plain, plain_lists, radius.tolist(), bounds.tolist(), ids.tolist(), random, number, refusals)
+        lists = tuple(np.array(values) for values in plain_lists)
     if number < len(ids) and refusals < max_refusals:
         remainder = max_refusals - refusals
-        number = insert_compiled(for_kernels(room), *state, radius, bounds, ids, random, number, remainder)
-    position[ids] = np.column_stack(state[2:])[ids]
+        number = insert_compiled(for_kernels(room), lists, radius, bounds, ids, random, number, remainder)
+    position[ids] = np.column_stack(lists[2:])[ids]
     return number
 
 
@@ -87,8 +87,9 @@ def _cell_of(room, x, y):
 
 
 @inline
-def _is_free(room, first, behind, xs, ys, radius, x, y, i):
+def _is_free(room, lists, radius, x, y, i):
     """Whether disc i at (x, y) would overlap neither walls nor solids nor other discs."""
+    first, behind, xs, ys = lists
     column, row = _cell_of(room, x, y)
     wraps_x, wraps_y = room.period_x > 0.0, room.period_y > 0.0
     for c in range(column - 1, column + 2):
@@ -109,8 +110,9 @@ def _is_free(room, first, behind, xs, ys, radius, x, y, i):
 
 
 @inline
-def _take_out(room, first, behind, xs, ys, i):
+def _take_out(room, lists, i):
     """Take disc i out of the list of its cell."""
+    first, behind, xs, ys = lists
     column, row = _cell_of(room, xs[i], ys[i])
     cell = column * room.rows + row
     if first[cell] == i:
@@ -122,12 +124,13 @@ def _take_out(room, first, behind, xs, ys, i):
     behind[k] = behind[i]
 
 
-def insert(room, first, behind, xs, ys, radius, bounds, ids, random, placed, max_refusals):
+def insert(room, lists, radius, bounds, ids, random, placed, max_refusals):
     """Place discs at random in the order of `ids`, of which the first `placed` are in place; return the new number.
 
-    first, behind: linked lists of the cells. xs, ys: (N,) coordinates, length. bounds: (N, 4), see `place_at_random`.
-    In Python all of these are lists; in compiled code they are arrays.
+    lists: (first, behind, xs, ys), the linked lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see
+    `place_at_random`. In Python all of these are lists; in compiled code they are arrays.
     """
+    first, behind, xs, ys = lists
     refused = 0
     step = False  # whether a disc that is in place makes a Metropolis step, instead of a new disc being tried
     while placed < len(ids) and (refused < max_refusals or step):
@@ -140,9 +143,9 @@ def insert(room, first, behind, xs, ys, radius, bounds, ids, random, placed, max
             x = min(x0 + (x1 - x0) * random.random(), x1)
             y = min(y0 + (y1 - y0) * random.random(), y1)
         inside = not step or (x0 <= x <= x1 and y0 <= y <= y1)
-        if inside and _is_free(room, first, behind, xs, ys, radius, x, y, i):  # a single call: the code is inlined
+        if inside and _is_free(room, lists, radius, x, y, i):  # a single call: the code is inlined
             if step:
-                _take_out(room, first, behind, xs, ys, i)
+                _take_out(room, lists, i)
             else:
                 placed += 1
             column, row = _cell_of(room, x, y)

@@ -7,7 +7,7 @@ title on top.
 import math
 from collections.abc import Sequence
 from itertools import compress, product
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, TypedDict, Unpack
 
 import numpy as np
 from matplotlib import colormaps, rc_context
@@ -82,10 +82,10 @@ class Look(TypedDict, total=False):
     Attributes:
         size: width and height of a frame in pixels, rounded down to even numbers in films; by default the entry in
             SIZES that best suits the shape of the box.
-        colouring: property that is shown by the colours of the discs.
-        panel: content of the panel beside the discs.
+        colouring: property that is shown by the colours of the discs; by default the speed.
+        panel: content of the panel beside the discs; by default the distribution of the speeds.
         trails: ids of discs whose paths are drawn.
-        dark: whether the background is dark.
+        dark: whether the background is dark; by default it is light.
     """
 
     size: tuple[int, int] | None
@@ -107,12 +107,7 @@ class Painter:
         times: tuple[float, float] = (0.0, 1.0),
         sample: Sequence[LogState] = (),
         maxwell: bool = True,
-        *,
-        size: tuple[int, int] | None = None,
-        colouring: Colouring = "speed",
-        panel: Shown = "speeds",
-        trails: Sequence[int] = (),
-        dark: bool = False,
+        **look: Unpack[Look],
     ) -> None:
         """Prepare what is the same in all frames.
 
@@ -125,25 +120,22 @@ class Painter:
             times: start and end of the film.
             sample: states in the film, from which the range of the density panel is determined.
             maxwell: whether to compare the speeds with the Maxwell-Boltzmann distribution.
-            size: see `Look`.
-            colouring: see `Look`.
-            panel: see `Look`.
-            trails: see `Look`.
-            dark: see `Look`.
+            look: appearance of the film.
 
         Raises:
             UserError: if a disc with a trail does not exist.
         """
+        trails, panel, dark = look.get("trails", ()), look.get("panel", "speeds"), look.get("dark", False)
         if unknown := [disc for disc in trails if not 0 <= disc < len(gas)]:
             raise UserError(f"trail: no disc {unknown[0]} (allowed 0 to {len(gas) - 1})")
         self._ink, self._line = (INK, INK) if dark else ("black", COLOURS[0])
         self._dark = dark
         self._flow = centre_of_mass_velocity(scene, gas)
         self._scene, self._inside, self._gas, self._pistons = scene, walls_inside(scene), gas, pistons
-        self._colouring, self._shows, self._maxwell = colouring, panel, maxwell
+        self._colouring, self._shows, self._maxwell = look.get("colouring", "speed"), panel, maxwell
         self._panel: FilmPanel | None = None
         self._view = view(gas.box, pistons)
-        self.size = size or frame_size(self._view, panel != "none")
+        self.size = look.get("size") or frame_size(self._view, panel != "none")
         self._paths: dict[int, list[np.ndarray]] = {disc: [] for disc in trails}
         self._periodic = np.array(scene.properties.periodic)
         self._kinds = np.array(COLOURS)[gas.species % len(COLOURS)]

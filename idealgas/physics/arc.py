@@ -89,8 +89,8 @@ def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
     """
     if gravity is not None:
         if inner:
-            return first_exit_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
-        return first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
+            return first_exit_root(x, y, disc, gravity, reach, after)
+        return first_contact_root(x, y, disc, gravity, reach, after)
     if inner:
         return straight_exit_delay(x, y, disc.vx, disc.vy, reach, inside)
     meets, delay = collision_delay(x, y, disc.vx, disc.vy, reach)
@@ -105,11 +105,24 @@ def changes_nothing(x, y, disc, disc_id, restitution):
 
 
 @inline
-def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
+def face_delay(x, y, disc, disc_id, arc, inner, gravity, restitution):
     """Time until a disc touches the inner or the outer face of an arc; NEVER if it does not.
 
-    A disc touches a face from the side on which its centre is. A touching disc that moves along the outer face counts
-    as reflected; a touching disc that moves along the inner face touches it again.
+    A disc touches the face on whose side its centre is, when its centre crosses a circle of radius `reach`:
+
+        centre of
+        the arc        inner face ║ outer face
+           ●───────────────┼──────║──────┼──────────→ distance of the disc's centre
+           0             R - r    R    R + r
+                      leaves →         ← comes within
+
+    and if the nearest point of the whole circle is on the arc. If it is not, the disc may meet the arc later. The
+    squared distance is a polynomial of time, whose graph crosses reach² in alternating directions. In straight flight
+    its degree is 2, so it crosses once in each direction: there is no other contact. On a parabola its degree is 4, so
+    it crosses at most twice in each direction: the second crossing has to be tried too.
+
+    A touching disc that moves along the outer face counts as reflected; a touching disc that moves along the inner face
+    touches it again.
     """
     reach = arc.radius - disc.r if inner else arc.radius + disc.r
     if reach <= 0.0:
@@ -119,14 +132,14 @@ def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
         ax, ay = gravity.x, gravity.y
     inside = x * x + y * y < arc.radius * arc.radius
     delay = -1.0
-    for _ in range(2):  # on a parabola a disc crosses a circle at most twice in each direction
+    for _ in range(2):
         delay = crossing_delay(x, y, disc, reach, inner, inside, gravity, delay)
         if delay == NEVER:
             return NEVER
         then_x, then_y = parabola(x, disc.vx, ax, delay), parabola(y, disc.vy, ay, delay)
         distance = math.sqrt(then_x * then_x + then_y * then_y)
         if (distance < arc.radius) == inner and faces_arc(then_x, then_y, distance, arc):
-            if gravity is None and delay == 0.0 and changes_nothing(x, y, disc, own, restitution):
+            if gravity is None and delay == 0.0 and changes_nothing(x, y, disc, disc_id, restitution):
                 return GLIDE * reach / math.sqrt(disc.vx * disc.vx + disc.vy * disc.vy) if inner else NEVER
             return delay
         if gravity is None:
@@ -135,40 +148,50 @@ def face_delay(x, y, disc, own, arc, inner, gravity, restitution):
 
 
 @inline
-def leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
+def leaves_arc(delay, centre, end, other, disc, ax, ay, arc):
     """Whether a disc that touches an end after `delay` moves away from the arc's nearest point, which is not this end.
 
-    end_x, end_y and other_x, other_y: position relative to this and to the other end, length. This happens only if a
-    gate has closed on the disc, which then reaches the end from within the wall.
+    centre, end, other: position (x, y) of the disc relative to the centre of the arc, to this end and to the other end,
+    length. ax, ay: acceleration, length/time².
+
+    This happens only if a gate has closed on the disc:
+
+             ·↗
+        ───────────────●
+
+    The centre · of the disc is less than r above the wall. It moves away from the wall, but towards the end ●. When it
+    comes within r of the end, its nearest point is still the point of the wall below it, from which it moves away: it
+    leaves the wall and does not bounce off the end.
     """
-    then_x, then_y = parabola(x, disc.vx, ax, delay), parabola(y, disc.vy, ay, delay)
+    x, y = parabola(centre[0], disc.vx, ax, delay), parabola(centre[1], disc.vy, ay, delay)
     vx, vy = velocity_after(disc.vx, ax, delay), velocity_after(disc.vy, ay, delay)
-    distance = math.sqrt(then_x * then_x + then_y * then_y)
-    if faces_arc(then_x, then_y, distance, arc):
-        outwards = then_x * vx + then_y * vy
+    distance = math.sqrt(x * x + y * y)
+    if faces_arc(x, y, distance, arc):
+        outwards = x * vx + y * vy
         return (outwards <= 0.0) if distance < arc.radius else (outwards >= 0.0)
-    end_x, end_y = parabola(end_x, disc.vx, ax, delay), parabola(end_y, disc.vy, ay, delay)
-    other_x, other_y = parabola(other_x, disc.vx, ax, delay), parabola(other_y, disc.vy, ay, delay)
+    end_x, end_y = parabola(end[0], disc.vx, ax, delay), parabola(end[1], disc.vy, ay, delay)
+    other_x, other_y = parabola(other[0], disc.vx, ax, delay), parabola(other[1], disc.vy, ay, delay)
     nearer = other_x * other_x + other_y * other_y < end_x * end_x + end_y * end_y
     return nearer & (other_x * vx + other_y * vy >= 0.0)
 
 
 @inline
-def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity, restitution):
+def arc_end_delay(centre, end, other, disc, disc_id, arc, gravity, restitution):
     """Time until a disc touches an end of an arc; NEVER if it does not.
 
-    end_x, end_y and other_x, other_y: position relative to this and to the other end, length.
+    The arguments are as in `leaves_arc`. The disc touches an end, which is a point, when its centre comes within r of
+    it, unless it leaves the arc. As at a face, there is a second approach to try only on a parabola.
     """
     ax = ay = 0.0
     if gravity is not None:
         ax, ay = gravity.x, gravity.y
     delay = -1.0
     for _ in range(2):
-        delay = crossing_delay(end_x, end_y, disc, disc.r, False, False, gravity, delay)
+        delay = crossing_delay(end[0], end[1], disc, disc.r, False, False, gravity, delay)
         if delay == NEVER:
             return NEVER
-        if not leaves_arc(delay, x, y, end_x, end_y, other_x, other_y, disc, ax, ay, arc):
-            if gravity is None and delay == 0.0 and changes_nothing(end_x, end_y, disc, own, restitution):
+        if not leaves_arc(delay, centre, end, other, disc, ax, ay, arc):
+            if gravity is None and delay == 0.0 and changes_nothing(end[0], end[1], disc, disc_id, restitution):
                 return NEVER
             return delay
         if gravity is None:
@@ -179,17 +202,15 @@ def arc_end_delay(x, y, end_x, end_y, other_x, other_y, disc, own, arc, gravity,
 @noinline
 def arc_contact(disc, disc_id, segment, arc, gravity, restitution, periodic, images):
     """Local time at which a disc touches a face or an end of an arc; NEVER if it does not."""
-    start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
-    x, y = start_x - arc.x, start_y - arc.y
-    delay = face_delay(x, y, disc, disc_id, arc, True, gravity, restitution)
-    delay = min(delay, face_delay(x, y, disc, disc_id, arc, False, gravity, restitution))
+    start = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
+    centre = start[0] - arc.x, start[1] - arc.y
+    delay = face_delay(centre[0], centre[1], disc, disc_id, arc, True, gravity, restitution)
+    delay = min(delay, face_delay(centre[0], centre[1], disc, disc_id, arc, False, gravity, restitution))
     if arc.cosine != CIRCLE:
-        end_x, end_y = start_x - segment.length * segment.tx, start_y - segment.length * segment.ty
+        end = start[0] - segment.length * segment.tx, start[1] - segment.length * segment.ty
         for far in range(2):
-            here_x, here_y = (end_x, end_y) if far else (start_x, start_y)
-            there_x, there_y = (start_x, start_y) if far else (end_x, end_y)
-            end = arc_end_delay(x, y, here_x, here_y, there_x, there_y, disc, disc_id, arc, gravity, restitution)
-            delay = min(delay, end)
+            here, there = (end, start) if far else (start, end)
+            delay = min(delay, arc_end_delay(centre, here, there, disc, disc_id, arc, gravity, restitution))
     return disc.t + delay if delay < NEVER else NEVER
 
 
@@ -230,16 +251,18 @@ def wall_frame(disc, k, segments, arcs, passage, periodic, images):
 
 
 @inline
-def wall_contact(disc, disc_id, k, segments, arcs, passage, gravity, restitution, periodic, images):
+def wall_contact(disc, disc_id, k, arcs, passage, images, effects):
     """Local time at which a disc touches wall k, a segment or an arc; NEVER if it does not.
 
     passage: from which side the wall lets the disc pass, see `permeable`; an arc lets it pass from both or from none.
     """
     if passage is not None and passage == OPEN:
         return NEVER
+    segment, periodic = effects.segments[U(k)], effects.periodic
+    gravity, restitution = effects.gravity, effects.restitution
     if arcs is not None and arcs[U(k)].radius > 0.0:
-        return arc_contact(disc, disc_id, segments[U(k)], arcs[U(k)], gravity, restitution, periodic, images)
-    return segment_contact(disc, disc_id, segments[U(k)], passage, gravity, restitution, periodic, images)
+        return arc_contact(disc, disc_id, segment, arcs[U(k)], gravity, restitution, periodic, images)
+    return segment_contact(disc, disc_id, segment, passage, gravity, restitution, periodic, images)
 
 
 @inline

@@ -81,74 +81,92 @@ def cubic_extrema(b, c, d, e, last):
 
 
 @inline
-def gap(x, y, vx, vy, gx, gy, r, t):
-    """Squared distance from the origin at time t on a parabola, minus r²; length².
+def gap(x, y, disc, gravity, r, t):
+    """Squared distance of a disc's centre from a point after a delay t on a parabola, minus r²; length².
 
-    It is computed from the position at t, so that digits are not lost if r is small.
+    x, y: position relative to the point at first, length. It is computed from the position after the delay, so that
+    digits are not lost if r is small.
     """
-    x_then = parabola(x, vx, gx, t)
-    y_then = parabola(y, vy, gy, t)
+    x_then = parabola(x, disc.vx, gravity.x, t)
+    y_then = parabola(y, disc.vy, gravity.y, t)
     return x_then * x_then + y_then * y_then - r * r
 
 
 @inline
-def first_contact_root(x, y, vx, vy, gx, gy, r, after):
-    """Smallest t ≥ 0 at which a body on a parabola is within r of the origin and approaches it; NEVER if there is none.
+def first_contact_root(x, y, disc, gravity, r, after):
+    """Delay after which a disc's centre on a parabola is within r of a point and approaches it; NEVER if it never is.
 
-    x, y, r: length. vx, vy: length/time. gx, gy: length/time². Only an approach that begins after the time `after`
+    x, y: position relative to the point, length. r: length. Only an approach that begins after the delay `after`
     counts.
     """
-    return first_descent(x, y, vx, vy, gx, gy, r, after, 1.0)
+    return first_descent(x, y, disc, gravity, r, after, 1.0)
 
 
 @inline
-def first_exit_root(x, y, vx, vy, gx, gy, r, after):
-    """Smallest t ≥ 0 at which a body on a parabola is at least r from the origin and moves away; NEVER if it never is.
+def first_exit_root(x, y, disc, gravity, r, after):
+    """Delay after which a disc's centre on a parabola is at least r from a point and moves away; NEVER if it never is.
 
     The arguments are as in `first_contact_root`.
     """
-    return first_descent(x, y, vx, vy, gx, gy, r, after, -1.0)
+    return first_descent(x, y, disc, gravity, r, after, -1.0)
 
 
 @noinline
-def first_descent(x, y, vx, vy, gx, gy, r, after, sign):
-    """Smallest t ≥ 0 at which the gap times `sign` (1 or -1) falls and is zero or less.
+def first_descent(x, y, disc, gravity, r, after, sign):
+    """Smallest t ≥ 0 at which p(t), the gap times `sign` (1 or -1), falls and is zero or less.
 
-    The gap p(t) = a t⁴ + b t³ + c t² + d t + e is monotonic between its turning points, the zeros of p'; the first
-    interval that ends at or below zero contains the root. If the gap is zero or less at t = 0 and falls there, the
-    result is 0. If it rises there, the result is the next descent: to zero or, if the gap stays below zero until then,
-    to its value at 0.
+    The gap is the quartic a t⁴ + b t³ + c t² + d t + e. Its first coefficient, a = |gravity|²/4, is positive, because
+    gravity is absent if it is zero. It has at most three turning points and is monotonic between them:
+
+        p
+        │╲         ╱╲
+        │ ╲       ╱  ╲
+        ┼──●─────╱────●───┼──→ t
+        │   ╲   ╱      ╲  │
+        │    ╲_╱        ╲ │
+        0   first second  last
+
+    Consider an interval between turning points in which p falls and that ends at p ≤ 0. Either p is positive at its
+    beginning: then it contains a single zero ●, which bisection finds to the last bit. Or p is zero or less already:
+    then the descent begins with the interval. The first such interval contains the result. Bisection evaluates the gap
+    itself; the closed formula for the zeros of a quartic would lose digits by cancellation.
+
+    No zero is missed beyond `last`, because all zeros satisfy |t| ≤ 1 + max(|b|, |c|, |d|, |e|)/a (Cauchy) and
+    |t| ≤ 2 max(|b/a|, |c/a|^½, |d/a|^⅓, |e/a|^¼) (Fujiwara).
+
+    A disc may begin at p ≤ 0, in contact or, by rounding or under a gate that has closed, in an overlap. If p falls at
+    once, the result is 0. If p rises, the disc moves away, and the next descent counts: to 0 or, if p does not reach 0
+    before it falls again, to its value at t = 0, so that the overlap does not grow. The bounds are valid for this level
+    too, because p minus the level has the same coefficients but for e, which becomes 0.
     """
+    vx, vy, gx, gy = disc.vx, disc.vy, gravity.x, gravity.y
     a = 0.25 * (gx * gx + gy * gy)
     b = gx * vx + gy * vy
     c = vx * vx + vy * vy + gx * x + gy * y
     d = 2.0 * (x * vx + y * vy)
-    e = sign * gap(x, y, vx, vy, gx, gy, r, 0.0)
+    e = sign * gap(x, y, disc, gravity, r, 0.0)
     if e <= 0.0 and sign * d < 0.0 and after < 0.0:
         return 0.0
     largest = max(max(abs(b), abs(c)), max(abs(d), abs(e)))
-    last = 1.0 + largest / a  # Cauchy's bound on the roots
-    bound = 2.0 * max(max(abs(b / a), math.sqrt(abs(c / a))), max(third_power(abs(d / a)), quarter_power(abs(e / a))))
-    last = min(last, bound)  # Fujiwara's bound
+    cauchy = 1.0 + largest / a
+    term = max(max(abs(b / a), math.sqrt(abs(c / a))), max(third_power(abs(d / a)), quarter_power(abs(e / a))))
+    last = min(cauchy, 2.0 * term)  # Fujiwara's bound
     first, second, third = cubic_extrema(4.0 * a, 3.0 * b, 2.0 * c, d, last)
-    low = 0.0
-    for k in range(4):
-        high = first if k == 0 else (second if k == 1 else (third if k == 2 else last))
-        if high > low:
-            at_low = sign * gap(x, y, vx, vy, gx, gy, r, low)
-            at_high = sign * gap(x, y, vx, vy, gx, gy, r, high)
-            level = min(e, 0.0) if low > 0.0 and at_low <= 0.0 else 0.0
-            if low > after and at_high <= level and at_high < at_low:
-                if at_low <= level:
-                    return low
-                for _ in range(BISECTIONS):
-                    middle = 0.5 * (low + high)
-                    if middle <= low or middle >= high:
-                        break
-                    if sign * gap(x, y, vx, vy, gx, gy, r, middle) > level:
-                        low = middle
-                    else:
-                        high = middle
-                return high
-            low = high
+    low, at_low = 0.0, e
+    for high in (first, second, third, last):
+        at_high = sign * gap(x, y, disc, gravity, r, high)
+        level = min(e, 0.0) if low > 0.0 and at_low <= 0.0 else 0.0
+        if low > after and at_high < at_low and at_high <= level:
+            if at_low <= level:
+                return low
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (low + high)
+                if middle <= low or middle >= high:
+                    break
+                if sign * gap(x, y, disc, gravity, r, middle) > level:
+                    low = middle
+                else:
+                    high = middle
+            return high
+        low, at_low = high, at_high
     return NEVER

@@ -113,12 +113,17 @@ def set_velocities_along_x(a, b, shear, velocities):
 
 
 @inline
-def crossing_time(disc, side, length):
-    """Local time at which a disc's centre reaches the bottom (2) or top (3) of the box; NEVER if it does not."""
-    upwards = disc.vy > 0.0
-    if disc.vy == 0.0 or upwards != (side == 3):
-        return NEVER
-    return disc.t + arrival_delay(disc.y, disc.vy, length if upwards else 0.0)
+def crossing_time(disc, side, length, shear, contact):
+    """Local time at which a disc's centre reaches a sheared side, bottom (2) or top (3); NEVER if it does not.
+
+    If the sides are not sheared, it is `contact`, the time of the disc's contact with the side.
+    """
+    if shear is not None:
+        upwards = disc.vy > 0.0
+        if disc.vy == 0.0 or upwards != (side == 3):
+            return NEVER
+        return disc.t + arrival_delay(disc.y, disc.vy, length if upwards else 0.0)
+    return contact
 
 
 @inline

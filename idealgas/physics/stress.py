@@ -138,19 +138,19 @@ def record_flight(flow, disc, time, gravity):
 
 
 @inline
-def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, images, gravity):
+def record_collision_stress(flow, a, b, a_id, b_id, flights, images, effects):
     """Record the collision of two discs, whose records are at the time of contact, if stress is recorded.
 
     flights: durations of the flights (a, b) up to the contact, time, and velocities (a_vx, a_vy, b_vx, b_vy) at their
-    start, length/time. before: velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    start and at their end, before the collision, length/time.
     """
     if flow is not None:
         number, terms = flow.buffer.number, flow.buffer.terms
         k = U(number[0])
-        x, y = shift_by_images(a.x - b.x, a.y - b.y, periodic, images)
-        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
-        a_xx, a_xy, a_yy = kinetic_flow(a.m, a_vx, a_vy, a_delay, gravity)
-        b_xx, b_xy, b_yy = kinetic_flow(b.m, b_vx, b_vy, b_delay, gravity)
+        x, y = shift_by_images(a.x - b.x, a.y - b.y, effects.periodic, images)
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy), before = flights
+        a_xx, a_xy, a_yy = kinetic_flow(a.m, a_vx, a_vy, a_delay, effects.gravity)
+        b_xx, b_xy, b_yy = kinetic_flow(b.m, b_vx, b_vy, b_delay, effects.gravity)
         px = 0.5 * (a.m * (a.vx - before[0]) - b.m * (b.vx - before[2]))
         py = 0.5 * (a.m * (a.vy - before[1]) - b.m * (b.vy - before[3]))
         terms[U(0)].column[k] = a_xx + b_xx
@@ -160,7 +160,7 @@ def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, i
         terms[U(4)].column[k] = px * y
         terms[U(5)].column[k] = py * y
         terms[U(6)].column[k] = py * x  # added for rough discs only
-        buffer_heat(flow.heat, terms, k, a, b, flights, x, y, flow.vx, flow.vy)
+        buffer_heat(flow.heat, flow, k, a, b, flights, x, y)
         number[0] += 1
         if number[0] == BATCH:
             flush(flow)
@@ -168,13 +168,14 @@ def record_collision_stress(flow, a, b, a_id, b_id, flights, before, periodic, i
 
 
 @inline
-def buffer_heat(heat, terms, k, a, b, flights, x, y, vx, vy):
+def buffer_heat(heat, flow, k, a, b, flights, x, y):
     """Buffer the terms of a collision for the heat flux in row k of the buffer, if the heat flux is recorded.
 
-    x, y: position of a relative to b, length. vx, vy: centre-of-mass velocity, length/time.
+    x, y: position of a relative to b, length.
     """
     if heat is not None:
-        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy) = flights
+        terms, vx, vy = flow.buffer.terms, flow.vx, flow.vy
+        (a_delay, b_delay), (a_vx, a_vy, b_vx, b_vy), _ = flights
         a_x, a_y = kinetic_heat_flow(a.m, a_vx - vx, a_vy - vy, a_delay)
         b_x, b_y = kinetic_heat_flow(b.m, b_vx - vx, b_vy - vy, b_delay)
         a_gain = energy_gained(a.m, a_vx, a_vy, a.vx, a.vy, vx, vy)
@@ -213,16 +214,17 @@ def count_pair(pairs, species, a_id, b_id):
 
 
 @inline
-def record_hit(flow, disc, face, nx, ny, tx, ty, px, py):
+def record_hit(flow, disc, face, normal, tangent, impulse):
     """Record a hit of a face, if stress is recorded; the disc's record must be at the contact, inside the box.
 
-    nx, ny: unit normal of the face towards the disc. tx, ty: unit tangent of the face. px, py: impulse on the disc,
+    normal: unit normal of the face towards the disc. tangent: unit tangent of the face. impulse: impulse on the disc,
     mass length/time.
     """
     if flow is not None:
         k = U(face)
-        add(flow.normal_impulse[k], nx * px + ny * py)
-        add(flow.tangential_impulse[k], -(tx * px + ty * py))
+        px, py = impulse
+        add(flow.normal_impulse[k], normal[0] * px + normal[1] * py)
+        add(flow.tangential_impulse[k], -(tangent[0] * px + tangent[1] * py))
         add(flow.walls[0], -((disc.x - flow.x) * px + (disc.y - flow.y) * py))
         flow.hits[k] += 1
 

@@ -2,8 +2,15 @@
 
 A fixed disc is a segment of length 0 whose end points have a radius.
 
-In coordinates of the segment, d and s are the disc's normal and tangential position (length) relative to the start
-point, vn and vt its velocity (length/time), an and at its acceleration (length/time²).
+The motion (d, s, vn, vt, an, at) of a disc is given in coordinates of the segment: d and s are the normal and
+tangential position (length) of its centre relative to the start point, vn and vt its velocity (length/time), an and at
+its acceleration (length/time²):
+
+           ○ disc
+           │
+           │ d
+    ●──────┴──────●        the foot point is at arc length s; at the body of the segment, 0 < s < length
+    start  s      end
 """
 
 import math
@@ -56,12 +63,13 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 
 
 @inline
-def accelerated_body_delay(d, s, vn, vt, an, at, r, length):
+def accelerated_body_delay(motion, r, length):
     """Time until a disc of radius r on a parabola touches a segment's body; NEVER if it does not.
 
     It is the earliest approach to one of the two faces with the foot point inside. A disc on which a gate has closed,
     and which cannot rise out of it, bounces at its current depth.
     """
+    d, s, vn, vt, an, at = motion
     best = NEVER
     for face in range(2):
         sign = 1.0 if face == 0 else -1.0
@@ -99,12 +107,13 @@ def straight_end_delay(x, y, disc, reach):
 
 
 @inline
-def moves_off(delay, far, d, s, vn, vt, an, at, length):
+def moves_off(delay, far, motion, length):
     """Whether a disc that touches an end after `delay` moves away from the segment's nearest point.
 
     The nearest point may be on the body or at the other end. far: whether the end is the one at arc length `length`.
     This happens only if a gate has closed on the disc, which then reaches the end from within the wall.
     """
+    d, s, vn, vt, an, at = motion
     foot = parabola(s, vt, at, delay)
     height = parabola(d, vn, an, delay)
     speed = velocity_after(vn, an, delay)
@@ -123,12 +132,12 @@ def point_delay(x, y, disc, reach, gravity, after):
     after: on a parabola, only a contact after this time counts.
     """
     if gravity is not None:
-        return first_contact_root(x, y, disc.vx, disc.vy, gravity.x, gravity.y, reach, after)
+        return first_contact_root(x, y, disc, gravity, reach, after)
     return straight_end_delay(x, y, disc, reach)
 
 
 @inline
-def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
+def end_delay(x, y, far, motion, length, disc, reach, gravity):
     """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
 
     far: whether the end is the one at arc length `length`. reach: distance at which they touch, length.
@@ -136,7 +145,7 @@ def end_delay(x, y, far, d, s, vn, vt, an, at, length, disc, reach, gravity):
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
         delay = point_delay(x, y, disc, reach, gravity, delay)
-        if delay == NEVER or not moves_off(delay, far, d, s, vn, vt, an, at, length):
+        if delay == NEVER or not moves_off(delay, far, motion, length):
             return delay
     return NEVER
 
@@ -189,24 +198,26 @@ def misses_segment(disc, segment, gravity, periodic, images):
 
 
 @inline
-def solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity):
+def solid_delay(x, y, motion, disc, segment, gravity):
     """Time until a disc touches the body or an end of a solid segment; NEVER if it does not."""
     length = segment.length
     if gravity is not None:
-        delay = accelerated_body_delay(d, s, vn, vt, an, at, disc.r, length)
+        delay = accelerated_body_delay(motion, disc.r, length)
     else:
+        d, s, vn, vt, _, _ = motion
         delay = straight_body_delay(d, s, vn, vt, disc.r, length)
     for far in range(2):
         end_x, end_y = x - far * length * segment.tx, y - far * length * segment.ty
         reach = disc.r + segment.radius
-        delay = min(delay, end_delay(end_x, end_y, far, d, s, vn, vt, an, at, length, disc, reach, gravity))
+        delay = min(delay, end_delay(end_x, end_y, far, motion, length, disc, reach, gravity))
     return delay
 
 
 @inline
-def one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
+def one_way_delay(x, y, motion, disc, segment, passage, gravity):
     """Time until a disc touches the closed face or an end of a segment that lets it pass from one side, or NEVER."""
     side, length = closed_side(passage), segment.length
+    d, s, vn, vt, an, at = motion
     delay = closed_face_delay(side * d, side * vn, side * an, disc.r)
     if delay < NEVER and not foot_inside(parabola(s, vt, at, delay), length):
         delay = NEVER
@@ -217,11 +228,11 @@ def one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
 
 
 @inline
-def segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity):
+def segment_delay(x, y, motion, disc, segment, passage, gravity):
     """Time until a disc touches a segment that does not let it pass from both sides; NEVER if it does not."""
     if passage is not None and passage != SOLID:
-        return one_way_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
-    return solid_delay(x, y, d, s, vn, vt, an, at, disc, segment, gravity)
+        return one_way_delay(x, y, motion, disc, segment, passage, gravity)
+    return solid_delay(x, y, motion, disc, segment, gravity)
 
 
 @inline
@@ -244,7 +255,8 @@ def segment_contact(disc, disc_id, segment, passage, gravity, restitution, perio
     if gravity is not None:
         an = tx * gravity.y - ty * gravity.x
         at = tx * gravity.x + ty * gravity.y
-    delay = segment_delay(x, y, d, s, vn, vt, an, at, disc, segment, passage, gravity)
+    motion = d, s, vn, vt, an, at
+    delay = segment_delay(x, y, motion, disc, segment, passage, gravity)
     if gravity is None and delay == 0.0:
         nx, ny, _ = segment_normal(disc, segment, passage, periodic, images)
         if not reflection_changes(disc, disc_id, nx, ny, restitution):

@@ -128,8 +128,8 @@ def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool
     width, height = size
     x, y, r = _images_in_box(discs, size, periodic)
     arcs = [(k, *arc) for k, hidden in enumerate(_hidden(x, y, r, size)) for arc in _gaps(hidden, 2 * math.pi)]
-    if not arcs:  # a box that is not covered completely contains a part of a rim
-        return width * height
+    if not arcs:  # discs that reach into a box, but have no rim in it, cover it completely
+        return width * height if len(r) else 0.0
     owner, (start, end) = np.array([k for k, *_ in arcs]), np.array([arc for _, *arc in arcs]).T
     # The integral of (x + r cos φ) r cos φ dφ from start to end, divided by r.
     swept = x[owner] * (np.sin(end) - np.sin(start))

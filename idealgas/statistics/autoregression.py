@@ -228,18 +228,39 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
     The series are passed twice, as (n, M), and overwritten. The other arrays are filled by order. coefficients: (P + 1,
     P), row p for order p. noise, covariance: (P + 1,). doubt: (P + 1,), mean square error of Σ a_k in units of (1 - Σ
     a_k)²/(n M).
+
+    A model of order p - 1 predicts a sample x_t from the samples before it, with the error f_t and, since a stationary
+    process has the same covariances backwards in time, x_{t-p} from the same samples with the error b_{t-1}:
+
+        x_{t-p}    x_{t-p+1} … x_{t-1}    x_t
+           ↑       └─ known samples ─┘     ↑
+        b_{t-1}                           f_t
+
+    The two samples at the ends are new for a model of order p, and what either error tells about the other is the only
+    additional information. Order p follows from order p - 1 in three steps:
+
+    1. κ = 2 Σ f_t b_{t-1}/Σ (f_t² + b_{t-1}²) minimises the sum of the squares of both new errors. Because |2 f b| is
+       at most f² + b², |κ| is at most 1: no model grows with time.
+    2. a_k ← a_k - κ a_{p-k} for k < p, and a_p = κ; the covariance at lag p is κ s + Σ a_k c_{p-k} with the old a_k and
+       the old noise s, which becomes s (1 - κ²).
+    3. f_t ← f_t - κ b_{t-1} and b_t ← b_{t-1} - κ f_t.
+
+    The mean square error of Σ a_k is that of a linear regression, s/(n M) times the sum of all elements of the inverse
+    of the covariance matrix of p samples. The errors b of all orders below p are uncorrelated combinations of these
+    samples, in which the matrix is diagonal; the sum is then Σ (1 - Σ a_k)²/s over these orders, `certainty`.
     """
     n, members = forward.shape
-    left = 0.0
+    left = 0.0  # the noise s
     for t in range(n):
         for m in range(members):
             left += forward[t, m] * forward[t, m] / (n * members)
     least = NOISE * left
     covariance[0] = left
     rest = 1.0  # 1 - Σ a_k
-    certainty = 0.0  # precision of Σ a_k: sum over lower orders of (1 - Σ a_k)²/noise
+    certainty = 0.0
     for p in range(noise.shape[0]):
         if p > 0:
+            # 1. The coefficient κ.
             both = power = 0.0
             for t in range(p, n):
                 for m in range(members):
@@ -247,6 +268,7 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
                     both += ahead * behind
                     power += ahead * ahead + behind * behind
             reflection = 2 * both / power if power > 0 else 0.0
+            # 2. The model.
             certainty += rest * rest / left
             covariance[p] = reflection * left
             rest = 1.0 - reflection
@@ -256,6 +278,7 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
                 rest -= coefficients[p, k]
             coefficients[p, p - 1] = reflection
             left *= 1 - reflection * reflection
+            # 3. Its errors; from the last to the first, because each b_t replaces the b_{t-1} before it.
             for t in range(n - 1, p - 1, -1):
                 for m in range(members):
                     ahead, behind = forward[t, m], backward[t - 1, m]

@@ -34,11 +34,11 @@ class TangentVectors:
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[tuple[float, int]]:
         """Follow the log to a time; yield time and new collisions of two discs after each `every` event rows."""
         log, rows, waiting = self._log, 0, 0
-        fixed = (log.discs.mass, np.array(log.box), np.array(log.periodic), log.gravity)
+        gas = (log.discs.mass, np.array(log.box), np.array(log.periodic), log.gravity)
         for flights in log.flights([self._start, end], columns=COLUMNS):
             columns, first = tuple(getattr(flights, name) for name in COLUMNS), 0
             while first < len(flights.disc):
-                first, pairs, now = _advance(self.values, self._since, columns, first, every, *fixed)
+                first, pairs, now = _advance(self.values, self._since, columns, first, every, gas)
                 waiting += pairs
                 if now >= 0:  # a negative time means that the batch has ended
                     yield now, waiting
@@ -99,11 +99,13 @@ def must_have_tangent_map(log: Log) -> None:
 
 
 @njit
-def _advance(deviations, since, columns, first, most, masses, box, periodic, gravity):
+def _advance(deviations, since, columns, first, most, gas):
     """Propagate deviations through events from row `first` on, up to `most` event rows or the end of the rows.
 
-    Return the next row, the number of collisions of two discs, and the time of the last event, or -1 if the rows ended.
+    gas: masses, box, whether it is periodic along x and y, gravity. Return the next row, the number of collisions of
+    two discs, and the time of the last event, or -1 if the rows ended.
     """
+    masses, box, periodic, gravity = gas
     disc, end, kind, partner, velocity, position = columns
     row, pairs = first, 0
     while row < len(disc):

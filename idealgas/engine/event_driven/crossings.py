@@ -17,13 +17,14 @@ U = np.uintp
 
 
 @inline
-def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic):
+def straight_crossing(disc, along_y, axis):
     """Next cell crossing or side contact along one axis in straight flight.
 
     Returns its local time, whether it is in the positive direction, and whether it is a contact with a side of the box.
-    cell: column or row of the disc. size: size of a cell, length. cells_across: number of columns or rows. length:
-    length of the box.
+    axis: column or row of the disc; size of a cell, length; number of columns or rows; length of the box; number of
+    boundary crossings of the disc; whether the axis is periodic.
     """
+    cell, size, cells_across, length, boundary_crossings, is_periodic = axis
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     forward = velocity > 0.0
     edge = cell if forward else cell - 1
@@ -39,13 +40,14 @@ def straight_crossing(disc, along_y, cell, size, cells_across, length, boundary_
 
 
 @inline
-def accelerated_crossing(disc, along_y, cell, size, cells_across, length, boundary_crossings, is_periodic, now, pull):
+def accelerated_crossing(disc, along_y, axis, now, pull):
     """Next cell crossing or side contact along one axis under gravity.
 
     Arguments and results are as in `straight_crossing`; pull: acceleration along the axis, length/time². Cell crossings
     are computed from the disc's state at the local time `now`, when it is in its cell, and side contacts from its
     record.
     """
+    cell, size, cells_across, length, boundary_crossings, is_periodic = axis
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     dt = max(now - disc.t, 0.0)
     here = position_after(position, velocity, pull, dt) - boundary_crossings * length
@@ -65,7 +67,7 @@ def accelerated_crossing(disc, along_y, cell, size, cells_across, length, bounda
 
 
 @inline
-def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, piston, vibration):
+def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, effects):
     """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
 
     The time is NEVER at a side with a piston, which predicts these contacts itself, and at a vibrating side. A disc
@@ -79,20 +81,16 @@ def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, shear, pis
     if periodic is not None:
         crossings = disc.crossed_y if along_y else disc.crossed_x
         is_periodic = periodic.y if along_y else periodic.x
+    axis = cell, size, across, length, crossings, is_periodic
     if gravity is not None and acceleration_along(gravity, along_y) != 0.0:
-        pull = acceleration_along(gravity, along_y)
-        time, forward, at_side = accelerated_crossing(
-            disc, along_y, cell, size, across, length, crossings, is_periodic, now, pull
-        )
+        time, forward, at_side = accelerated_crossing(disc, along_y, axis, now, acceleration_along(gravity, along_y))
     else:  # without acceleration along this axis, both functions would give the same bits
-        time, forward, at_side = straight_crossing(disc, along_y, cell, size, across, length, crossings, is_periodic)
-    side = (2 if along_y else 0) + (1 if forward else 0)
-    if shear is not None and at_side:
-        time = crossing_time(disc, side, length)
-    if piston is not None and at_side and is_piston_side(side, piston):
-        time = NEVER
-    if vibration is not None and at_side and is_vibrating(vibration, side):
-        time = NEVER
+        time, forward, at_side = straight_crossing(disc, along_y, axis)
+    if at_side:
+        side = (2 if along_y else 0) + (1 if forward else 0)
+        time = crossing_time(disc, side, length, effects.shear, time)
+        if is_piston_side(side, effects.piston) or is_vibrating(effects.vibration, side):
+            time = NEVER
     return time, forward, at_side
 
 
@@ -102,12 +100,8 @@ def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects)
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     link = cells.link[U(i)]
-    x_time, right, x_side = axis_crossing(
-        disc, link, False, cells, now, effects.gravity, effects.periodic, effects.shear, effects.piston, vibration
-    )
-    y_time, up, y_side = axis_crossing(
-        disc, link, True, cells, now, effects.gravity, effects.periodic, effects.shear, effects.piston, vibration
-    )
+    x_time, right, x_side = axis_crossing(disc, link, False, cells, now, effects.gravity, effects.periodic, effects)
+    y_time, up, y_side = axis_crossing(disc, link, True, cells, now, effects.gravity, effects.periodic, effects)
     along_y = y_time < x_time  # both are equally likely: a branch would take 7 % of the total time
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)

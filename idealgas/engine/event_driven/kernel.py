@@ -158,18 +158,27 @@ def resolve_event_of_piston(record, ids, state, leaf, at_contact, time, batch, r
 
 
 @njit
-def advance_events(record, ids, state, effects, limits, epoch_start, batch, counters, subdomain):
+def advance_events(discs, state, effects, limits, epoch_start, batch, counters, subdomain):
     """Process events up to the limits, or until the batch is full; at the start of an epoch, first predict all events.
 
     Returns the number of rows written, and whether all events up to the time limit have happened. subdomain: the slab
     whose events are processed; None for all discs.
+
+    A round of the loop takes the next event of the schedule and ends in one of four ways:
+
+        1. predict again the discs that the last round changed  ←───────────────────────────────┐
+        2. count its event, and stop at a limit                                                 │
+        3. take the next event from the schedule                                                │
+        4. crossing into a cell: the disc changes its cell ────→ contacts in the new cells ─────┤
+        5. stale contact: the partner has had an event since ──→ the contact of this disc ──────┤
+        6. other events at this time: order them by ids ───────→ nothing, take the first ───────┤
+        7. resolve the event and write its rows ───────────────→ all events of its discs ───────┘
+
+    The discs to be predicted again are i and, unless it is -1, `partner`; `change` is the reason.
     """
-    events = 0
-    collisions = 0
-    thermostat_collisions = 0
-    rows = 0
-    now = counters[0].time
-    events_at_this_time = counters[0].events_at_this_time
+    record, ids, _ = discs
+    rows = events = collisions = thermostat_collisions = 0
+    now, events_at_this_time = counters[0].time, counters[0].events_at_this_time
     reached = False
     capacity = NO_END
     if batch is not None:
@@ -184,9 +193,11 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
     change = np.int64(Repredict.START)
     i = partner = np.int64(-1)
     while True:
-        while i >= 0:  # a single call for all changes: a second call would double the machine code
+        # 1. In a single call for all changes: a second call would double the machine code.
+        while i >= 0:
             predict(record, ids, state, i, change, time, effects, subdomain)
             i, partner = partner, np.int64(-1)
+        # 2. Limits are checked only after an event, when no prediction is missing.
         if change > Repredict.STALE:
             if change == Repredict.EVENT:
                 events += 1
@@ -197,6 +208,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
                     now = time
             if (events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity):
                 break
+        # 3. Of several threads, each waits until its next event may happen.
         if subdomain is not None:
             i = wait_for_event(record, ids, state, limits.until, subdomain)
         else:
@@ -211,10 +223,12 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
         time = prediction.contact if at_contact else prediction.crossing
         remove(state.tree, state.prediction, ids, i)
         prefetch_next(state.pipeline, record, state, i)
+        # 4. A crossing changes no record.
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             change = np.int64(prediction.crossing_code)
             cross_cell(record, state, i, change, effects.periodic)
             continue
+        # 5. The event of a pair is also taken out of its partner's place. A piston checks its contact itself.
         of_piston = i >= record.shape[0]
         tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:
@@ -224,6 +238,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             partner = np.int64(prediction.partner)
             tied = has_other_event(state.tree, state.prediction, i, partner, time) and state.tree.tie_time[0] != time
             remove(state.tree, state.prediction, ids, partner)
+        # 6. Once the ties at this time are resolved, the schedule returns its events in order.
         next_time, _ = next_event(state.tree)
         if tied or (next_time == time and state.tree.tie_time[0] != time):
             if subdomain is not None and partner >= 0 and not is_owned(state, partner, subdomain):
@@ -232,6 +247,7 @@ def advance_events(record, ids, state, effects, limits, epoch_start, batch, coun
             change = np.int64(Repredict.STALE)
             i = partner = np.int64(-1)
             continue
+        # 7. A collision, a hit or a thermostat collision; i becomes the disc that a piston hits.
         clock = epoch_start + time
         if of_piston:
             written, i = resolve_event_of_piston(

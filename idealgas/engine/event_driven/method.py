@@ -139,5 +139,4 @@ class EventDriven(Method):
         """Process events, see `advance_events`."""
         if self._decomposition is not None:
             return self._decomposition.advance(limits, epoch_start, batch, counters)
-        record, ids, _ = self.discs
-        return advance_events(record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None)
+        return advance_events(self.discs, self._state, self._effects, limits, epoch_start, batch, counters, None)

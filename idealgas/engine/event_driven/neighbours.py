@@ -98,28 +98,28 @@ def append_line(state, count, column, row, along_y):
 
 
 @noinline
-def append_coarse_cells(state, coarse, i, disc, crossing_code, periodic):
+def append_coarse_cells(state, i, disc, crossing_code, periodic):
     """Make the first discs near a large disc, or the first large discs near a small disc, the candidates.
 
     A small and a large disc are near each other in adjacent coarse cells, two large discs up to two coarse cells apart.
     crossing_code: direction in which the disc has just crossed into its cell, to append only the discs that came within
     reach; SIDE_OF_BOX to append all. Returns the number of candidates.
     """
-    link = state.cells.link[U(i)]
+    coarse, link = state.coarse, state.cells.link[U(i)]
     column, row = np.int64(link.column), np.int64(link.row)
     if disc.r > coarse.limit:
-        count = append_coarse_block(state, coarse, 0, True, column, row, 1, crossing_code, periodic)
-        return append_coarse_block(state, coarse, count, False, column, row, 2, crossing_code, periodic)
+        count = append_coarse_block(state, 0, True, column, row, 1, crossing_code, periodic)
+        return append_coarse_block(state, count, False, column, row, 2, crossing_code, periodic)
     if crossing_code < SIDE_OF_BOX:
         edge = (row if crossing_code >= 2 else column) - (crossing_code & 1)
         if edge % coarse.ratio != 0:
             return 0  # it has crossed within a coarse cell
     column, row = (column - 1) // coarse.ratio + 1, (row - 1) // coarse.ratio + 1
-    return append_coarse_block(state, coarse, 0, False, column, row, 1, crossing_code, periodic)
+    return append_coarse_block(state, 0, False, column, row, 1, crossing_code, periodic)
 
 
 @noinline
-def append_coarse_block(state, coarse, count, of_small, column, row, reach, crossing_code, periodic):
+def append_coarse_block(state, count, of_small, column, row, reach, crossing_code, periodic):
     """Append the first small, or large, discs in the coarse cells up to `reach` away from (column, row).
 
     After a crossing, only the cells in the direction of the crossing are searched.
@@ -132,13 +132,14 @@ def append_coarse_block(state, coarse, count, of_small, column, row, reach, cros
         low_y = high_y = row + forward
     for x in range(low_x, high_x + 1):
         for y in range(low_y, high_y + 1):
-            count = append_coarse_cell(state, coarse, count, of_small, x, y, periodic)
+            count = append_coarse_cell(state, count, of_small, x, y, periodic)
     return count
 
 
 @inline
-def append_coarse_cell(state, coarse, count, of_small, x, y, periodic):
+def append_coarse_cell(state, count, of_small, x, y, periodic):
     """Append the first small, or large, discs in a coarse cell, which may lie beyond a side of the box."""
+    coarse = state.coarse
     image_x = image_y = 0
     if periodic is not None:
         x, image_x = wrapped_index(x, coarse.cells.columns, periodic.x)
@@ -165,7 +166,7 @@ def neighbours(state, coarse, i, disc, periodic):
     """
     count = 0
     if coarse is not None:
-        count = append_coarse_cells(state, coarse, i, disc, SIDE_OF_BOX, periodic)
+        count = append_coarse_cells(state, i, disc, SIDE_OF_BOX, periodic)
         if disc.r > coarse.limit:
             return count, True
     link = state.cells.link[U(i)]
@@ -190,7 +191,7 @@ def new_neighbours(state, coarse, i, disc, crossing_code, periodic):
     """
     count = 0
     if coarse is not None:
-        count = append_coarse_cells(state, coarse, i, disc, crossing_code, periodic)
+        count = append_coarse_cells(state, i, disc, crossing_code, periodic)
         if disc.r > coarse.limit:
             return count, True
     forward = 1 if crossing_code & 1 else -1

@@ -127,13 +127,12 @@ class DomainDecomposition:
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
         """Process events on this thread only."""
-        record, ids, _ = self._discs
         if not self._built:
             _build(self._state, 0, self._state.cells.rows)
             self._built = True
         before = counters.copy()
         rows, reached = advance_events(
-            record, ids, self._state, self._effects, limits, epoch_start, batch, counters, None
+            self._discs, self._state, self._effects, limits, epoch_start, batch, counters, None
         )
         self._measure_rate(before[0], counters[0], float(counters[0]["time"]))
         return rows, reached
@@ -218,9 +217,8 @@ class DomainDecomposition:
 
         flag: initial flag; if it is not 0, the threads stop at once.
         """
-        record, ids, _ = self._discs
         if not self._slabs:
-            self._slabs = [_Slab(self._state, self._effects, len(record)) for _ in self._subdomains]
+            self._slabs = [_Slab(self._state, self._effects, len(self._discs.record)) for _ in self._subdomains]
         self._rows, room = self._workers.memory(batch, len(self._subdomains)), self._workers.tuning.buffer
         words, limits = self._subdomains[0].words, Limits(until, UNLIMITED, UNLIMITED, UNLIMITED)
         reset(self._subdomains)
@@ -233,7 +231,7 @@ class DomainDecomposition:
         def work(k: int) -> None:
             try:
                 rows = self._rows.rows(k * room, (k + 1) * room) if self._rows is not None else None
-                self._slabs[k].run(record, ids, limits, rows, self._subdomains[k], unpredicted)
+                self._slabs[k].run(self._discs, limits, rows, self._subdomains[k], unpredicted)
             except Exception:  # errors of a kernel are raised again when one thread repeats the slice
                 abort_slice()
 
@@ -284,7 +282,7 @@ class _Slab:
         self.counters = np.zeros(1, COUNTERS).view(np.recarray)
 
     def run(
-        self, record: Any, ids: Any, limits: Limits, rows: EventBatch | None, subdomain: Subdomain, unpredicted: bool
+        self, discs: Discs, limits: Limits, rows: EventBatch | None, subdomain: Subdomain, unpredicted: bool
     ) -> None:
         """Process the slab's events up to a time limit.
 
@@ -294,9 +292,7 @@ class _Slab:
         clear_sums(self.effects)
         self._state.unpredicted[0] = unpredicted
         _build(self._state, subdomain.low, subdomain.high)
-        self.filled, _ = advance_events(
-            record, ids, self._state, self.effects, limits, 0.0, rows, self.counters, subdomain
-        )
+        self.filled, _ = advance_events(discs, self._state, self.effects, limits, 0.0, rows, self.counters, subdomain)
         if self.effects.flow is not None:
             stress.flush(self.effects.flow)
 

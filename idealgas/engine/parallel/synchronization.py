@@ -1,9 +1,37 @@
 """Synchronization of threads: the loop in which a thread waits until the next event of its slab may happen.
 
-Two events commute unless one of them writes rows that the other reads or writes (see `HALO`). Events that do not
-commute must happen in the order of their times, but a thread whose clock was set back may have advanced too far. Every
-event that might be out of order is detected before anything is written: the thread raises a flag, the slice is rolled
-back, and one thread repeats it.
+The result must be that of one thread, which processes all events in order of time. This is achieved in two ways: an
+event waits until it seems to be the first of all events with which it does not commute, and it is then checked that
+this is so. Waiting makes violations rare, but only the check is relied upon: an event that comes too late has written
+nothing yet, its thread raises a flag, the slice is rolled back, and one thread repeats it.
+
+Events that commute. An event writes the records, predictions and lists of one row of cells or of two adjacent rows:
+those of its discs, or those between which a disc crosses. It then predicts the events of these discs again, and for
+that reads the rows beside them. Two events therefore commute if at least one row lies between the rows that they write.
+In the slab above an interface, with HALO = 4:
+
+    row
+     5 │ interior     written by events of the interior: rows 3 and above
+     4 │ ──────────   (a disc in row 4 may cross to row 3)
+     3 │ halo
+     2 │              halo events that write rows 0 and 1 only (SAFE_DEPTH) commute with events of the interior
+     1 │
+     0 │ ──────────
+    ═══╪═══════════   interface: whoever processes a halo event holds its lock
+    -1 │ halo of the  written by events of the slab below: rows 0 and below, because only discs of the two rows
+    -2 │ neighbour    at the interface may collide across it, or cross it
+
+Events of the interior commute with all events of other threads: rows 1 and 2 lie between them. Halo events at different
+interfaces commute, because a slab has at least MIN_ROWS rows. What does not commute is checked by `is_in_order`.
+
+Clocks. The clock of a slab is the time of its next event. Loads acquire and stores release (see `atomics`): a thread
+that reads the clock of a neighbour also sees everything that the neighbour did before it set the clock. A value that is
+out of date is an earlier time; it may make a thread wait for a moment in vain, but not proceed too early. Only when a
+slab receives a disc, its clock may be set back, and an event of its neighbour may already have happened that should
+have waited.
+
+Threads do not wait for each other in a circle: of all next events, the earliest has no earlier clock to wait for; locks
+are never held while waiting, except by a thread that sends a disc, and threads that wait receive discs all the time.
 """
 
 import numpy as np
@@ -36,6 +64,9 @@ from idealgas.engine.parallel.subdomain import (
     unlock,
 )
 from idealgas.jit import inline
+
+LATER, FIRST, TIED = range(3)
+"""Order of an event relative to the next event of a neighbour: possibly later, certainly earlier, or simultaneous."""
 
 U = np.uintp
 
@@ -152,32 +183,32 @@ def is_misplaced(record, state, i, where, sub):
 
 
 @inline
-def precedes_neighbour(state, i, time, rank, sub):
-    """Whether a halo event of disc i precedes all events of a neighbour: 1 if it does, 0 if not, 2 for a tie.
+def order_to_neighbour(state, i, time, rank, sub):
+    """Order of a halo event of disc i relative to all events of a neighbour that are still to come.
 
     Both discs of a pair across an interface predict the same event; the slab with the smaller rank processes it.
     """
     clock = load(sub.times, clock_word(rank))
     if clock != time:
-        return 1 if clock > time else 0
-    if load(sub.times, clock_word(rank) + 1) != time:
-        return 0
+        return FIRST if clock > time else LATER
+    if load(sub.times, clock_word(rank) + 1) != time:  # the neighbour has not announced a halo event at this time
+        return LATER
     j = load(sub.words, clock_word(rank) + 2)
     a, c = state.prediction[U(i)], state.prediction[U(j)]
     if a.partner == j and c.partner == i and a.contact == time and c.contact == time:
-        return 1 if sub.rank < rank else 0
-    return 2 if load(sub.times, clock_word(rank)) == time else 0
+        return FIRST if sub.rank < rank else LATER
+    return TIED if load(sub.times, clock_word(rank)) == time else LATER
 
 
 @inline
-def precedes_neighbours(state, i, time, where, sub):
-    """Whether a halo event of disc i precedes all events of the neighbours involved: 0, 1 or 2 as for a neighbour."""
-    low = high = 1
+def order_to_neighbours(state, i, time, where, sub):
+    """Order of a halo event of disc i relative to all events to come of the neighbours that it involves."""
+    low = high = FIRST
     if sub.below >= 0 and where & (LOW | FOREIGN):
-        low = precedes_neighbour(state, i, time, sub.rank_below, sub)
+        low = order_to_neighbour(state, i, time, sub.rank_below, sub)
     if sub.above >= 0 and where & (HIGH | FOREIGN):
-        high = precedes_neighbour(state, i, time, sub.rank_above, sub)
-    return 2 if low == 2 or high == 2 else min(low, high)
+        high = order_to_neighbour(state, i, time, sub.rank_above, sub)
+    return TIED if low == TIED or high == TIED else min(low, high)
 
 
 @inline
@@ -193,7 +224,22 @@ def earliest_clock(sub):
 
 @inline
 def is_in_order(ids, state, i, time, where, sub):
-    """Whether no event that had to wait for disc i's event has already happened; notes that this event happens now."""
+    """Whether no event that had to wait for disc i's event has already happened; notes that this event happens now.
+
+    Proof: Let B be disc i's event, and A an event that has happened although it does not commute with B and is not
+    earlier. As explained above, A is an event of the same slab or a halo event at an interface of B. Within a slab,
+    events happen in order of time, unless the slab receives a disc between A and B. So there are these cases:
+
+        B            A                             happened too early if
+        interior     interior event of this slab   A came before the last message, and B is not later
+        interior     halo event of this slab       likewise
+        halo event   interior event of this slab   likewise, and B writes rows deeper than SAFE_DEPTH
+        halo event   halo event, same interface    B is not later than the latest event there, of either thread
+
+    The times on the right are known: `message_interior` and `message_halo` are the times of the latest events before
+    the last message, and the time of the latest event at an interface stands beside its lock, which this thread holds.
+    Simultaneous halo events are in order if both are events of this slab and it has received no disc in between.
+    """
     private = sub.private[0]
     if not where & (LOW | HIGH):
         if time <= private.message_interior or time <= private.message_halo:
@@ -233,33 +279,41 @@ def clock_advances(time, sub):
 def may_happen(record, ids, state, i, time, sub):
     """Whether disc i's event, the next event of this slab, may happen now.
 
-    Returns 1 if it may, with its interfaces locked, 0 if not, or ABORTED.
+    Returns 1 if it may, with its interfaces locked, 0 if not, or ABORTED. An event of the interior may happen unless it
+    is far ahead of the neighbours. A halo event is announced, so that a neighbour may see that both are the same event;
+    when it seems to be the first, its interfaces are locked, and it is decided again. Before the lock was taken, the
+    neighbour may still have collided with the partner or moved it, or sent a disc. Afterwards it cannot: all this needs
+    the lock.
     """
     private = sub.private[0]
     where = 0
     if is_halo_event(ids, state, i, sub):
+        # 1. Announce the event: the disc and the time come before the clock, which the neighbour reads first.
         where = location_of(ids, state, i, sub)
         store(sub.words, clock_word(sub.rank) + 2, i)
         store(sub.times, clock_word(sub.rank) + 1, time)
         publish_clock(sub, time)
-        if precedes_neighbours(state, i, time, where, sub) == 0 or not try_lock(sub, where):
+        # 2. Wait for earlier events of the neighbours, and for the locks.
+        if order_to_neighbours(state, i, time, where, sub) == LATER or not try_lock(sub, where):
             return 0
-        first = 0 if has_message(sub) or location_of(ids, state, i, sub) != where else 1
-        if first == 1:
-            first = precedes_neighbours(state, i, time, where, sub)
-        if first == 2:
+        # 3. Decide again under the locks.
+        order = LATER
+        if not has_message(sub) and location_of(ids, state, i, sub) == where:
+            order = order_to_neighbours(state, i, time, where, sub)
+        if order == TIED:
             return abort(sub, TIE)
-        if first == 0:
+        if order == LATER:
             unlock(sub)
             return 0
         if where & FOREIGN and is_misplaced(record, state, i, where, sub):
             return abort(sub, VIOLATION)
     else:
         publish_clock(sub, time)
-        if time > private.horizon:
+        if time > private.horizon:  # the neighbours' clocks are read only when they may matter
             private.horizon = earliest_clock(sub) + sub.lead
             if time > private.horizon:
                 return 0
+    # 4. Whatever the clocks have shown, the event must be in order.
     if not clock_advances(time, sub):
         return abort(sub, CLOCK)
     if not is_in_order(ids, state, i, time, where, sub):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from helpers.rounding import body, exact, gamma
 
+from idealgas.effects.bundle import Effects
 from idealgas.effects.wall import make_segments
 from idealgas.physics.arc import wall_contact
 from idealgas.physics.gravity import Gravity
@@ -56,7 +57,7 @@ def segment(start, end):
 def contact(wall, passage, gravity=None, **motion):
     """Delay of a disc of radius 0.5, and where it then is with the normal that it meets."""
     disc = body(r=0.5, m=1.0, **motion)
-    time = wall_contact(disc, 0, 0, wall, None, passage, gravity, None, None, NO_IMAGES)
+    time = wall_contact(disc, 0, 0, None, passage, NO_IMAGES, Effects(segments=wall, gravity=gravity))
     if time == NEVER:
         return None
     there = body(r=0.5, x=disc.x + disc.vx * time, y=disc.y + disc.vy * time, vx=disc.vx, vy=disc.vy)

@@ -6,8 +6,9 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from helpers.rounding import exact, gamma
+from helpers.rounding import body, exact, gamma
 
+from idealgas.physics.gravity import Gravity
 from idealgas.physics.motion import NEVER
 from idealgas.physics.polynomial import cubic, cubic_extrema, first_contact_root, gap, parabola, quadratic_roots
 
@@ -117,6 +118,11 @@ def test_turns_of_a_cubic():
                 assert abs(value(high, t)) <= gamma(12) * terms(high, t)
 
 
+def contact_root(x, y, vx, vy, gx, gy, r, after):
+    """The first contact of a disc with this velocity and acceleration."""
+    return first_contact_root(x, y, body(vx=vx, vy=vy), Gravity(gx, gy), r, after)
+
+
 def exact_descents(x, y, vx, vy, gx, gy, r):
     """Times after 0 at which the exact gap falls through zero, in order, and its slope there."""
     x, y, vx, vy, gx, gy, r = map(exact, (x, y, vx, vy, gx, gy, r))
@@ -149,31 +155,29 @@ def test_first_descent(strength):
             y = 0.5 * r * math.sin(angle) - vy * after - 0.5 * gy * after**2
             if math.hypot(x, y) < r:
                 continue
-            result = first_contact_root(x, y, vx, vy, gx, gy, r, -1.0)
+            result = contact_root(x, y, vx, vy, gx, gy, r, -1.0)
             met += 1
             for time, slope in exact_descents(x, y, vx, vy, gx, gy, r):
                 assert abs(result - time) <= 2 * rounding_of_gap(x, y, vx, vy, gx, gy, r, result) / abs(slope)
-                result = first_contact_root(x, y, vx, vy, gx, gy, r, result)
+                result = contact_root(x, y, vx, vy, gx, gy, r, result)
             assert result == NEVER
     assert met > 30
 
 
 def test_descents_that_have_begun_or_pass_by():
-    assert first_contact_root(1.0, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # touches and comes nearer
-    assert first_contact_root(0.5, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # overlaps and comes nearer
-    back = first_contact_root(
-        0.0, 1.0, 0.0, 3.0, 0.0, -1.0, 1.0, -1.0
-    )  # thrown up from contact: falls back after 2 v/g
+    assert contact_root(1.0, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # touches and comes nearer
+    assert contact_root(0.5, 0.0, -1.0, 0.0, 0.0, -1.0, 1.0, -1.0) == 0.0  # overlaps and comes nearer
+    back = contact_root(0.0, 1.0, 0.0, 3.0, 0.0, -1.0, 1.0, -1.0)  # thrown up from contact: falls back after 2 v/g
     assert back == pytest.approx(6.0, rel=1e-15)
-    assert first_contact_root(5.0, 5.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0) == NEVER
-    assert first_contact_root(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
+    assert contact_root(5.0, 5.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0) == NEVER
+    assert contact_root(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0, -1.0) == NEVER
     assert exact_descents(-3.0, 2.0, 1.0, 0.0, 0.0, 0.125, 1.0) == []
 
 
 def test_the_gap_near_contact_keeps_its_digits():
     """From the place, not from expanded terms: a radius of 1e-6 at a distance of 1 after t = 1."""
     with mpmath.workdps(50):
-        result = gap(-1.0, 0.0, 1.0 + 1e-6, 0.0, 0.0, 0.0, 1e-6, 1.0)
+        result = gap(-1.0, 0.0, body(vx=1.0 + 1e-6, vy=0.0), Gravity(0.0, 0.0), 1e-6, 1.0)
         x = exact(-1.0) + exact(1.0 + 1e-6)
         assert abs(result - (x * x - exact(1e-6) ** 2)) <= gamma(3) * 2e-12
     assert math.isfinite(result)

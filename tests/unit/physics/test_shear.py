@@ -57,9 +57,10 @@ def test_relative_motion_is_seen_from_the_image_and_both_discs_half_way(shear):
 
 def test_a_disc_crosses_to_the_opposite_side(shear):
     up, down = body(x=1.0, y=3.0, vx=0.5, vy=2.0, t=0.25), body(x=1.0, y=1.0, vx=0.5, vy=-2.0, t=0.25)
-    assert [crossing_time(up, side, 4.0) for side in (2, 3)] == [NEVER, 0.75]
-    assert [crossing_time(down, side, 4.0) for side in (2, 3)] == [0.75, NEVER]
-    assert crossing_time(body(y=1.0, vy=0.0), 2, 4.0) == NEVER
+    assert [crossing_time(up, side, 4.0, True, 1.0) for side in (2, 3)] == [NEVER, 0.75]
+    assert [crossing_time(down, side, 4.0, True, 1.0) for side in (2, 3)] == [0.75, NEVER]
+    assert crossing_time(body(y=1.0, vy=0.0), 2, 4.0, True, 1.0) == NEVER
+    assert crossing_time(up, 3, 4.0, None, 1.0) == 1.0
     assert (cross(up, 3, shear), up.x, up.y, up.vx, up.vy) == (1, -2.5, 0.0, -1.5, 2.0)
     assert (cross(down, 2, shear), down.x, down.y, down.vx, down.vy) == (-1, 4.5, 4.0, 2.5, -2.0)
 

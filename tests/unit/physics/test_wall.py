@@ -54,13 +54,13 @@ def test_straight_flight_to_the_body():
 
 def test_the_body_is_met_between_its_ends():
     assert [foot_inside(s, 2.0) for s in (-1.0, 0.0, 1e-300, 2.0, 2.5)] == [False, False, True, False, False]
-    assert accelerated_body_delay(0.5, 1.0, -1.0, 0.0, 1.0, 0.0, 0.5, 2.0) == 0.0  # touches and comes nearer
-    assert accelerated_body_delay(0.5, 1.0, 2.0, 0.0, -1.0, 0.0, 0.5, 2.0) == 4.0  # thrown up from it
-    assert accelerated_body_delay(0.5, 1.0, 2.0, 1.0, -1.0, 0.0, 0.5, 2.0) == NEVER  # comes down beside it
-    assert accelerated_body_delay(0.25, 1.0, 0.5, 0.0, -1.0, 0.0, 0.5, 2.0) == 1.0  # sunk: back at its depth
-    assert accelerated_body_delay(1.5, 1.0, 0.0, 0.0, -2.0, 0.0, 0.5, 2.0) == 1.0  # at rest above it: √(2h/g)
-    assert accelerated_body_delay(-1.5, 1.0, 0.0, 0.0, 2.0, 0.0, 0.5, 2.0) == 1.0
-    assert accelerated_body_delay(1.0, 1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 2.0) == NEVER
+    assert accelerated_body_delay((0.5, 1.0, -1.0, 0.0, 1.0, 0.0), 0.5, 2.0) == 0.0  # touches and comes nearer
+    assert accelerated_body_delay((0.5, 1.0, 2.0, 0.0, -1.0, 0.0), 0.5, 2.0) == 4.0  # thrown up from it
+    assert accelerated_body_delay((0.5, 1.0, 2.0, 1.0, -1.0, 0.0), 0.5, 2.0) == NEVER  # comes down beside it
+    assert accelerated_body_delay((0.25, 1.0, 0.5, 0.0, -1.0, 0.0), 0.5, 2.0) == 1.0  # sunk: back at its depth
+    assert accelerated_body_delay((1.5, 1.0, 0.0, 0.0, -2.0, 0.0), 0.5, 2.0) == 1.0  # at rest above it: √(2h/g)
+    assert accelerated_body_delay((-1.5, 1.0, 0.0, 0.0, 2.0, 0.0), 0.5, 2.0) == 1.0
+    assert accelerated_body_delay((1.0, 1.0, 0.5, 0.0, 1.0, 0.0), 0.5, 2.0) == NEVER
 
 
 def descents_to_face(d, s, vn, vt, an, at, r, length):
@@ -87,7 +87,7 @@ def test_a_parabola_to_the_body():
             r = 0.1
             if abs(d) < 1.01 * r:
                 continue
-            result = accelerated_body_delay(d, s, vn, vt, an, at, r, 2.0)
+            result = accelerated_body_delay((d, s, vn, vt, an, at), r, 2.0)
             times = descents_to_face(d, s, vn, vt, an, at, r, 2.0)
             if not times:
                 assert result == NEVER
@@ -188,7 +188,7 @@ def test_straight_flight_to_an_end():
             largest = abs(a) + abs(b) + r
             assert abs(result - delay) <= 4 * U * (largest * condition + delay)
             if x < 0:  # beyond the end of a wall that goes on along x
-                assert end_delay(x, y, 0, y, x, vy, vx, 0.0, 0.0, 9.0, body(vx=vx, vy=vy, r=0.3), 0.3, None) == result
+                assert end_delay(x, y, 0, (y, x, vy, vx, 0.0, 0.0), 9.0, body(vx=vx, vy=vy, r=0.3), 0.3, None) == result
     assert met > 30
 
 
@@ -196,8 +196,8 @@ def test_an_end_is_met_from_outside_only():
     """Of a disc that a gate closed over: it comes out of reach of the end, and back, before it counts."""
     inside = body(vx=-1.0, vy=0.0, r=0.5)
     assert straight_end_delay(0.4, 0.0, inside, inside.r) == 0.0
-    assert end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.0, 2.0, inside, inside.r, None) == NEVER
-    back = end_delay(0.4, 0.0, 0, 0.0, 0.4, 0.0, -1.0, 0.0, 0.5, 2.0, inside, inside.r, Gravity(0.5, 0.0))
+    assert end_delay(0.4, 0.0, 0, (0.0, 0.4, 0.0, -1.0, 0.0, 0.0), 2.0, inside, inside.r, None) == NEVER
+    back = end_delay(0.4, 0.0, 0, (0.0, 0.4, 0.0, -1.0, 0.0, 0.5), 2.0, inside, inside.r, Gravity(0.5, 0.0))
     assert back == pytest.approx(2 + 2 * math.sqrt(0.1), rel=1e-14)  # 0.4 - t + t²/4 = -0.5, after it has turned
 
 

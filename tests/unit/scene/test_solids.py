@@ -131,6 +131,11 @@ def test_fixed_discs_are_apart_from_solids_and_leave_area(solid, disc, got):
     assert got in line
 
 
+def test_a_fixed_disc_outside_the_box_covers_nothing_of_it():
+    (line,) = refused(text_of("", SCATTERER.format(20, 20, 1)))
+    assert "fixed disc not in the box (got [20.0, 20.0]" in line
+
+
 DISC = "{{ position = [{}, {}], radius = {}, fixed = true }},\n"
 SIDES_JOINED = 'box = {size=[10, 10], left="periodic", right="periodic", bottom="periodic", top="periodic"}'
 LENS = 2 * math.pi / 3 - math.sqrt(3) / 2

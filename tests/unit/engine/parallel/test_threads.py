@@ -136,11 +136,11 @@ def test_what_a_thread_fails_at_is_done_again_by_one(monkeypatch):
     expected = log_with(*sample(), stop, 1000, EventDriven())
     run, calls = _Slab.run, []
 
-    def fail(self, record, ids, limits, batch, subdomain, unpredicted):
+    def fail(self, discs, limits, batch, subdomain, unpredicted):
         calls.append(subdomain.rank)
         if subdomain.rank == 1 and len(calls) % 2:
             raise MemoryError
-        run(self, record, ids, limits, batch, subdomain, unpredicted)
+        run(self, discs, limits, batch, subdomain, unpredicted)
 
     monkeypatch.setattr(_Slab, "run", fail)
     method = EventDriven(1e-9, 3, EAGER)
