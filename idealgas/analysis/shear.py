@@ -1,4 +1,4 @@
-"""Measure the viscosity of a gas between sheared sides, its temperature, and the profile of its flow."""
+"""Measure the viscosity of a gas between sheared sides, its temperature, and its flow profile."""
 
 import math
 from collections.abc import Callable
@@ -33,14 +33,13 @@ STRIPS, INSTANTS = 20, 200
 """Number of strips of the flow profile, and number of instants at which it is sampled."""
 
 FAST = 0.1
-"""Limit of two rates, relative to the collision rate of a disc.
+"""Largest shear rate without a caveat and largest rate of a heat bath for which the viscosity has a theory.
 
-At this shear rate the viscosity of a dilute gas is lower by 2 %. Above this rate of a heat bath, theory gives no
-viscosity.
+Both are in units of the collision rate of a disc. At this shear rate the viscosity of a dilute gas is lower by 2 %.
 """
 
 DRIFT = 0.1
-"""Relative change of the temperature in the window above which it is not the temperature of a single state."""
+"""Largest relative change in the temperature during the window for which the window counts as a single state."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +51,12 @@ class ShearFlow(Result):
         rate: shear rate, 1/time.
         reduced_rate: shear rate over the collision rate of a disc.
         temperature: temperature T, mean of m c²/2, energy.
-        viscosity: -P_xy/rate at T, mass/time: the mean over all blocks of the viscosity over √T, times √T.
-        pressure: (P_xx + P_yy)/2 at T, energy/length²: the mean over all blocks of the pressure over T, times T.
-        normal_stress: (P_xx - P_yy) over the pressure.
-        slope: slope of the mean velocity against y, over the rate.
+        viscosity: -P_xy/rate at T, mass/time; it is √T times the mean, over all blocks, of the viscosity divided by √T
+            of the block.
+        pressure: (P_xx + P_yy)/2 at T, energy/length²; it is T times the mean, over all blocks, of the pressure divided
+            by T of the block.
+        normal_stress: (P_xx - P_yy) divided by the pressure (no unit).
+        slope: slope of the mean velocity against y, divided by the rate (no unit).
         y: (20,), middles of the strips, length.
         velocity: (20,), mean velocity along x in the strips, relative to the flow in the middle of the box,
             length/time.
@@ -77,7 +78,7 @@ class ShearFlow(Result):
     viscosities: Annotated[np.ndarray, OMITTED]
 
     def plain_tables(self) -> list[Table]:
-        """Return the table of viscosity, temperature, pressure, normal stress and flow."""
+        """Return the table of temperature, viscosity, pressure, normal stress and slope of the flow."""
         notes = (
             f"{self.window}; shear rate {self.rate:.6g}, {self.reduced_rate:.3g} of the collision rate",
             "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
@@ -85,13 +86,13 @@ class ShearFlow(Result):
         return [estimates("Shear flow, velocities relative to the flow", self._rows(), notes)]
 
     def summary(self) -> str:
-        """Return viscosity and temperature, and whether the viscosity agrees with theory."""
+        """Return the headline: viscosity and temperature, and whether the viscosity agrees with theory."""
         viscosity = f"η = {format_estimate(self.viscosity)} at T = {format_estimate(self.temperature)}"
         why = "it is known only for equal smooth elastic discs, without a heat bath or with a weak one"
         return f"{viscosity}; {agreement([('viscosity', self.viscosity)], 'Enskog', why)}."
 
     def figure(self) -> "Figure":
-        """Draw viscosity and temperature against time, and the profile of the flow."""
+        """Draw viscosity and temperature against time, and the flow profile."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, (above, middle, below) = panels(3)
@@ -129,27 +130,27 @@ class ShearFlow(Result):
 
 
 class Carried:
-    """Momentum that discs carry relative to the flow, and the correlation of their velocity with y.
+    """Momentum flux carried by discs relative to the flow, and the correlation of their velocity with y.
 
     Attributes:
         stress: (B, 3), integrals of m c_x², m c_y² and m c_x c_y over time.
-        excess: (B,), integral of m y c_x, with y from the middle.
-        moment: (B,), integral of m y².
+        excess: (B,), integral of m y c_x over time, where y is measured from the middle of the box.
+        moment: (B,), integral of m y² over time.
     """
 
     columns = ("disc", "block", "start", "end", "velocity", "position")
     cut = True
 
     def __init__(self, rate: float, height: float, drift: float) -> None:
-        """Take the shear rate, the height of the box, and the velocity of the gas and its flow along y."""
+        """Set the shear rate, the height of the box, and the velocity at which the gas and its flow drift along y."""
         self._rate, self._height, self._drift = rate, height, drift
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._mass, self._sums = gas.mass, np.zeros((5, len(edges) - 1))
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights, along which c_x and y relative to the gas are linear in time."""
+        """Add flights, during which c_x, and y relative to the drifting gas, are linear in time."""
         assert flights.position is not None
         mass, t = self._mass.take(flights.disc), flights.end - flights.start
         y, (vx, vy) = flights.position[:, 1], flights.velocity.T
@@ -183,11 +184,12 @@ def shear(
 ) -> ShearFlow:
     """Measure viscosity, temperature and normal stress of a gas between sheared sides, between two times of its log.
 
-    The pressure tensor P is that of the velocities c relative to the flow: P A is the mean of Σ m c c plus, per time,
-    the momentum that collisions transfer times the distance of the discs. The viscosity is -P_xy/rate.
+    The pressure tensor P is calculated with velocities c relative to the flow: P A is the mean of Σ m c c plus the sum,
+    per time, of the momentum that each collision transfers times the vector between the two centres. The viscosity is
+    -P_xy/rate.
 
     Raises:
-        UserError: without sheared sides or events, or if the gas does not become steady.
+        UserError: if the box has no sheared sides, if the log has no events, or if the gas does not become steady.
     """
     gas, (width, height), rate = log.discs, log.box, log.scene.properties.shear
     if not rate:
@@ -234,7 +236,7 @@ def shear(
 
 
 def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
-    """Return the index of the first block from which on series (B,) are steady."""
+    """Return the index of the first block of the steady state, detected from several series (B,)."""
     begin = after_changes(log, edges)
     first = detect_equilibration(Observable(values[begin:]) for values in series)
     if first is None:
@@ -245,9 +247,9 @@ def _first(log: Log, edges: np.ndarray, series: list[np.ndarray]) -> int:
 def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | None]:
     """Return Enskog's viscosity and the pressure at T = 1 of equal smooth elastic discs; None for other discs.
 
-    A shear rate of a times the collision rate lowers the viscosity by a fraction 2a², and a heat bath of x times that
-    rate by a fraction x. Both are included in its error; if the heat bath is stronger than FAST, the viscosity is
-    unknown.
+    A shear rate of a times the collision rate lowers the viscosity by a fraction of about 2a², and a heat bath whose
+    rate is x times the collision rate lowers it by a fraction of about x. Both are included in the error of the
+    viscosity, which is None if x exceeds FAST.
     """
     gas, properties = log.discs, log.scene.properties
     if not (properties.elastic and properties.collisions_conserve_energy) or properties.spins:
@@ -267,9 +269,9 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
 
 
 def _profile(log: Log, times: np.ndarray) -> np.ndarray:
-    """Return the mean velocity along x in strips, (20,), length/time, at times (T,); nan in strips without discs.
+    """Return the mean velocity along x in strips, (20,), length/time, over times (T,); nan in strips without discs.
 
-    It is relative to the flow in the middle of the box.
+    The velocity is relative to the flow in the middle of the box.
     """
     momentum, mass = np.zeros((2, STRIPS))
     (common, drift), rate = centre_of_mass_velocity(log.scene, log.discs), log.scene.properties.shear
@@ -282,9 +284,9 @@ def _profile(log: Log, times: np.ndarray) -> np.ndarray:
 
 
 def _caveats(temperatures: np.ndarray, heats: bool, reduced_rate: float, known: bool) -> tuple[str, ...]:
-    """Return caveats on a temperature (B,) that changes, and on a fast shear.
+    """Return caveats on a changing temperature (B,) and on a high shear rate.
 
-    heats: whether the shear heats the gas. known: whether theory gives the viscosity.
+    heats: whether the shear heats the gas. known: whether the viscosity has a theoretical value.
     """
     sentences = []
     quarter = max(len(temperatures) // 4, 1)

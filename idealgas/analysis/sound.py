@@ -1,6 +1,6 @@
 """Measure the speed and the damping of sound from the longest density waves in a periodic box.
 
-In theory the speed follows from the equation of state, and the damping from Enskog's viscosities and thermal
+In theory, the speed follows from the equation of state, and the damping from Enskog's viscosities and thermal
 conductivity.
 """
 
@@ -31,50 +31,50 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STEPS = 12
-"""Number of instants per expected period of the sound."""
+"""Number of instants per expected period or decay time of the sound, whichever is shorter."""
 
 DECAYS, PERIODS = 3.0, 6.0
-"""Longest time for which a wave is followed, in expected decay times and in periods; the shorter time counts."""
+"""Longest time for which a wave is followed, in expected decay times and in periods, whichever is shorter."""
 
 SEGMENTS = 32
-"""Number of parts of the window, whose scatter gives the error bars."""
+"""Number of parts into which the window is divided for the standard errors."""
 
 ROUGH = 0.025
-"""Largest relative error of the speed for which error bars do not depend on the measured values."""
+"""Largest relative standard error of the speed for which the error bars are reliable."""
 
 FEWEST_DECAYS = 100
-"""Number of decay times of sound that an estimate requires."""
+"""Smallest number of decay times of sound in the window for reliable error bars."""
 
 MOST_FRAMES = 2**17
-"""Largest number of instants."""
+"""Largest number of instants at which a wave is measured."""
 
 HYDRODYNAMIC = 0.5
 """Largest k times the mean free path, and k times the diameter, for which waves are hydrodynamic."""
 
 
 ERRORS = Fluid(speed=0.001, damping=0.05, spreading=0.1, exponent=0.001)
-"""Relative errors of theory for long waves: those of the equation of state and of Enskog's coefficients."""
+"""Relative errors of the theory for long waves, due to the equation of state and to Enskog's coefficients."""
 
 FASTER = 0.15
 """Fraction of Γk/c by which the sound of waves of finite length may be faster than theory.
 
-At φ = 0.3 with 300, 600 and 2400 discs, it is faster by 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two dimensions
-currents have long-time tails, so that the neglected terms do not decrease as k².
+At φ = 0.3 with 300, 600 and 2400 discs, sound is faster by 2.6 ± 0.7 %, 1.9 ± 0.2 % and 1.3 ± 0.4 %. In two
+dimensions the correlations of currents have long-time tails, so that the neglected terms decrease more slowly than k².
 """
 
 
 @dataclass(frozen=True)
 class SoundWave:
-    """The longest density waves along the axes of the box, or along one axis.
+    """The longest density waves along one axis of the box, or along both.
 
     Attributes:
         axes: names of the axes.
-        wavelength: length.
-        lag: (L,), time.
+        wavelength: length of the waves.
+        lag: (L,), lags, time.
         correlation: (L,), ⟨ρ(lag)ρ*(0)⟩/N (no unit).
-        error: (L,), its standard error.
-        fitted: law that fits it best.
-        theory: law by theory; None without one.
+        error: (L,), standard error of the correlation.
+        fitted: hydrodynamic correlation fitted to the measured one.
+        theory: theoretical correlation; None if theory is not available.
         speed: speed of sound, length/time.
         damping: damping Γ, length²/time.
         spreading: thermal diffusivity χ, length²/time.
@@ -100,8 +100,8 @@ class Sound(Result):
 
     Attributes:
         window: window of time that was used.
-        frames: number of instants.
-        waves: longest waves along each periodic axis; in a square box a single entry for both axes.
+        frames: number of instants at which waves were measured.
+        waves: longest waves along each periodic axis; in a periodic square box, a single entry for both axes.
     """
 
     window: Window
@@ -109,7 +109,7 @@ class Sound(Result):
     waves: tuple[SoundWave, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the table of each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
+        """Return a table for each wave: speed and damping of sound, thermal diffusivity and adiabatic exponent."""
         tables = [
             estimates(
                 f"Waves along {wave.axes}, {wave.wavelength:.4g} long",
@@ -130,7 +130,7 @@ class Sound(Result):
         return [replace(tables[0], notes=notes), *tables[1:]]
 
     def summary(self) -> str:
-        """Return speed and adiabatic exponent of the first wave, and whether both agree with theory in all waves."""
+        """Return the headline: speed and γ of the first wave, and whether those of all waves agree with theory."""
         rows = [
             (f"{name} along {wave.axes}", estimate)
             for wave in self.waves
@@ -143,7 +143,7 @@ class Sound(Result):
         return f"{measured}; {agreement(rows, 'hydrodynamics')}."
 
     def figure(self) -> "Figure":
-        """Draw the correlation of each wave in time, with its fit and, dashed, hydrodynamics by theory."""
+        """Draw the correlation of each wave against time, with its fit and, dashed, its theory."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, axes = panels(len(self.waves))
@@ -180,11 +180,11 @@ class SoundAnalysis(Analysis):
         """Measure the speed and the damping of sound between two times of a log.
 
         The amplitude ρ(t) = Σ exp(-ikx) of the longest wave along each periodic axis is followed in time. Its
-        correlation is fitted with hydrodynamics: sound and heat conduction. Error bars are by the jackknife over 32
-        parts of the window.
+        correlation is fitted with linear hydrodynamics, that is, sound and heat conduction. Standard errors follow from
+        the jackknife over 32 parts of the window.
 
         Raises:
-            UserError: without events or a periodic axis, for several species, with effects other than periodic sides,
+            UserError: if there are no events, no periodic axis, several species or effects other than periodic sides,
                 or if the window is too short to follow a wave.
         """
         if len(composition(log.discs).name) > 1:
@@ -208,7 +208,7 @@ class SoundAnalysis(Analysis):
 
 
 def _doubt(time: np.ndarray, wave: SoundWave) -> np.ndarray:
-    """Return the error of the correlation of a wave by theory at times (L,), from the errors of its properties."""
+    """Return the error of the theoretical correlation of a wave at times (L,), from the errors of its coefficients."""
     assert wave.theory is not None
     law, square = wave.theory, np.zeros_like(time)
     for name in ("speed", "damping", "spreading"):
@@ -218,9 +218,9 @@ def _doubt(time: np.ndarray, wave: SoundWave) -> np.ndarray:
 
 
 def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:
-    """Return the correlation of waves of wave number k by theory, and the relative errors of the fluid.
+    """Return the theoretical correlation of waves of wave number k, and the relative errors of its coefficients.
 
-    The errors are None above freezing.
+    The errors are None above φ = 0.62, where the virial series ends.
     """
     gas, temperature = log.discs, ensemble(log).temperature
     phi, mass, diameter = gas.packing_fraction, float(gas.mass[0]), 2 * float(gas.radius[0])
@@ -231,7 +231,7 @@ def _expected(log: Log, k: float) -> tuple[Decay, Fluid | None]:
 
 
 def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
-    """Return the time between two instants, and the number of instants for which a wave is followed."""
+    """Return the time between two instants, and the number of instants over which a wave is followed."""
     k, fluid = expected.k, expected.fluid
     decay_time, period = 1 / (fluid.damping * k**2), 2 * math.pi / (fluid.speed * k)
     longest = min(DECAYS * decay_time, PERIODS * period, window.duration / 8)
@@ -245,7 +245,7 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
 
 
 def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: ReadProgress | None) -> np.ndarray:
-    """Return Σ exp(-ikx) over all discs at G times, (A, G), complex, for the longest wave along each of A axes."""
+    """Return Σ exp(-ikx) over all discs at G times for the longest wave along each of A axes, (A, G), complex."""
     amplitudes = np.empty((len(axes), len(times)), complex)
     for instants, places, _ in trajectories(log, times, progress):
         for a, axis in enumerate(axes):
@@ -255,9 +255,9 @@ def _amplitudes(log: Log, times: np.ndarray, axes: tuple[int, ...], progress: Re
 
 
 def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray:
-    """Return ⟨ρ(t + lag) ρ*(t)⟩ of amplitudes (A, G) for each segment of starting times, (segments, lags).
+    """Return ⟨ρ(t + lag) ρ*(t)⟩ for amplitudes (A, G) in each segment of starting times t, (segments, lags).
 
-    It is averaged over the A amplitudes and the starting times of a segment.
+    The correlation is averaged over the A amplitudes and over the starting times in a segment.
     """
     starts = amplitudes.shape[1] - lags + 1
     edges = np.linspace(0, starts, segments + 1).astype(int)[:-1]
@@ -270,7 +270,7 @@ def correlations(amplitudes: np.ndarray, lags: int, segments: int) -> np.ndarray
 def _wave(
     log: Log, axes: tuple[int, ...], theory: tuple[Decay, Fluid | None], lag: np.ndarray, amplitudes: np.ndarray
 ) -> SoundWave:
-    """Return the wave along the axes from its amplitudes (A, G), with theory and its relative errors."""
+    """Return the results for waves along the axes from their amplitudes (A, G), theory and its relative errors."""
     expected, errors = theory
     parts = correlations(amplitudes, len(lag), SEGMENTS) / len(log.discs)
     whole = parts.mean(axis=0)
@@ -299,7 +299,7 @@ def _wave(
 
 
 def _caveats(log: Log, window: Window, wave: SoundWave) -> Iterator[str]:
-    """Yield caveats on conditions that a wave does not meet."""
+    """Yield a caveat for each condition that a wave does not meet."""
     gas, k, fluid = log.discs, wave.fitted.k, wave.fitted.fluid
     diameter = 2 * float(gas.radius[0])
     short = max(diameter, hard_discs.mean_free_path(diameter, len(gas) / gas.area, gas.packing_fraction))

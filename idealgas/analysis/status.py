@@ -1,4 +1,4 @@
-"""Status of a run that may still be going on: the latest state in its log, and the pressure from the latest events."""
+"""Status of a run that may still be in progress: the latest state in its log, and the pressure from recent events."""
 
 from dataclasses import dataclass
 
@@ -13,10 +13,10 @@ from idealgas.statistics.estimates import Estimate, ks_distance
 from idealgas.theory.conserved import centre_of_mass_velocity
 
 ROWS = 2**20
-"""Largest number of event rows that are read for the state, and again for the pressure."""
+"""Largest number of event rows that are read for the state, and as many again for the pressure."""
 
 CHECKPOINTS = 256
-"""Number of checkpoints whose sums give the pressure of a log without events."""
+"""Number of recent checkpoints whose sums give the pressure of a log without events."""
 
 BINS, HIGHEST = 20, 4.0
 
@@ -29,7 +29,7 @@ class Status:
         time: end of the log, time.
         rows: number of event rows; None if the log has no events.
         events: number of events so far.
-        temperature: mean kinetic energy of the discs without the conserved motion of their centre of mass, energy.
+        temperature: mean kinetic energy of the discs, relative to a conserved motion of the centre of mass, energy.
         pressure: pressure from the virial of the latest pair collisions, energy/length²; None if it cannot be measured.
         compressibility_factor: Z = PA/NT from the same collisions; None if it cannot be measured.
         ks_distance: Kolmogorov-Smirnov distance of the speeds from the Maxwell-Boltzmann distribution; None if no disc
@@ -37,7 +37,7 @@ class Status:
         edges: (BINS + 1,), edges of the bins of the speeds, in units of √(T/m).
         density: (BINS,), measured probability density of these speeds; None if no disc moves.
         expected: (BINS,), Maxwell-Boltzmann density.
-        caveats: caveats of averages over this gas.
+        caveats: caveats on averages over this gas.
     """
 
     time: float
@@ -54,7 +54,7 @@ class Status:
 
 
 def status(log: Log) -> Status:
-    """Return the status of a log, from its latest state and a bounded number of its latest events."""
+    """Return the status of a log, from its latest state and a limited number of recent events."""
     seen = _time_seen(log)
     state, mass = log.state_at(seen), log.discs.mass
     squares = (mass * ((state.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1))[state.inside]
@@ -78,7 +78,7 @@ def status(log: Log) -> Status:
 
 
 def _time_seen(log: Log) -> float:
-    """Return the end of the log, or an earlier time if more than ROWS event rows follow the last checkpoint."""
+    """Return the time of the state that is read: the end of the log, or ROWS rows after the last checkpoint."""
     if not log.has_events:
         return float(log.checkpoints.times[-1]) if len(log.checkpoints) else log.start_time
     last = int(log.checkpoints.rows[-1]) + ROWS if len(log.checkpoints) else ROWS
@@ -90,7 +90,7 @@ def _time_seen(log: Log) -> float:
 def _pressure(log: Log, seen: float) -> tuple[Estimate | None, Estimate | None]:
     """Return P and Z from the pair collisions since a checkpoint at most ROWS event rows before time `seen`.
 
-    Without events they are from the sums in the samples since one of the last checkpoints, if the log has such sums.
+    If the log has no events, P and Z follow from the sums in its recent samples, if it contains such sums.
     """
     times = log.checkpoints.times
     if log.has_events:

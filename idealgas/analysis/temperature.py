@@ -1,4 +1,4 @@
-"""Measure the temperature of every direction of motion and species, and compare it with equipartition."""
+"""Measure the temperature of each species along each axis, and compare it with equipartition."""
 
 import math
 from collections.abc import Callable
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CONSERVED = 1e-9
-"""Largest relative change of a conserved energy by rounding. Fluctuations of fewer than 10¹⁸ discs are larger."""
+"""Largest relative change in a conserved energy due to rounding; fluctuations exceed it for fewer than 10¹⁸ discs."""
 
 LEAST_RANGE = 0.05
-"""Smallest relative range of the temperature axis, so that rounding errors of a conserved energy are not visible."""
+"""Smallest relative range of the temperature axis; rounding errors of a conserved energy are then not visible."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class SpeciesTemperature:
 
     Attributes:
         species: name of the species.
-        number: number of its discs.
+        number: number of discs of the species.
         x: mean of m vx².
         y: mean of m vy².
         both: mean of m v²/2.
-        directions: (B, 2), means of m vx² and m vy² in every block that was read, also before the window.
+        directions: (B, 2), means of m vx² and m vy² in every block that was read, including blocks before the window.
     """
 
     species: str
@@ -67,8 +67,8 @@ class Temperature(Result):
 
     Attributes:
         window: window of time that was averaged.
-        expected: mean of m v²/2 over all discs in equilibrium, energy; None if it is not known in advance.
-        law: equipartition of this gas in words; None if it is not known.
+        expected: theoretical mean of m v²/2 over all discs, energy; None if theory is not available.
+        law: equipartition in this gas, in words; None if theory is not available.
         species: temperatures of each species, followed by those of all discs if there are several species.
     """
 
@@ -80,21 +80,21 @@ class Temperature(Result):
     @property
     @reported
     def block_edges(self) -> np.ndarray:
-        """Times between the blocks that were read, (B + 1,)."""
+        """Boundaries of the blocks of time that were read, (B + 1,), time."""
         return self.window.edges
 
     def plain_tables(self) -> list[Table]:
-        """Return the table with the temperature of each direction of motion of each species."""
+        """Return the table of the temperatures of each species."""
         notes = (str(self.window), f"theory: {self.law or 'none for this scene'}")
         return [estimates("Temperatures (energy, k_B = 1)", self._rows(), notes)]
 
     def summary(self) -> str:
-        """Return the kinetic energy per disc and whether all temperatures agree with equipartition."""
+        """Return the headline: the kinetic energy per disc, and whether all temperatures agree with equipartition."""
         energy = f"The kinetic energy per disc is {format_estimate(self.species[-1].both)} (k_B = 1)"
         return f"{energy}; {agreement(self._rows(), 'equipartition')}."
 
     def figure(self) -> "Figure":
-        """Draw the temperature of each species, or along x and y, against time; times before the window are shaded."""
+        """Draw the temperature of each species, or of x and y, against time; times before the window are shaded."""
         from idealgas.presentation.style import GREY, curve_style, panels
 
         figure, (ax,) = panels(1)
@@ -123,7 +123,7 @@ class Temperature(Result):
         return figure
 
     def _rows(self) -> list[tuple[str, Estimate]]:
-        """Return the name and the temperature of each direction of motion of each species."""
+        """Return the names and values of the temperatures of each species: along x, along y, and their mean."""
         return [
             (f"{entry.species}: {direction}", estimate)
             for entry in self.species
@@ -134,10 +134,11 @@ class Temperature(Result):
 def temperature(
     log: Log, start: float | None = None, end: float | None = None, progress: Callable[[int, int], None] | None = None
 ) -> Temperature:
-    """Measure the temperature of each species and direction of motion between two times of a log.
+    """Measure the temperature of each species along each axis between two times of a log.
 
-    By equipartition m⟨v²⟩ of a disc is the same along both axes: T = 2E/D with k_B = 1 and D degrees of freedom. Along
-    an axis whose total momentum is conserved it is T(1 - m/M), where M is the mass of all discs.
+    According to equipartition, ⟨m vx²⟩ and ⟨m vy²⟩ of a disc are both T = 2E/D, where k_B = 1 and D is the number of
+    degrees of freedom. Along an axis along which the total momentum is conserved, the value is T(1 - m/M), where M is
+    the mass of all discs.
 
     Raises:
         UserError: if there are no events in the window, or if no start is given and the gas has no equilibrium.
@@ -174,7 +175,7 @@ def temperature(
             for series, theory in ((x, along_x), (y, along_y), ((x + y) / 2, both))
         )
         if isolated and number == len(log.discs) and np.ptp(x + y) < CONSERVED * (x + y).mean():
-            energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved, except for rounding
+            energy = replace(energy, standard_error=0.0, independent_samples=math.inf)  # conserved up to rounding
         return SpeciesTemperature(name, number, of_x, of_y, energy, means)
 
     entries = [entry(name, slice(s, s + 1)) for s, name in enumerate(discs.name)]
@@ -185,11 +186,11 @@ def temperature(
 
 
 def _column(log: Log) -> tuple[Ensemble, float] | None:
-    """Return the ensemble of an isolated column under gravity and the relative error of its temperature.
+    """Return the ensemble of an isolated column under gravity, and the relative error of its temperature.
 
-    The temperature is that of a dilute gas with the same energy. Discs of finite size stand higher: by hydrostatics
-    their potential energy is N T ⟨Z⟩, so T is lower by a fraction of half the packing fraction of the lowest layer.
-    Return None if the ensemble is not known.
+    The temperature is that of a dilute gas with the same energy. Because of their finite size, discs lie higher: by
+    hydrostatics their potential energy is N T ⟨Z⟩, so that T is lower by a fraction that equals half the packing
+    fraction of the lowest layer. Return None if the ensemble is not known.
     """
     gas = composition(log.discs)
     axis = int(log.gravity[1] != 0)
@@ -203,7 +204,7 @@ def _column(log: Log) -> tuple[Ensemble, float] | None:
 
 
 def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
-    """Describe equipartition in words: T, the source of its value, and the axes along which momentum is conserved."""
+    """Describe equipartition in words: T, where its value comes from, and axes along which momentum is conserved."""
     source = f"2E/D with D = {equilibrium.dof}"
     if relative:
         source = "of a dilute column at fixed energy"
@@ -215,7 +216,7 @@ def _equipartition(log: Log, equilibrium: Ensemble, relative: float) -> str:
 
 
 class TemperatureAnalysis(Analysis):
-    """Declaration of the analysis `temperature`; users see the docstring of that function."""
+    """Declaration of the analysis `temperature`; users see the docstring of the function `temperature`."""
 
     position = 10
     headline = "species.*.both"

@@ -1,7 +1,7 @@
 """Measure the relaxation of the velocities to the Maxwell-Boltzmann distribution.
 
-The relaxation time is that of an exponential fitted to the kurtosis of the velocities; its error follows from the
-fluctuations of a gas with this number of discs. Several logs are drawn in one figure. DIR is the
+The relaxation time is the time constant of an exponential fitted to the kurtosis of the velocities; its standard error
+follows from the fluctuations of a gas with this number of discs. Several logs are drawn in one figure. DIR is the
 folder of a sweep with the analysis "relaxation".
 """
 
@@ -44,20 +44,20 @@ if TYPE_CHECKING:
 SAMPLES = 320
 
 SETTLED = 3.0
-"""Number of relaxation times after which a gas counts as settled: 5 % of the initial deviation is left."""
+"""Number of relaxation times after which a gas counts as settled; 5 % of the initial deviation then remains."""
 
 LINEAR = 2.0
 """Relaxation time of the kurtosis near equilibrium, in collisions per disc, for equal discs.
 
 It follows from the first Sonine approximation for elastic discs in two dimensions: van Noije & Ernst, Granular Matter
-1, 57 (1998). Far from equilibrium it is longer: nearly 3 for the whole relaxation from equal speeds.
+1, 57 (1998). Far from equilibrium it is longer: nearly 3 for the entire relaxation from equal speeds.
 """
 
 MAXWELLIAN = 2.0
-"""Kurtosis of an infinite gas in equilibrium."""
+"""Kurtosis of the velocities in an infinite gas in equilibrium."""
 
 FEW = 100
-"""Number of discs below which the error of the relaxation time is not well known."""
+"""Smallest number of discs for which the standard error of the relaxation time is reliable."""
 
 HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")
 
@@ -69,16 +69,16 @@ NOTES = (
 )
 
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
-"""Ticks of the axis of distances, which covers both small and large values."""
+"""Ticks on the logarithmic axis of Kolmogorov-Smirnov distances."""
 
 
 @dataclass(frozen=True)
 class Relaxation(RunResult):
     """Relaxation of the gas of one log at K instants.
 
-    All measures use the reduced energy x = m v²/2T of a disc, whose density in equilibrium is exp(-x) for any mass. As
-    the energy is conserved, the excess of Boltzmann's H = ⟨ln f⟩ over its equilibrium value is the relative entropy of
-    the two distributions.
+    All quantities are calculated from the reduced energy x = m v²/2T of a disc, whose equilibrium distribution has the
+    density exp(-x) for any mass. As the energy is conserved, the excess of Boltzmann's H = ⟨ln f⟩ over its equilibrium
+    value is the relative entropy of the distribution with respect to the equilibrium distribution.
 
     Attributes:
         path: path of the log.
@@ -86,15 +86,15 @@ class Relaxation(RunResult):
         time: (K,), times.
         collisions: (K,), collisions per disc since the first instant.
         kurtosis: (K,), ⟨v⁴⟩/⟨v²⟩² in reduced energies: 1 for equal speeds, 2 in equilibrium.
-        distance: (K,), Kolmogorov-Smirnov distance.
+        distance: (K,), Kolmogorov-Smirnov distance from the equilibrium distribution.
         entropy: (K,), H - H_eq per disc.
-        equilibrium_kurtosis: mean kurtosis of this number of discs in equilibrium.
-        critical_distance: distance that one in twenty gases of this number of discs exceeds in equilibrium.
+        equilibrium_kurtosis: mean kurtosis for this number of discs in equilibrium.
+        critical_distance: distance that one in twenty gases with this number of discs exceeds in equilibrium.
         in_time: fitted relaxation time of the kurtosis, time; None if the initial kurtosis is within its fluctuations
             in equilibrium.
-        in_collisions: the same in collisions per disc.
+        in_collisions: the same relaxation time in collisions per disc.
         indistinguishable_after: time and collisions per disc at the first instant at which the distance is below the
-            critical distance; None if there is none.
+            critical distance; None if there is no such instant.
         acceptance: acceptance of Monte Carlo trials; None for other methods.
         speeds: speed distributions; None unless they were counted.
     """
@@ -117,7 +117,7 @@ class Relaxation(RunResult):
     @property
     @reported
     def settled_time(self) -> float | None:
-        """Time after which a gas counts as settled; None without a relaxation time."""
+        """Time after which the gas counts as settled; None if no relaxation time was fitted."""
         return SETTLED * self.in_time.value if self.in_time else None
 
 
@@ -128,7 +128,7 @@ class Relaxations(Result):
     logs: tuple[Relaxation, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of speed distributions, if they were counted, relaxation times, and Monte Carlo trials."""
+        """Return the tables of speed distributions (if they were counted), relaxation times and Monte Carlo trials."""
         in_time = [_row(r, r.in_time, "time", float(r.time[0])) for r in self.logs]
         in_collisions = [_row(r, r.in_collisions, "collisions_per_disc") for r in self.logs]
         tried = {r.path: r.acceptance for r in self.logs if r.acceptance is not None}
@@ -140,7 +140,7 @@ class Relaxations(Result):
         ]
 
     def summary(self) -> str:
-        """Return the relaxation time of each gas, and the theory near equilibrium."""
+        """Return the headline: the relaxation time of each gas, and the theoretical value near equilibrium."""
         times = [
             f"{log.number} discs in {format_estimate(log.in_collisions)}" for log in self.logs if log.in_collisions
         ]
@@ -155,9 +155,9 @@ class Relaxations(Result):
         )
 
     def figure(self) -> "Figure":
-        """Draw kurtosis with its fit, Kolmogorov-Smirnov distance and Boltzmann's H against time.
+        """Draw the kurtosis with its fit, the Kolmogorov-Smirnov distance and Boltzmann's H against time.
 
-        With several logs, the same is drawn against collisions per disc on the left.
+        With several logs, the left column shows the same quantities against collisions per disc.
         """
         from idealgas.presentation.style import panels
 
@@ -206,9 +206,17 @@ class RelaxationAnalysis(Analysis):
     ) -> Relaxation:
         """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit the relaxation time.
 
+        Args:
+            log: the log.
+            start: start of the window, time; None for the start of the log.
+            end: end of the window, time; None for the time after 40 collisions per disc.
+            progress: called as progress(done, total) while the log is read.
+            every: interval at which speed distributions are counted, in trials (Monte Carlo) or units of time (other
+                methods); None to omit them.
+
         Raises:
-            UserError: if no two discs collide in the window, or if the energy of the discs is not constant, so that
-                they do not approach a stationary distribution.
+            UserError: if no two discs collide in the window, or if the kinetic energy of the discs is not constant, so
+                that they do not approach a stationary distribution.
         """
         check_steady(log)
         first, last = colliding_span(log, start, end)
@@ -246,14 +254,14 @@ class RelaxationAnalysis(Analysis):
 
     @staticmethod
     def combine(results: Sequence[Relaxation]) -> Relaxations:
-        """Combine the relaxation of several logs, in their order."""
+        """Combine the results of several logs, in the given order."""
         return Relaxations(tuple(results))
 
 
 def _caveats(
     fit: Estimate | None, collisions: np.ndarray, kurtosis: np.ndarray, number: int, late: bool
 ) -> Iterator[str]:
-    """Yield caveats on a relaxation time in collisions per disc; late: whether the window starts later than the log."""
+    """Yield caveats on a relaxation time in collisions per disc; late: whether the window starts late."""
     if fit is None:
         return
     if collisions[-1] < fit.value:

@@ -20,18 +20,19 @@ from idealgas.theory.ensemble import classes
 PUBLISHED = 6_552
 """Collisions in the 28 000 trials of Novak & Bortz, Am. J. Phys. 38, 1402 (1970).
 
-Their gas has 200 molecules, and v_ref is 5 times their speed. The number is 6.7 % below that expected by theory.
+Their gas has 200 molecules, and v_ref is 5 times the speed of the molecules. The number is 6.7 % below the theoretical
+value.
 """
 
 V_REF = "v_ref"
-"""Name of the observable of logs whose v_ref may rise."""
+"""Name of the observable that contains v_ref in logs of runs in which v_ref may rise."""
 
-MANY = 2000  # largest number of discs whose pairs are all averaged
+MANY = 2000  # largest number of discs for which all pairs are averaged
 
 
 @dataclass(frozen=True)
 class ReferenceSpeed:
-    """Speed v_ref of a Monte Carlo run, length/time, and the number of trials before it."""
+    """A value of v_ref in a Monte Carlo run, length/time, and the number of trials after which it was set."""
 
     after_trials: int
     v_ref: float
@@ -39,17 +40,17 @@ class ReferenceSpeed:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Acceptance of the trials of a Monte Carlo run: fraction of the trials that became collisions.
+    """Acceptance of the trials of a Monte Carlo run: the fraction of the trials that became collisions.
 
     Attributes:
         number: number of trials.
         collisions: number of accepted trials.
         collisions_per_disc: collisions per disc.
-        acceptance: measured fraction; its theory is that of these discs in equilibrium.
+        acceptance: measured fraction, compared with the theoretical value for these discs in equilibrium.
         at_start: fraction expected for the initial velocities.
         expected: fraction expected in equilibrium, by the name of the ensemble.
-        published: published number of collisions; None for other scenes.
-        reference_speeds: each v_ref of the run, in order of time.
+        published: published number of collisions; None if the scene is not that of the published run.
+        reference_speeds: all values of v_ref in the run, in order of time.
     """
 
     number: Annotated[int, Key("trials")]
@@ -63,7 +64,7 @@ class Acceptance:
 
 
 def acceptance(log: Log) -> Acceptance | None:
-    """Measure the acceptance of all trials of a log; None if its method has no trials."""
+    """Return the acceptance of all trials in a log; None if the method of the run has no trials."""
     if "trial" not in log.columns:
         return None
     number, collisions = log.summary["trials"] if log.complete else last_trial(log), len(log) // 2
@@ -90,13 +91,13 @@ def acceptance(log: Log) -> Acceptance | None:
 
 
 def last_trial(log: Log) -> int:
-    """Return the number of the last trial that became a collision; 0 if there is none."""
+    """Return the number of the last trial that became a collision; 0 if there is no such trial."""
     return sum(int(rows.trial[-1]) for rows in log.chunks(("trial",), max(len(log) - 1, 0)))
 
 
 def _reference_speeds(log: Log) -> tuple[ReferenceSpeed, ...]:
-    """Return each v_ref of a log, starting with the first."""
-    if V_REF not in log.observables:  # the scene gives the only one
+    """Return all values of v_ref in a log, in order of time."""
+    if V_REF not in log.observables:  # v_ref is constant and follows from the scene
         return (ReferenceSpeed(0, reference_speed(log.scene.run, float(np.hypot(*log.discs.velocity.T).max()))),)
     values = log.observables[V_REF][1]
     trials = log.observables["trials"][1][: len(values)]
@@ -105,20 +106,21 @@ def _reference_speeds(log: Log) -> tuple[ReferenceSpeed, ...]:
 
 
 def _mean_reference_speed(speeds: tuple[ReferenceSpeed, ...], number: int) -> float:
-    """Return the harmonic mean of v_ref over all trials, length/time, which accepts as many of them as the run."""
+    """Return the harmonic mean of v_ref over all trials, length/time; a constant v_ref of this size accepts as many."""
     starts = np.array([speed.after_trials for speed in speeds] + [max(number, speeds[-1].after_trials + 1)])
     return float(np.diff(starts).sum() / (np.diff(starts) / [speed.v_ref for speed in speeds]).sum())
 
 
 def _largest_product(log: Log, v_ref: float) -> float:
-    """Return the sum of radii times relative speed at which a trial is always accepted, length²/time."""
+    """Return the product of sum of radii and relative speed at which a trial is always accepted, length²/time."""
     return float(np.sort(log.discs.radius)[-2:].sum()) * v_ref
 
 
 def _equilibrium_acceptance(log: Log, v_ref: float, temperature: float, dof: float = math.inf) -> float:
-    """Return the acceptance in equilibrium: the mean of the sum of radii times relative speed over its largest value.
+    """Return the acceptance in equilibrium.
 
-    It is √(π/2)/5 for equal discs if v_ref is 5 times the root-mean-square speed.
+    It is the mean product of the sum of radii and the relative speed of a pair, divided by the product at which a trial
+    is always accepted. For equal discs it is √(π/2)/5 if v_ref is 5 times the root-mean-square speed.
     """
     discs = classes(log.discs)
     sigma = discs.radius[:, None] + discs.radius
@@ -152,7 +154,7 @@ def _is_published(scene: Scene) -> bool:
 
 
 def acceptance_tables(tried: dict[str, Acceptance]) -> list[Table]:
-    """Return the tables of the acceptance of each log, with theory and the value of the published run."""
+    """Return the tables of the acceptance in each log, with the theoretical and the published values."""
     counts = [
         (
             path,

@@ -1,6 +1,6 @@
-"""Speeds of discs and their distribution in equilibrium: distances from it, relaxation time, classes of speed.
+"""Speeds of discs compared with equilibrium: distances from its distribution, relaxation time, classes of speed.
 
-In equilibrium the reduced energy of a disc has the density exp(-x).
+In equilibrium the reduced energy x of a disc has the probability density exp(-x).
 """
 
 import math
@@ -23,28 +23,28 @@ from idealgas.tallies.stream import span
 from idealgas.theory.ensemble import Ensemble, composition
 
 CLASSES = 0.3 * np.arange(9)
-"""Lower ends of the classes of speed, in units of the root-mean-square speed; the last class has no upper end."""
+"""Lower limits of the classes of speed, in units of the root-mean-square speed; the last class has no upper limit."""
 
 MOST_INSTANTS = 10_000
 
 HORIZON = 40.0
-"""Default length of the window in collisions per disc: about ten relaxation times."""
+"""Default length of the window, in collisions per disc; it is more than ten relaxation times."""
 
 CELLS = 32
-"""Number of cells of equal probability for H."""
+"""Number of cells of equal probability from which H is estimated."""
 
 LEAST_RELAXATION = 4.0
-"""Smallest initial deviation of the kurtosis for a fit, in its standard deviations in equilibrium."""
+"""Smallest initial deviation of the kurtosis for which a decay is fitted, in standard deviations in equilibrium."""
 
 MEMORY = 2 / 3
-"""Correlation time of the fluctuations of the kurtosis over the relaxation time from equal speeds: 2 over 3."""
+"""Correlation time of the fluctuations of the kurtosis (2 collisions per disc) over the relaxation time (3)."""
 
 
 def check_steady(log: Log) -> None:
-    """Check that the velocities of a log can relax to the Maxwell-Boltzmann distribution.
+    """Check that the velocities in a log can relax to the Maxwell-Boltzmann distribution.
 
     Raises:
-        UserError: if the log has no events, if the kinetic energy of its discs is not constant, or if no disc moves.
+        UserError: if the log has no events, if the kinetic energy of the discs is not constant, or if no disc moves.
     """
     log.require_events()
     if restless := log.scene.lacking("conserves_motion"):
@@ -57,7 +57,7 @@ def check_steady(log: Log) -> None:
 
 
 def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[float, float]:
-    """Return the first and last time of the window, by default up to HORIZON collisions per disc or the end of the log.
+    """Return the start and end of the window, by default up to HORIZON collisions per disc or the end of the log.
 
     Raises:
         UserError: if no discs collide between the two times.
@@ -76,22 +76,22 @@ def colliding_span(log: Log, start: float | None, end: float | None) -> tuple[fl
 
 
 def reduced_energy(log: Log, velocity: np.ndarray, equilibrium: Ensemble) -> np.ndarray:
-    """Return the reduced energy m vx²/2Tx + m vy²/2Ty of every disc (no unit), for its equilibrium temperatures."""
+    """Return the reduced energy m vx²/2Tx + m vy²/2Ty of every disc (no unit), with its equilibrium temperatures."""
     gas = log.discs
     square = (velocity - equilibrium.centre_of_mass_velocity) ** 2 / equilibrium.of_axes[gas.species]
     return gas.mass * square.sum(axis=1) / 2
 
 
 def reduced_energy_cdf(energy: np.ndarray) -> np.ndarray:
-    """Return the distribution function of reduced energies in equilibrium, 1 - exp(-x)."""
+    """Return the cumulative distribution of reduced energies in equilibrium, 1 - exp(-x)."""
     return -np.expm1(-energy)
 
 
 def relative_entropy(energy: np.ndarray) -> float:
     """Return the relative entropy ∫ p ln(p/e^(-x)) dx of reduced energies (N,), from cells of equal probability.
 
-    The bias (cells - 1)/2N is subtracted: Miller (1955). For equal speeds, whose relative entropy is infinite, the
-    estimate is at most ln(cells).
+    The bias (cells - 1)/2N is subtracted (Miller 1955). Equal speeds have an infinite relative entropy; the estimate
+    cannot exceed ln(cells).
     """
     n = len(energy)
     cells = max(2, min(CELLS, n // 5))
@@ -104,8 +104,8 @@ def relative_entropy(energy: np.ndarray) -> float:
 def critical_distance(number: int) -> float:
     """Return the Kolmogorov-Smirnov distance that one in twenty gases of `number` discs exceeds in equilibrium.
 
-    It is the critical value for an exponential law with a fitted mean, as the total energy is fixed: Stephens, J. Am.
-    Stat. Assoc. 69, 730 (1974), table 1.5.
+    It is the critical value for an exponential distribution whose mean was fitted to the data, because the total energy
+    is fixed: Stephens, J. Am. Stat. Assoc. 69, 730 (1974), table 1.5.
     """
     root = math.sqrt(number)
     return 1.094 / (root + 0.26 + 0.5 / root) + 0.2 / number
@@ -114,10 +114,10 @@ def critical_distance(number: int) -> float:
 def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float) -> Estimate | None:
     """Fit the relaxation time of the kurtosis (S,) from its first value to its target, in the unit of `time`.
 
-    The error follows from the fluctuations of a gas of `number` discs. Their variance in equilibrium, about 4/N, is
-    that of equally probable shares of the energy. The fluctuations grow from zero as the gas relaxes. Discs are not
-    independent of each other, as a collision changes two at once. In 300 runs each of 200 and 500 discs from equal
-    speeds, the errors are right to 2 % ± 4 %.
+    The standard error follows from the fluctuations of the kurtosis in a gas of `number` discs. These grow from zero as
+    the gas relaxes. Their variance in equilibrium, about 4/N, is that of a uniformly random division of the energy
+    among the discs. Discs are not independent of each other, because each collision changes two of them at once. In 300
+    runs each of 200 and of 500 discs with equal initial speeds, the standard errors were right to within 2 % ± 4 %.
 
     Return None if the initial deviation is within the fluctuations in equilibrium.
     """
@@ -137,9 +137,9 @@ def fit_decay(time: np.ndarray, kurtosis: np.ndarray, number: int, target: float
 
 
 def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
-    """Fit τ in target + (series[0] - target) exp(-time/τ) to a series by least squares.
+    """Return τ from a least-squares fit of target + (series[0] - target) exp(-time/τ) to a series.
 
-    time, series: (S,). The result has the unit of `time`.
+    The arrays `time` and `series` have shape (S,), and the result has the unit of `time`.
     """
 
     def misfit(logarithm: float) -> float:
@@ -160,7 +160,7 @@ def decay_time(time: np.ndarray, series: np.ndarray, target: float) -> float:
 class SpeedDistributions:
     """Speed distributions at K instants in C classes of speed.
 
-    Speeds are relative to the centre of mass along axes where momentum is conserved.
+    Along axes along which momentum is conserved, velocities are relative to the centre of mass.
 
     Attributes:
         time: (K,), times.
@@ -168,9 +168,9 @@ class SpeedDistributions:
         collisions: (K,), collisions per disc up to each time.
         distance: (K,), Kolmogorov-Smirnov distance from the Maxwell-Boltzmann distribution.
         rms: root-mean-square speed, length/time.
-        edges: (C,), lower ends of the classes, length/time.
+        edges: (C,), lower limits of the classes, length/time.
         counts: (K, C), numbers of discs.
-        expected: (C,), numbers of discs by the Maxwell-Boltzmann distribution.
+        expected: (C,), numbers of discs expected from the Maxwell-Boltzmann distribution.
     """
 
     time: np.ndarray
@@ -186,7 +186,7 @@ class SpeedDistributions:
 def speed_distributions(
     log: Log, every: float, start: float | None = None, end: float | None = None
 ) -> SpeedDistributions:
-    """Count discs by speed at the start and after every `every` trials (Monte Carlo) or units of time (other methods).
+    """Count discs by speed at the start and then every `every` trials (Monte Carlo) or units of time (other methods).
 
     Raises:
         UserError: if there would be more than MOST_INSTANTS instants, or if the gas does not relax (`check_steady`).
@@ -216,7 +216,7 @@ def speed_distributions(
 
 
 def _at_trials(log: Log, every: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return numbers of trials, and the time of the last collision up to each of them."""
+    """Return numbers of trials at equal intervals, and the time of the last collision up to each of them."""
     total = log.summary["trials"] if log.complete else last_trial(log)
     _check_number(total / every)
     wanted = np.arange(0, total + 1, max(int(every), 1))
@@ -234,7 +234,7 @@ def _check_number(instants: float) -> None:
 
 
 def speed_table(path: str, speeds: SpeedDistributions) -> Table:
-    """Return the table of the numbers of discs by speed, one row per instant; the last row is Maxwell-Boltzmann."""
+    """Return the table of the numbers of discs by speed, with a row for each instant and a last row for theory."""
     title = f"{path}: discs by speed, in classes from multiples of {speeds.rms:.4g} (rms)"
     classes = (f"{edge / speeds.rms:.1f}" for edge in speeds.edges)
     clock = [Number(t, ".4g") for t in speeds.time.tolist()]

@@ -1,7 +1,7 @@
-"""Measure density and current correlations in space and time: F(k, t), S(k, ω), self part and currents.
+"""Measure density and current correlations in space and time: F(k, t) and its self part, S(k, ω), and currents.
 
-The box must be periodic, and wave vectors lie along its sides. The analysis also gives both parts of the van Hove
-function, G_s(r, t) and G_d(r, t), and the non-Gaussian parameter of displacements.
+The box must be periodic; the wave vectors are parallel to its sides. The analysis also gives the two parts of the van
+Hove function, G_s(r, t) and G_d(r, t), and the non-Gaussian parameter of the displacements.
 """
 
 import math
@@ -32,25 +32,31 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STEP = 0.25
-"""Time between two instants, in units of 1/(k √(T/m)), in which a disc flies 1/k."""
+"""Time between two instants, in units of 1/(k √(T/m)), the time in which a disc of thermal speed flies 1/k."""
 
 LAGS, FEWEST_LAGS = 65, 17
-"""Number of lags of a wave, and smallest number of lags."""
+"""Number of lags at which a wave is measured, and the smallest number of lags."""
 
 FEWEST_DECAYS = 100.0
-"""Length of a window, in decay times of sound, from which on segments are independent."""
+"""Smallest length of the window, in decay times of the longest wave, for which segments are independent."""
 
 
 @dataclass(frozen=True)
 class ScatteringWave:
     """Correlations of the waves of one wave number.
 
-    name: k as text. k: wave number, 1/length. time: (L,), lags. density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N with ρ = Σ exp(-ikx)
-    (no unit). self_part: F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit). longitudinal, transverse: correlations of the
-    currents Σ v exp(-ikx) along and across k over N, (length/time)². frequency: (W,), ω, 1/time. spectrum: (W,), S(k,
-    ω) = ∫ F exp(iωt) dt with the lags tapered by cos², time. structure: S(k) = F(k, 0) (no unit). longitudinal_square,
-    transverse_square: ⟨|j|²⟩/N along and across k, (length/time)²; k² times the first is the second moment of S(k, ω).
-    early: F_s at the first lag.
+    Attributes:
+        name, k: the wave number as text and as a number, 1/length.
+        time: (L,), lags.
+        density: F(k, t) = ⟨ρ(t)ρ*(0)⟩/N, where ρ = Σ exp(-ikx) (no unit).
+        self_part: F_s(k, t) = ⟨exp(-ik(x(t) - x(0)))⟩ (no unit).
+        longitudinal, transverse: correlation of the current Σ v exp(-ikx), where v is the velocity component parallel
+            or perpendicular to k, over N, (length/time)².
+        frequency, spectrum: (W,), ω, 1/time, and S(k, ω) = ∫ F exp(iωt) dt, with a cos² taper of the lags, time.
+        structure: S(k) = F(k, 0) (no unit).
+        longitudinal_square, transverse_square: mean squares ⟨|j|²⟩/N of the two currents, (length/time)²; k² times the
+            first is the second moment of S(k, ω).
+        early: F_s at the first nonzero lag.
     """
 
     name: str
@@ -69,7 +75,7 @@ class ScatteringWave:
 
 
 SMALL_ERRORS = "Standard errors of some curves may be up to 1.3 times too small, those of the longest wave above all."
-"""Caveat of all results, as the calibrated rms deviation over error reaches 1.26."""
+"""Caveat of all results; in the calibration, the rms deviation over the standard error reached 1.26."""
 
 
 @dataclass(frozen=True)
@@ -80,10 +86,11 @@ class Scattering(Result):
         window: window of time that was used.
         thermal_speed: √(T/m), length/time.
         waves: correlations of each wave number, from the longest to the shortest wave.
-        van_hove: self part for the time in which a free disc flies 4/k, for each wave.
+        van_hove: self part of the van Hove function for each wave, after the time in which a free disc of thermal speed
+            flies 4/k.
         distinct: distinct part at t = 0 and at the same times; empty for a single disc.
         time: (D,), times.
-        non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 of displacements in these times (no unit).
+        non_gaussian: (D,), ⟨Δr⁴⟩/(2⟨Δr²⟩²) - 1 for the displacements in these times (no unit).
     """
 
     window: Window
@@ -95,7 +102,7 @@ class Scattering(Result):
     non_gaussian: Curve
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of S(k) and the currents, of the correlations of each wave, and of displacements."""
+        """Return the tables of S(k) and the currents, of the correlations of each wave, and of the displacements."""
         rows = [
             (f"{name}, {wave.name}", estimate)
             for wave in self.waves
@@ -128,7 +135,7 @@ class Scattering(Result):
         return [*tables, _series(title, {"t": self.time}, {"α₂": self.non_gaussian})]
 
     def summary(self) -> str:
-        """Return S(k) of the longest wave, and whether the moments of all waves agree with theory."""
+        """Return the headline: S(k) of the longest wave, and whether the moments of all waves agree with theory."""
         rows = [
             (f"{name}, {wave.name}", estimate)
             for wave in self.waves
@@ -142,7 +149,7 @@ class Scattering(Result):
         return f"S(k) is {format_estimate(first.structure)} at {first.name}; currents and F_s: {agreement(rows)}."
 
     def figure(self) -> "Figure":
-        """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d, with free flight and normal distribution dashed."""
+        """Draw F, F_s, S(k, ω), both currents, α₂, G_s and G_d; free flight and the normal distribution are dashed."""
         from idealgas.presentation.style import BAND, COLOURS, curve_style, panels
 
         figure, (density, self_part, spectrum, along, across, gaussian, displaced, distinct) = panels(4, 2)
@@ -211,15 +218,15 @@ class ScatteringAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Scattering:
-        """Measure how waves of density and of current decay, between two times of a log.
+        """Measure how density waves and current waves decay between two times of a log.
 
-        Errors are from the scatter of 32 segments of the window. The currents at t = 0 have an exact theory at any
-        density: ⟨|j|²⟩/N = (1 - S(k)/N) T/m, as the momentum of all discs is 0. F_s at the first lag is compared with
-        free flight and the first collision, at Enskog's rate.
+        Standard errors follow from the scatter of 32 segments of the window. At any density, theory for the currents at
+        t = 0 is exact: ⟨|j|²⟩/N = (1 - S(k)/N) T/m, as the total momentum is 0. F_s at the first lag is compared with
+        free flight up to the first collision, which occurs at Enskog's rate.
 
         Raises:
-            UserError: unless the box is periodic, for several species, with effects other than periodic sides, or if
-                the window is too short.
+            UserError: if the box is not periodic, if there are several species or effects other than periodic sides, or
+                if the window is too short.
         """
         if len(log.discs.species_names) > 1 or not all(log.periodic):
             raise NotApplicableError(f"{log.path}: scattering requires a gas of one species in a periodic box")
@@ -250,7 +257,7 @@ class ScatteringAnalysis(Analysis):
 
 
 def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) -> ScatteringWave:
-    """Return the wave from the sums of all segments; speed: √(T/m)."""
+    """Return the correlations of a wave from the sums of all segments; speed: √(T/m)."""
     density, self_part, along, across, *_ = (np.array(parts) for parts in zip(*sums, strict=True))
     taper = np.cos(math.pi / 2 * time / time[-1]) ** 2 * np.where(time > 0, 2.0, 1.0) * time[1]
     frequency = math.pi / time[-1] * np.arange(len(time) // 2 + 1)
@@ -274,7 +281,7 @@ def _wave(log: Log, k: float, time: np.ndarray, sums: list[Sums], speed: float) 
 
 
 def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve]) -> Table:
-    """Return the table of curves with their errors."""
+    """Return a table of curves with their standard errors."""
     columns: dict[str, np.ndarray | None] = {**argument}
     for name, curve in curves.items():
         columns |= {name: curve.value, f"± {name}": curve.error}
@@ -282,15 +289,15 @@ def _series(title: str, argument: dict[str, np.ndarray], curves: dict[str, Curve
 
 
 def _first(parts: np.ndarray, lag: int, theory: float | None = None, theory_error: float = 0.0) -> Estimate:
-    """Return the estimate of a correlation at one lag, from segments (S, L)."""
+    """Return the estimate of a correlation at one lag, given its values in all segments (S, L)."""
     curve = curve_of(parts)
     return Estimate(float(curve.value[lag]), float(curve.error[lag]), float(len(parts)), theory, theory_error)
 
 
 def _free_flight(log: Log, time: float, k: float) -> tuple[float | None, float]:
-    """Return F_s and its error after a time; None after more than one collision.
+    """Return the theoretical F_s after a time, and its error; None if a disc collides once or more in this time.
 
-    The initial slope of the velocity correlation is exact, and its second derivative is counted as the error.
+    The initial slope of the velocity correlation is exact; the contribution of its second derivative counts as error.
     """
     gas, collisions = log.discs, _correlation_rate(log) * time
     if gas.packing_fraction > hard_discs.HIGHEST or collisions >= 1:
@@ -302,7 +309,10 @@ def _free_flight(log: Log, time: float, k: float) -> tuple[float | None, float]:
 
 
 def _correlation_rate(log: Log) -> float:
-    """Return the rate T/(mD) of the velocity correlation, 1/time, with Enskog's D at a φ of at most HIGHEST."""
+    """Return the decay rate T/(mD) of the velocity correlation, 1/time, with Enskog's D.
+
+    At packing fractions above HIGHEST, D is calculated with the contact value at HIGHEST.
+    """
     gas, temperature, mass = log.discs, ensemble(log).temperature, float(log.discs.mass[0])
     chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
     diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), len(gas) / gas.area, temperature, mass, chi)
@@ -310,14 +320,14 @@ def _correlation_rate(log: Log) -> float:
 
 
 def _mean_square(log: Log, time: float) -> float:
-    """Return the mean square displacement 4(T/m)(ωt - 1 + exp(-ωt))/ω² of many discs after a time, length²."""
+    """Return the mean square displacement 4(T/m)(ωt - 1 + exp(-ωt))/ω² in a large gas, length²; ω: decay rate."""
     rate = _correlation_rate(log)
     square = 4 * ensemble(log).temperature / float(log.discs.mass[0])
     return square * (rate * time + math.expm1(-rate * time)) / rate**2
 
 
 def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[str]:
-    """Yield caveats if the window is too short for the longest waves, or for the decay of waves of wave number k."""
+    """Yield caveats if the window is too short for the longest waves, or for waves of wave number k to decay."""
     if k != longest:
         yield f"The window is too short for waves longer than that of k = {k:.4g}."
     gas, temperature, phi = log.discs, ensemble(log).temperature, log.discs.packing_fraction

@@ -1,4 +1,4 @@
-"""Displacements of discs: self part of the van Hove function, and non-Gaussian parameter."""
+"""Displacements of discs: the self part of the van Hove function, and the non-Gaussian parameter."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from idealgas.analysis.scattering.sums import APART, Sums, powers_of_two
 
 @dataclass(frozen=True)
 class Curve:
-    """A function of time or frequency, and its standard error, in the same unit."""
+    """Values of a function of time, frequency or distance, and their standard errors in the same unit."""
 
     value: np.ndarray
     error: np.ndarray
@@ -18,14 +18,14 @@ class Curve:
 
 @dataclass(frozen=True)
 class VanHove:
-    """Self part of the van Hove function at one time: density of the displacements of discs.
+    """Self part of the van Hove function at one time: the probability density of the displacements of discs.
 
     Attributes:
         time: time.
         distance: (BINS,), distances, length.
-        density: (BINS,), G_s(r, t), averaged over a bin, 1/length².
-        gaussian: (BINS,), normal distribution with the same ⟨Δr²⟩, 1/length².
-        square: ⟨Δr²⟩, length².
+        density: (BINS,), G_s(r, t), averaged over each bin, 1/length².
+        gaussian: (BINS,), normal distribution with the same mean square displacement, 1/length².
+        square: mean square displacement ⟨Δr²⟩, length².
     """
 
     time: float
@@ -36,12 +36,12 @@ class VanHove:
 
 
 def curve_of(parts: np.ndarray) -> Curve:
-    """Return the mean of the segments (S, L) and its standard error."""
+    """Return the mean over the segments (S, L) and its standard error."""
     return Curve(parts.mean(axis=0), parts.std(axis=0, ddof=1) / math.sqrt(len(parts)))
 
 
 def van_hove(time: float, edges: np.ndarray, sums: list[Sums]) -> VanHove:
-    """Return the self part of the van Hove function from the distances in all segments.
+    """Return the self part of the van Hove function after a time, from the displacements in all segments.
 
     edges: (BINS + 1,), edges of the bins of distances, length.
     """
@@ -53,9 +53,9 @@ def van_hove(time: float, edges: np.ndarray, sums: list[Sums]) -> VanHove:
 
 
 def non_gaussian(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, Curve]:
-    """Return times and the non-Gaussian parameter from times (L,) and moments (S, P, 2) of each wave number.
+    """Return times and the non-Gaussian parameter, given times (L,) and moments (S, P, 2) for each wave number.
 
-    Long times are taken from the long waves, and short ones from the short waves.
+    The measurements of short waves cover short times, and those of long waves cover long times.
     """
     points: list[tuple[float, float, float]] = []
     for time, moments in reversed(parts):

@@ -1,4 +1,4 @@
-"""Distinct part of the van Hove function: the other discs around the position of a disc at an earlier time."""
+"""Distinct part of the van Hove function: the other discs around the earlier position of a disc."""
 
 import math
 from collections.abc import Sequence
@@ -15,17 +15,17 @@ from idealgas.tallies.pairs import BINS_A_DIAMETER, REACH, inside
 from idealgas.theory.conserved import centre_of_mass_velocity
 
 STARTS = 4
-"""Number of instants in a segment from which pairs are counted."""
+"""Number of initial instants in each segment."""
 
 
 @dataclass(frozen=True)
 class Distinct:
-    """Distinct part of the van Hove function at one time: density of other discs around the former position of a disc.
+    """Distinct part of the van Hove function at one time: density of other discs around the earlier position of a disc.
 
     Attributes:
         time: time.
         distance: (B,), middles of bins, length.
-        density: (B,), G_d(r, t), averaged over a bin, 1/length²: ρ g(r) at t = 0, and (N - 1)/A after long times.
+        density: (B,), G_d(r, t), averaged over each bin, 1/length²; n g(r) at t = 0, and (N - 1)/A at long times.
     """
 
     time: float
@@ -34,10 +34,10 @@ class Distinct:
 
 
 def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Distinct, ...]:
-    """Return the distinct part after each of several times, at distances up to half the box; none for a single disc.
+    """Return the distinct part after each of several times, at distances up to half the box; empty for a single disc.
 
-    Positions are relative to the centre of mass. The log is read once, and an instant is kept until its last pair is
-    counted. Errors are from SEGMENTS parts of the window.
+    Positions are relative to the centre of mass. The log is read once, and the positions at an instant are kept in
+    memory until they are no longer needed. Standard errors follow from the scatter of SEGMENTS parts of the window.
     """
     number, diameter = len(log.discs), 2 * float(log.discs.radius[0])
     if number < 2:
@@ -63,7 +63,7 @@ def distinct_parts(log: Log, window: Window, times: Sequence[float]) -> tuple[Di
 
 
 def _pairs(before: np.ndarray, after: np.ndarray, box: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Count pairs of two discs by the distance from the earlier position of one to the later position of the other."""
+    """Count pairs of discs by the distance from the earlier position of one to the later position of the other."""
     counts = cKDTree(before, boxsize=box).count_neighbors(cKDTree(after, boxsize=box), edges[1:], cumulative=False)
     moved = after - before
     moved -= box * np.rint(moved / box)

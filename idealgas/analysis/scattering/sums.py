@@ -1,4 +1,4 @@
-"""Sums over positions and velocities in segments of a window: correlations of waves, and displacements."""
+"""Correlations of waves, and displacements of discs, in the segments of a window."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,29 +11,34 @@ from idealgas.tallies.equilibration import Window
 from idealgas.tallies.stream import trajectories
 
 WAVES = 4
-"""Number of wave numbers, evenly spaced on a logarithmic scale from that of the box to that of a diameter."""
+"""Number of wave numbers, evenly spaced on a logarithmic scale from 2π/L to one wave per diameter."""
 
 STARTS = 64
-"""Number of instants in a segment at which lags start, unless segments without gaps contain hardly more instants."""
+"""Number of initial instants in a segment; it is larger if the gaps between segments would otherwise be short."""
 
 SEGMENTS = 32
-"""Number of parts of the window, whose scatter gives the error bars."""
+"""Number of segments of the window; their scatter gives the standard errors."""
 
 MOST_PLACES = 2**20
-"""Number of positions that are kept at all instants; in a larger gas only a part of the discs gives the self part."""
+"""Largest number of positions in memory, over all instants; in a large gas only some discs give the self part."""
 
 APART = 16
-"""Lag at which distances are counted, in steps."""
+"""Lag of the displacements whose distribution is measured, in steps."""
 
 BINS, FARTHEST = 30, 3.0
-"""Number of bins of distances, and their upper end in root-mean-square displacements by theory."""
+"""Number of bins of distances, and their upper end in theoretical root-mean-square displacements."""
 
 
 class Sums(NamedTuple):
-    """Correlations (L,) in one segment, and displacements.
+    """Correlations (L,) and displacements in one segment.
 
-    moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`. distances: (BINS,), fractions of the discs at
-    distances in each bin from their position APART steps earlier.
+    Attributes:
+        density: correlation of Σ exp(-ikx), over N (no unit).
+        self_part: correlation of exp(-ikx) of a disc (no unit).
+        longitudinal: correlation of the current along k, over N, (length/time)².
+        transverse: correlation of the current perpendicular to k, over N, (length/time)².
+        moments: (P, 2), mean Δr² and Δr⁴ after the lags of `powers_of_two`, length² and length⁴.
+        distances: (BINS,), fraction of the discs whose displacement in APART steps lies in each bin.
     """
 
     density: np.ndarray
@@ -45,15 +50,15 @@ class Sums(NamedTuple):
 
 
 class Series(NamedTuple):
-    """A wave at G instants, in units of the time between two instants: amplitudes, and positions of sampled discs.
+    """A wave at G instants: its amplitudes, and the positions of M sampled discs.
 
     Attributes:
-        at: (G,), whole numbers of steps from the start of the window.
-        starts: number of starts of lags in each segment.
+        at: (G,), times of the instants, in steps from the start of the window.
+        starts: number of initial instants in each segment.
         begins: (SEGMENTS,), indices of the first instants of the segments.
         axes: the A axes along which the wave runs.
-        waves: (3, A, G), Σ exp(-ikx) and the currents along and across k.
-        places: (2, G, M), x and y, unwrapped, length.
+        waves: (3, A, G), Σ exp(-ikx), the longitudinal current and the transverse current.
+        places: (2, G, M), x and y, not wrapped into the box, length.
     """
 
     at: np.ndarray
@@ -65,21 +70,21 @@ class Series(NamedTuple):
 
 
 def wave_numbers(log: Log) -> np.ndarray:
-    """Return numbers of waves in the longest side, up to one wave per diameter."""
+    """Return wave numbers in units of 2π/L, where L is the longer side, up to about one wave per diameter."""
     most = max(max(log.box) / (2 * float(log.discs.radius[0])), 1.0)
     return np.unique(np.geomspace(1, int(most), WAVES).round())
 
 
 def powers_of_two(lags: int) -> np.ndarray:
-    """Return the powers of two below a number of lags, after which displacements are measured."""
+    """Return the powers of two below a number of lags; displacements are measured after these lags."""
     return 2 ** np.arange((lags - 1).bit_length())
 
 
 def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
-    """Read a wave of wave number k along the longest sides, each instant once.
+    """Read the amplitudes of a wave of wave number k along the longest sides; each instant is read once.
 
-    In a short window the segments have all their instants as starts. In a long window they have STARTS each, with gaps
-    between the segments.
+    In a short window, lags start at every instant of a segment. In a long window, each segment has STARTS initial
+    instants, and there are gaps between the segments.
     """
     apart = int((window.duration / step - lags + 2) / SEGMENTS)
     starts = apart if apart <= STARTS + lags else STARTS
@@ -102,7 +107,7 @@ def read(log: Log, window: Window, k: float, step: float, lags: int) -> Series:
 
 
 def segments(log: Log, k: float, lags: int, series: Series, edges: np.ndarray) -> Iterator[Sums]:
-    """Yield the sums of each segment of a wave; edges: edges of the bins of distances, length."""
+    """Yield the correlations and displacements in each segment; edges: edges of the bins of distances, length."""
     starts, number = series.starts, len(series.axes)
     phases = [np.exp(-1j * k * series.places[axis]) for axis in series.axes]
     for first in series.begins:
@@ -120,13 +125,13 @@ def segments(log: Log, k: float, lags: int, series: Series, edges: np.ndarray) -
 
 
 def squares_after(places: np.ndarray, lag: int, starts: int) -> np.ndarray:
-    """Return squared displacements (starts, M) after a number of instants, from positions (2, n, M)."""
+    """Return the squared displacements (starts, M) after `lag` instants, given positions (2, n, M)."""
     x, y = places[:, lag : lag + starts] - places[:, :starts]
     return np.asarray(x * x + y * y)
 
 
 def correlation(series: np.ndarray, lags: int) -> np.ndarray:
-    """Return the mean of Re x(t + lag) x*(t) over the first n - lags + 1 times, summed over all series, (lags,).
+    """Return Re x(t + lag) x*(t), averaged over the first n - lags + 1 times and summed over the M series, (lags,).
 
     series: (n, M), complex.
     """

@@ -1,9 +1,9 @@
 """Measure diffusion, viscosities and thermal conductivity, collision rates, free paths and the pair distribution.
 
-The results are compared with Enskog's theory and the rates of kinetic theory. Viscosities and thermal conductivity
-require a box with periodic sides. `idealgas histogram --quantity free-path` measures the distribution of free paths.
-Several logs, or DIR, the folder of a sweep with the analysis "transport", give the coefficients over Enskog's values
-against the packing fraction.
+The results are compared with Enskog theory and with the collision rates of kinetic theory. Viscosities and thermal
+conductivity require a box whose sides are all periodic. Use `idealgas histogram --quantity free-path` for the
+distribution of free paths. Several logs, or DIR, the folder of a sweep with the analysis "transport", give the ratios
+of the coefficients to Enskog's values against the packing fraction.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from idealgas.analysis.transport.states import TransportStates, transport_states
 
 
 class TransportAnalysis(Analysis):
-    """Declaration of the analysis `transport`; users see the docstring of that function."""
+    """Declaration of the analysis `transport`; users see the docstring of the function `transport`."""
 
     position = 70
     headline = "diffusion.*.coefficient"
@@ -42,5 +42,5 @@ class TransportAnalysis(Analysis):
 
     @staticmethod
     def combine(results: Sequence[Transport]) -> Transport | TransportStates:
-        """Return the coefficients of several runs over Enskog's; one run remains as it is."""
+        """Return the coefficients of several runs in units of Enskog's; a single result is returned unchanged."""
         return results[0] if len(results) == 1 else transport_states(results)

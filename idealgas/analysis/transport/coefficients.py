@@ -1,4 +1,4 @@
-"""Viscosities, thermal conductivity and mutual diffusion of a periodic gas, from its currents."""
+"""Viscosities, thermal conductivity and mutual diffusion coefficient of a periodic gas, from its currents."""
 
 import math
 from collections.abc import Callable
@@ -22,13 +22,13 @@ from idealgas.theory.ensemble import Ensemble
 from idealgas.theory.values import Theory
 
 STEPS = 100  # number of steps up to the longest lag
-MOST_BLOCKS = 2**18  # largest number of blocks of the currents; a longer run has longer steps
-PLATEAU_FROM = 0.5  # share of the longest lag from which on a coefficient is averaged
+MOST_BLOCKS = 2**18  # largest number of blocks of the currents; in longer runs the steps are longer
+PLATEAU_FROM = 0.5  # a coefficient is averaged over lags from this fraction of the longest lag
 
 DIRECTIONS = 3.0
-"""Relative difference of η by its two routes for N discs in a square periodic box, times N.
+"""Relative difference between η from its two routes for N discs in a square periodic box, times N.
 
-For 50 discs at φ = 0.2, η by xy is lower by (5.6 ± 1.1) %.
+For 50 discs at φ = 0.2, η from the xy current is lower by (5.6 ± 1.1) %.
 """
 
 SYMBOLS = {"viscosity": "η", "thermal_conductivity": "λ", "bulk_viscosity": "ζ", "mutual_diffusion": "D₁₂"}
@@ -37,16 +37,17 @@ SYMBOLS = {"viscosity": "η", "thermal_conductivity": "λ", "bulk_viscosity": "�
 
 @dataclass(frozen=True)
 class Coefficient:
-    """Transport coefficient of the whole gas, by Einstein's and Helfand's route.
+    """Transport coefficient of the whole gas, from the Einstein-Helfand relation.
 
     Attributes:
         unit: unit of the coefficient.
-        times: (L,), time.
-        running: (L,), half the slope of the mean square integral of the current at these times, in this unit.
-        running_error: (L,), its standard error.
-        value: the coefficient, the mean of the running one over the plateau; its theory is Enskog's.
-        routes: coefficient from the current of each direction alone.
-        difference: difference of the first two routes, 0 in an isotropic gas; None for a single route.
+        times: (L,), times t.
+        running: (L,), half the slope of the mean square of the integrated current at these times, in `unit`.
+        running_error: (L,), standard error of `running`.
+        value: the coefficient, which is the mean of `running` over the plateau; compared with Enskog's value.
+        routes: the coefficient from the current in each direction alone.
+        difference: difference between the first two routes, which is 0 in an isotropic gas; None if there is a single
+            route.
     """
 
     unit: str
@@ -63,10 +64,10 @@ class Collective:
     """Transport coefficients from the currents of a whole gas.
 
     Attributes:
-        plateau: first and last time over which coefficients are averaged.
-        coefficients: coefficients by name. There is no thermal conductivity for several species, where energy is also
-            carried by discs that diffuse, or from samples without sums of the heat. Mutual diffusion is given for two
-            species with events.
+        plateau: first and last times of the range over which the coefficients are averaged.
+        coefficients: coefficients by name. The thermal conductivity is missing if there are several species, because
+            diffusing discs then also carry energy, and if the samples of a log without events have no sums of the heat
+            current. The mutual diffusion coefficient is given for two species if the log has events.
     """
 
     plateau: tuple[float, float]
@@ -76,12 +77,12 @@ class Collective:
 def flow_in_events(
     log: Log, window: Window, longest: float, progress: Callable[[int, int], None] | None = None
 ) -> tuple[np.ndarray, float]:
-    """Return integrals of the currents over blocks of a window, (B, 2, 7), from events, and the width of a block.
+    """Return the integrals of the currents over blocks of a window, (B, 2, 7), from events, and the width of a block.
 
     Args:
         log: log of the gas.
         window: window of time.
-        longest: lag up to which currents are followed, time.
+        longest: longest lag up to which currents are followed, time.
         progress: called as progress(done, total) while events are read.
     """
     currents = Currents()
@@ -91,10 +92,11 @@ def flow_in_events(
 
 
 def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarray, float]:
-    """Return the same from the sums in the samples of a log, in blocks no shorter than the time between two samples.
+    """Return the same integrals from the sums in the samples of a log, and the width of a block.
 
-    With snapshots the blocks begin and end at them, so that the integrals are exact. Without snapshots the sums are
-    interpolated between samples. The current of heat is nan without its sums, and so is the current of a species.
+    Blocks are no shorter than the time between two samples. If the log has snapshots, blocks begin and end at
+    snapshots, so that the integrals are exact; otherwise the sums are interpolated between samples. The currents of
+    species are nan, and so is the heat current if the samples do not contain its sums.
     """
     observed, still = log.observables, centre_of_mass_velocity(log.scene, log.discs)
     edges = _sample_edges(log, window, longest)
@@ -111,7 +113,7 @@ def flow_in_samples(log: Log, window: Window, longest: float) -> tuple[np.ndarra
 
 
 def _sample_edges(log: Log, window: Window, longest: float) -> np.ndarray:
-    """Return times (B + 1,) between blocks of equal width in a window, at snapshots if there are any."""
+    """Return the boundaries (B + 1,) of blocks of equal width in a window, time, at snapshots if there are any."""
     time = log.observables["kinetic_flow"][0]
     inside = (time >= window.start) & (time <= window.end)
     every = log.scene.log.snapshot_every
@@ -132,15 +134,15 @@ def collective(
     longest: float,
     theory: tuple[Enskog | None, Theory | None],
 ) -> Collective:
-    """Return the coefficients of a gas in a periodic box from integrals of its currents over blocks.
+    """Return the coefficients of a gas in a periodic box, given the integrals of its currents over blocks.
 
     Args:
         flow: (B, 2, 7), integrals of the currents.
         width: width of a block, time.
         log: log of the gas.
         equilibrium: ensemble of the gas.
-        longest: lag up to which currents are followed, time.
-        theory: Enskog's coefficients, and the mutual diffusion coefficient of two species.
+        longest: longest lag up to which currents are followed, time.
+        theory: Enskog's coefficients, and the theoretical mutual diffusion coefficient of two species.
     """
     lags, gas = lags_of(width, longest, PLATEAU_FROM), log.discs
     conducts = len(gas.species_names) == 1 and not np.isnan(flow[0, CARRIED, HEAT_X])
@@ -153,9 +155,9 @@ def collective(
 def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | None) -> Coefficient:
     """Return the Maxwell–Stefan coefficient of two species from integrals (B, 7) of the currents.
 
-    It is N₁N₂/N times half the slope of the mean square displacement of one species relative to the other, along one
-    direction: Zhou & Miller, J. Phys. Chem. 100, 5516 (1996). Fick's coefficient is this one times the thermodynamic
-    factor of the mixture.
+    It is N₁N₂/N times half the slope of the mean square displacement, along one direction, of the mean position of one
+    species relative to that of the other: Zhou & Miller, J. Phys. Chem. 100, 5516 (1996). Fick's coefficient equals
+    this coefficient times the thermodynamic factor of the mixture.
     """
     first, second = np.bincount(gas.species, minlength=2)
     apart = {"x": flow[:, APART_X], "y": flow[:, APART_Y]}
@@ -165,9 +167,9 @@ def _mutual_diffusion(flow: np.ndarray, lags: Lags, gas: Gas, theory: Theory | N
 def _coefficients(
     flow: np.ndarray, lags: Lags, gas: Gas, temperature: float, conducts: bool, enskog: Enskog | None
 ) -> dict[str, Coefficient]:
-    """Return coefficients by name from integrals (B, 2, 7) of the currents.
+    """Return the coefficients by name, given integrals (B, 2, 7) of the currents.
 
-    conducts: whether heat is transported by conduction only.
+    conducts: whether the thermal conductivity can be measured, see `Collective`.
     """
     whole = flow.sum(axis=1).T
     shear = {"xy": whole[XY], "(xx - yy)/2": (whole[XX] - whole[YY]) / 2}
@@ -201,9 +203,9 @@ def _coefficient(
 
 
 def _difference(series: np.ndarray, gas: Gas) -> Estimate:
-    """Return the difference of two routes from the series of both.
+    """Return the difference between two routes, given the series of both.
 
-    In a square box theory predicts that it is 0, except for few discs.
+    In a square box the difference vanishes in the limit of many discs; for N discs DIRECTIONS/N counts as the error.
     """
     error = DIRECTIONS / len(gas) * abs(float(series.mean()))
     theory = Theory(0.0, error, "isotropy") if gas.box[0] == gas.box[1] else None

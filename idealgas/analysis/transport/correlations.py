@@ -1,13 +1,13 @@
-"""Correlations in time of velocities and positions, by Fourier transforms."""
+"""Time correlations of velocities and positions, calculated with Fourier transforms."""
 
 import numpy as np
 from scipy import fft
 
 
 def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return ⟨a(t)·b(t + lag)⟩ (segments, L) of two series, averaged over discs and the times t of each segment.
+    """Return ⟨a(t)·b(t + lag)⟩ (segments, L) of two series, averaged over discs and over times t in each segment.
 
-    first, second: (segments, L, discs, 2), at equal steps.
+    The series `first` and `second` have shape (segments, L, discs, 2) and equal time steps.
     """
     length = first.shape[1]
     padded = fft.next_fast_len(2 * length - 1, real=True)
@@ -20,22 +20,21 @@ def correlation(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def velocity_integral(velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return the integral of ⟨v(t)·v(t + lag)⟩ from 0 to each lag, (segments, L), length²/time.
 
-    It is the sum of ⟨v(t)·[r(t + lag + step) - r(t + lag)]⟩, which is exact for steps of any length.
-
-    velocities, places: (segments, L, discs, 2), at equal steps.
+    The integral is calculated as the sum of ⟨v(t)·[r(t + lag + step) - r(t + lag)]⟩, which is exact for steps of any
+    length. The arrays `velocities` and `places` have shape (segments, L, discs, 2) and equal time steps.
     """
     steps = correlation(velocities[:, :-1], np.diff(places, axis=1))
     return np.concatenate((np.zeros_like(steps[:, :1]), steps.cumsum(axis=1)), axis=1)
 
 
 def mean_square_displacement(places: np.ndarray) -> np.ndarray:
-    """Return the mean square displacement ⟨|r(t + lag) - r(t)|²⟩ (segments, L) over discs and times t, length².
+    """Return the mean square displacement ⟨|r(t + lag) - r(t)|²⟩ over discs and times t, (segments, L), length².
 
-    places: (segments, L, discs, 2), at equal steps. It is computed from Σ r² and the autocorrelation of the positions:
-    Calandrini et al., Collection SFN 12, 201 (2011).
+    It is calculated from Σ r² and the autocorrelation of the positions: Calandrini et al., Collection SFN 12, 201
+    (2011). The array `places` has shape (segments, L, discs, 2) and equal time steps.
     """
     length = places.shape[1]
-    places = places - places[:, :1]  # smaller numbers keep more digits
+    places = places - places[:, :1]  # smaller numbers have smaller rounding errors
     square = (places**2).sum(axis=3).mean(axis=2)
     both = np.concatenate((np.zeros_like(square[:, :1]), square.cumsum(axis=1)), axis=1)
     steps = np.arange(length)

@@ -1,4 +1,4 @@
-"""Diffusion of single discs, from their exact positions and velocities at evenly spaced instants."""
+"""Diffusion of single discs, from their positions and velocities at evenly spaced instants."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -20,38 +20,38 @@ from idealgas.theory.values import Theory
 
 LAGS = 200  # number of steps of the correlation functions
 MOST_SEGMENTS = 64
-MOST_SAMPLES = 2**21  # largest number of discs times instants
-FITTED_FROM = 0.5  # share of the longest lag from which on the displacement is fitted
-LEAST_LAG = 10.0  # mean free times; at shorter lags velocities are still correlated and D is too small
-LEAST_MEMORIES = 4.0  # velocity correlation times; the same for discs that keep their velocity for longer
-FREE_SHARE = 0.05  # largest displacement that walls hardly change, relative to the free length between them
-FALL = 0.1  # largest relative decrease of D from the quarter before the plateau to the plateau
-FEWEST_LAGS = 4  # smallest number of steps from which D is measured
-SURE = 0.9999  # confidence level at which D is taken to decrease
+MOST_SAMPLES = 2**21  # largest product of the numbers of discs and instants
+FITTED_FROM = 0.5  # the displacement is fitted at lags from this fraction of the longest lag
+LEAST_LAG = 10.0  # in mean free times; at shorter lags velocities are still correlated, and D is too small
+LEAST_MEMORIES = 4.0  # in velocity correlation times; for discs whose velocities are correlated for longer
+FREE_SHARE = 0.05  # largest displacement that walls hardly affect, relative to the free length between them
+FALL = 0.1  # largest relative decrease in D from the lags just before the plateau to the plateau
+FEWEST_LAGS = 4  # smallest number of steps with which D can be measured
+SURE = 0.9999  # confidence level at which a decrease in D is accepted
 
 
 @dataclass(frozen=True)
 class Diffusion:
     """Velocity correlation and diffusion of one species at L lags.
 
-    The last three attributes are None if D has no plateau: if walls reflect the discs before they diffuse, or if D
-    decreases with the lag.
+    The last three attributes are None if D has no plateau, either because walls reflect the discs before they diffuse,
+    or because D decreases with the lag.
 
     Attributes:
         species: name of the species.
-        lag: (L,), time.
+        lag: (L,), lags, time.
         correlation: (L,), velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ (no unit).
-        correlation_error: (L,), its standard error.
+        correlation_error: (L,), standard error of `correlation`.
         displacement: (L,), mean square displacement, length².
-        displacement_error: (L,), its standard error.
-        tail: (L,), correlation at late times by theory; None for several species or above freezing.
-        running: (L,), a quarter of the slope of the displacement, length²/time.
-        running_error: (L,), its standard error.
-        plateau: first and last lag over which D is measured.
-        coefficient: diffusion coefficient D, a quarter of the slope of the displacement there, length²/time; its theory
-            is Enskog's.
-        velocity_correlation_time: integral of the correlation up to a lag, averaged over the plateau, time; its theory
-            is mD/T.
+        displacement_error: (L,), standard error of `displacement`.
+        tail: (L,), theoretical velocity correlation at long times; None if Enskog's coefficients are not available.
+        running: (L,), a quarter of the slope of the mean square displacement, length²/time.
+        running_error: (L,), standard error of `running`.
+        plateau: first and last lags of the range in which D is measured.
+        coefficient: diffusion coefficient D, a quarter of the slope of the mean square displacement in this range,
+            length²/time; compared with Enskog's value.
+        velocity_correlation_time: integral of the velocity correlation up to a lag, averaged over the plateau, time;
+            its theoretical value is mD/T.
     """
 
     species: str
@@ -69,13 +69,13 @@ class Diffusion:
 
 
 class LagLimits(NamedTuple):
-    """Times and lengths between which discs of a species diffuse.
+    """Limits on the lags and displacements at which discs of a species diffuse.
 
     Attributes:
         rate: collision rate of a disc, 1/time.
-        needed: smallest lag that D requires.
-        friction_d: D by the friction of these collisions, length²/time.
-        ways: free lengths of a disc between two walls.
+        needed: smallest lag at which D can be measured, time.
+        friction_d: estimate of D from the friction due to these collisions, length²/time.
+        ways: lengths over which a disc can move freely between opposite walls, length.
     """
 
     rate: float
@@ -85,23 +85,24 @@ class LagLimits(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """Largest displacement that walls hardly change, length."""
+        """Largest displacement that walls hardly affect, length."""
         return FREE_SHARE * min(self.ways, default=math.inf)
 
     def within(self, displacement: np.ndarray) -> int:
-        """Return the last lag at which a mean square displacement (L,) is within reach."""
+        """Return the index of the last lag at which a mean square displacement (L,) is at most `reach` squared."""
         return int(np.flatnonzero(displacement <= self.reach**2)[-1])
 
     def are_walls(self, lag: np.ndarray, displacement: np.ndarray) -> bool:
-        """Return whether walls reflect discs before they diffuse."""
+        """Return whether walls reflect the discs before they diffuse."""
         last = self.within(displacement)
         return last < len(lag) - 1 and (lag[last] < self.needed or last < FEWEST_LAGS)
 
     def lost(self, displacement: float) -> float:
-        """Return the relative decrease of D by walls at a mean square displacement 4Dt.
+        """Return the relative decrease in D due to walls at a mean square displacement 4Dt.
 
-        For diffusion between walls at a distance a, half the slope of ⟨Δx²⟩ is (8D/π²) Σ exp(-n²π²Dt/a²)/n² over odd n,
-        which is initially D [1 - (4/√π) √(Dt)/a]; walls along one axis contribute half of the decrease.
+        For diffusion between two walls a distance a apart, half the slope of ⟨Δx²⟩ is (8D/π²) Σ exp(-n²π²Dt/a²)/n²,
+        summed over odd n. At short times this is D [1 - (4/√π) √(Dt)/a]. D is the mean over both axes, so the walls
+        across one axis contribute half of this decrease.
         """
         return sum(math.sqrt(displacement / math.pi) / way for way in self.ways)
 
@@ -109,13 +110,13 @@ class LagLimits(NamedTuple):
 def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[LagLimits]:
     """Return the limits of the diffusion of each species, from measured collision rates.
 
-    A disc of species i loses its velocity at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij. If there are too many species to know
-    the rates of all pairs, m_j is the mean mass of all discs.
+    The velocity of a disc of species i decays at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij. If there are so many species that
+    the rates are not known for every pair, m_j is the mean mass of all discs.
 
     Args:
         log: log of the gas.
         discs: species of the gas.
-        collisions: (B, S, G), rates of the collisions of all discs of a species with those of a group, 1/time.
+        collisions: (B, S, G), total rate of the collisions of all discs of a species with discs of a group, 1/time.
         equilibrium: ensemble of the gas.
     """
     diffusions = []
@@ -139,15 +140,15 @@ def diffusion(
     limits: Sequence[LagLimits],
     expected: tuple[Enskog | None, Sequence[Theory | None], Ensemble],
 ) -> tuple[Diffusion, ...]:
-    """Return the diffusion of each species up to the longest lag or, between walls, up to the lag that they allow.
+    """Return the diffusion of each species, up to the longest lag or, between walls, up to the lag that they allow.
 
     Args:
         log: log of the gas.
         discs: species of the gas.
         window: window of time.
         longest: longest lag, time.
-        limits: limits of each species.
-        expected: Enskog's theory, D of each species, and the ensemble.
+        limits: limits for each species.
+        expected: Enskog's coefficients, the theoretical D of each species, and the ensemble.
     """
     longest = min(longest, max(max(limit.needed, limit.reach**2 / (4 * limit.friction_d)) for limit in limits))
     segments = min(int(window.duration / longest), MOST_SEGMENTS)
@@ -183,9 +184,9 @@ def _of_species(
     lag: np.ndarray,
     expected: tuple[Enskog | None, Theory | None, float],
 ) -> Diffusion:
-    """Return the diffusion of one species from positions and velocities (segments, L, discs, 2).
+    """Return the diffusion of one species, given positions and velocities (segments, L, discs, 2).
 
-    expected: theories, and m/T.
+    expected: Enskog's coefficients, the theoretical D of the species, and 1/⟨vx²⟩.
     """
     remembered = correlation(velocities, velocities)
     square = remembered[:, 0].mean()
@@ -227,13 +228,13 @@ def _of_species(
 
 
 def _slope(lag: np.ndarray, displacement: np.ndarray, first: int, last: int) -> np.ndarray:
-    """Return a quarter of the slope of mean square displacements (segments, L) between two lags, by segment."""
+    """Return a quarter of the slope of mean square displacements (segments, L) between two lags, for each segment."""
     part = slice(first, last + 1)
     return np.polyfit(lag[part], displacement[:, part].T, 1)[0] / 4
 
 
 def _falls(early: np.ndarray, late: np.ndarray) -> bool:
-    """Return whether D clearly decreases between an early and a late part of the lags, by segment."""
+    """Return whether D clearly decreases from early to late lags; the arguments are D in each segment."""
     fall = mean(early - late)
     return fall.value > FALL * early.mean() and fall.interval(SURE)[0] > 0
 
@@ -243,7 +244,7 @@ def _tail(lag: np.ndarray, expected: Enskog) -> np.ndarray:
 
 
 def diffusion_caveats(entry: Diffusion, limits: LagLimits) -> Iterator[str]:
-    """Yield a caveat if a species has no diffusion coefficient, or if its discs are followed for too short a time."""
+    """Yield a caveat if a species has no diffusion coefficient, or if its discs are not followed for long enough."""
     longest, name = float(entry.lag[-1]), entry.species
     if limits.are_walls(entry.lag, entry.displacement):
         far = math.sqrt(entry.displacement[entry.lag <= limits.needed][-1])

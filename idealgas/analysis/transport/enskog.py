@@ -1,4 +1,4 @@
-"""Enskog's transport coefficients of the gas of a log, with their errors."""
+"""Transport coefficients from Enskog theory for the gas of a log, with their errors."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from idealgas.theory.values import Theory, enskog_error
 
 @dataclass(frozen=True)
 class Enskog:
-    """Transport coefficients of equal discs by Enskog's theory.
+    """Transport coefficients of equal discs from Enskog theory.
 
     Attributes:
         density: number density n, 1/length².
@@ -35,19 +35,20 @@ class Enskog:
 
 
 def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> list[Theory | None]:
-    """Return D of each species of a mixture, length²/time, in the first approximation of Enskog's theory.
+    """Return D of each species of a mixture, length²/time, in the first approximation of Enskog theory.
 
-    If the discs of a species differ, D is averaged over them. Discs of species i lose their velocity at the rate γ_i =
-    Σ_j 2 (μ_ij/m_i) Γ_ij, with the reduced masses μ_ij and collision rates Γ_ij: this is the friction of a Brownian
-    disc among lighter ones, and Γ for equal discs. D_i = T/(m_i γ_i).
+    If the discs of a species differ, D is averaged over them. The velocity of discs of species i decays at the rate
+    γ_i = Σ_j 2 (μ_ij/m_i) Γ_ij, where μ_ij are reduced masses and Γ_ij collision rates. This is the friction of a
+    Brownian disc among lighter discs; for equal discs it is the collision rate Γ. D_i = T/(m_i γ_i).
 
-    Along an axis whose momentum is conserved, with the mass M of all discs, m_i⟨v²⟩ is T(1 - m/M). The other discs
-    recoil with -m v/(M - m), so that the relative velocity decays at γ/(1 - m/M). This is exact initially, as the
-    covariance of a velocity with a relative velocity is T/m as without the constraint. Each of the two effects
-    multiplies D by 1 - m/M.
+    Along an axis along which momentum is conserved, two effects each multiply D by 1 - m/M, where M is the mass of all
+    discs. First, m_i⟨vx²⟩ is T(1 - m/M). Second, the other discs recoil with velocity -m v/(M - m), so that the
+    relative velocity decays at the rate γ/(1 - m/M). This is exact initially, because the covariance of a velocity with
+    a relative velocity is T/m, as without the constraint.
 
-    The error is the sum of that of equal discs, that of the rates, that of the first approximation, the momentum that
-    discs of the same species take up, and the recoil if walls stop it. The theory is None if the rates are unknown.
+    The error is the sum of the errors for equal discs, of the rates and of the first approximation, and of two
+    corrections: for the momentum that discs of the same species take up, and for the recoil if walls stop it. An entry
+    is None if the rates are unknown.
     """
     discs, (rate, off) = rates.discs, rates.of_kinds
     values = np.empty((2, len(discs.mass)))  # value and error
@@ -71,22 +72,24 @@ def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> lis
 
 
 def first_order_error(mass: float, others: np.ndarray) -> np.ndarray:
-    """Return the relative excess of D over the first approximation, for discs of a mass among those of other masses.
+    """Return the relative excess of D over the first approximation, for discs of one mass among discs of other masses.
 
-    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times the first approximation, as discs keep their speed. For a Brownian
-    disc the approximation is exact, and for equal discs in the dilute limit the measured excess is 2.3 ± 0.2 %, which
-    agrees with the cube of the mass fraction.
+    Among fixed discs D is ⟨v⟩⟨v³⟩/⟨v²⟩² = 3π/8 times the first approximation, because discs keep their speed. For a
+    Brownian disc the approximation is exact. In between, the excess is assumed to be proportional to the cube of the
+    mass fraction of the partner; this agrees with the excess of 2.3 ± 0.2 % measured for equal discs in the dilute
+    limit.
     """
     return (3 * math.pi / 8 - 1) * (others / (mass + others)) ** 3
 
 
 def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates: ExpectedRates) -> Theory | None:
-    """Return the Maxwell–Stefan diffusion coefficient of two species, length²/time, in Enskog's theory.
+    """Return the Maxwell–Stefan diffusion coefficient of two species, length²/time, from Enskog theory.
 
-    In the first approximation the relative velocity of the species decays by collisions of unlike discs only: D₁₂ = x₂
-    T/(2 μ Γ₁₂), with the fraction x₂, the reduced mass μ, and the rate Γ₁₂ at which a disc of the first species meets
-    discs of the second. If the species differ only in name, it is the coefficient of self-diffusion. The result is None
-    unless there are two species, each of equal discs, whose rates are known.
+    In the first approximation the relative velocity of the species decays only through collisions of unlike discs:
+    D₁₂ = x₂ T/(2 μ Γ₁₂), where x₂ is the fraction of the discs that belong to the second species, μ the reduced mass,
+    and Γ₁₂ the rate at which a disc of the first species meets discs of the second. If the species differ only in name,
+    D₁₂ is the self-diffusion coefficient. The result is None unless there are two species, each of equal discs, whose
+    rates are known.
     """
     if len(discs.name) != 2 or log.discs.unlike or not rates.rate[0, 1] > 0:
         return None
@@ -97,11 +100,11 @@ def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates:
 
 
 def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
-    """Return Enskog's coefficients of equal discs; None for other discs, above φ = 0.62, and for one or two discs.
+    """Return Enskog's coefficients for equal discs; None for unequal discs, above φ = 0.62, and for one or two discs.
 
     The coefficients are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in
-    a dilute gas the mean square of Σ m v_x v_y by a fraction 2/N, that of Σ m v² v by 6/N. The errors include such a
-    term.
+    a dilute gas the mean square of Σ m v_x v_y is lower by a fraction 2/N, and that of Σ m v² v by 6/N. The errors
+    include such a term.
     """
     gas = log.discs
     if len(discs.name) > 1 or gas.unlike or gas.packing_fraction > hard_discs.HIGHEST or len(gas) <= 2:

@@ -1,4 +1,4 @@
-"""Panels of the figures of the transport in a gas."""
+"""Panels of the figures of transport in a gas."""
 
 import math
 from collections.abc import Sequence
@@ -13,17 +13,17 @@ from idealgas.presentation.style import BAND, COLOURS, GREY, Panel, curve_style
 from idealgas.theory import hard_discs
 
 FAINTEST = 1e-4
-"""Smallest velocity correlation in the figure."""
+"""Smallest velocity correlation that is shown."""
 
 THIN = 0.12
-"""Largest packing fraction at which the pair distribution has a theory beyond contact."""
+"""Largest packing fraction at which the first-order theory of g(r) beyond contact is drawn."""
 
 
 def draw_diffusion(correlation: Panel, displacement: Panel, diffusion: Sequence[Diffusion], free_time: float) -> None:
-    """Draw velocity correlation and mean square displacement of each species, with the laws of a memory exp(-t/τ).
+    """Draw the velocity correlation and the mean square displacement of each species, with theory.
 
-    The displacement is then 4D [t - τ(1 - exp(-t/τ))]: Fürth, Z. Phys. 2, 244 (1920). The correlation has a tail from
-    five mean free times on.
+    For the velocity correlation exp(-t/τ) the mean square displacement is 4D [t - τ(1 - exp(-t/τ))]: Fürth, Z. Phys. 2,
+    244 (1920). The long-time tail of the correlation is drawn after five mean free times.
     """
     for k, entry in enumerate(diffusion):
         _curve(correlation, entry.lag, entry.correlation, entry.correlation_error, k, entry.species)
@@ -48,7 +48,7 @@ def draw_diffusion(correlation: Panel, displacement: Panel, diffusion: Sequence[
 
 
 def _curve(ax: Axes, lag: np.ndarray, value: np.ndarray, error: np.ndarray, k: int, label: str) -> None:
-    """Draw curve k of several with a band of its standard error."""
+    """Draw a curve in style number k, with a band of its standard error."""
     colour, line, _ = curve_style(k)
     ax.plot(lag, value, line, color=colour, label=label)
     draw_band(ax, lag, value, error, colour)
@@ -62,7 +62,7 @@ def draw_band(ax: Axes, x: Sequence[float] | np.ndarray, value: np.ndarray, erro
 def draw_pairs(
     ax: Axes, pairs: Sequence[PairDistribution], contacts: Sequence[Contact], packing_fraction: float
 ) -> None:
-    """Draw the pair distribution of each pair of species, with its value at contact."""
+    """Draw the pair distribution of each pair of species, with the contact value from collision rates."""
     for k, pair in enumerate(pairs):
         colour, _, marker = curve_style(k)
         middle = (pair.edges[1:] + pair.edges[:-1]) / 2
@@ -84,7 +84,7 @@ def draw_pairs(
 
 
 def draw_coefficients(ax: Panel, diffusion: Sequence[Diffusion], collective: Collective | None) -> None:
-    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, in units of Enskog's values or else of their own."""
+    """Draw D(t), η(t), λ(t) and ζ(t) with the plateau, in units of Enskog's values or else of the results."""
     whole = collective.coefficients if collective else {}
     curves = [
         (f"D, {entry.species}", entry.lag, entry.running, entry.running_error, entry.coefficient) for entry in diffusion

@@ -1,8 +1,8 @@
-"""Transport coefficients from the growth of integrated currents: Einstein's and Helfand's route.
+"""Transport coefficients from the growth of integrated currents (Einstein and Helfand).
 
-The integral G of a fluctuating current over a time t spreads like a random walk, ⟨G²⟩ = 2 K t, once the current has
-lost its memory. The coefficient is half the slope of ⟨G²⟩. At earlier times it is a function of t, equal to the
-Green–Kubo integral of the autocorrelation of the current up to t.
+At times longer than the correlation time of a fluctuating current, the integral G of the current over a time t spreads
+like a random walk, ⟨G²⟩ = 2 K t, and the coefficient K is half the slope of ⟨G²⟩. At shorter times half the slope is a
+function of t, which equals the Green–Kubo integral of the autocorrelation of the current up to t.
 """
 
 import math
@@ -13,16 +13,16 @@ import numpy as np
 from idealgas.statistics.autoregression import unit_of
 
 MOST_PARTS = 64
-"""Largest number of parts of a run whose scatter gives the error at every lag."""
+"""Largest number of parts of a run; their scatter gives the standard error at every lag."""
 
 
 class Lags(NamedTuple):
-    """Lags of a growth: steps of equal width, and the plateau from a first to the last step.
+    """Lags in steps of equal width; the last of them form the plateau.
 
     Attributes:
-        width: width of a step, which is that of a block, time.
-        first: number of steps up to the beginning of the plateau, 0 < first < last.
-        last: number of all steps.
+        width: width of a step, equal to the width of a block, time.
+        first: number of steps before the plateau, 0 < first < last.
+        last: total number of steps.
     """
 
     width: float
@@ -31,7 +31,7 @@ class Lags(NamedTuple):
 
     @property
     def plateau(self) -> tuple[float, float]:
-        """First and last time of the plateau."""
+        """First and last lags of the plateau, time."""
         return self.first * self.width, self.last * self.width
 
     @property
@@ -41,12 +41,12 @@ class Lags(NamedTuple):
 
 
 class Growth(NamedTuple):
-    """Half the slope of ⟨G²⟩ of one current, or of several equivalent ones.
+    """Half the slope of ⟨G²⟩ for one current or for several equivalent currents (routes).
 
     Attributes:
-        series: (routes, n), its mean over the plateau from each of n starting times, by route.
-        running: (last,), its value at the `Lags.times`.
-        error: (last,), standard error of this value.
+        series: (routes, n), half the slope over the plateau for each of n starting times, by route.
+        running: (last,), half the slope at `Lags.times`, averaged over starting times and routes.
+        error: (last,), standard error of `running`.
     """
 
     series: np.ndarray
@@ -55,16 +55,22 @@ class Growth(NamedTuple):
 
 
 def lags_of(width: float, longest: float, share: float) -> Lags:
-    """Return lags up to about the longest one, time, with a plateau from a fraction of it on, for blocks of a width."""
+    """Return lags in steps of a given width.
+
+    Args:
+        width: width of a step, time.
+        longest: approximate longest lag, time.
+        share: lag at which the plateau begins, as a fraction of the longest lag.
+    """
     last = max(round(longest / width), 2)
     return Lags(width, min(max(round(share * last), 1), last - 1), last)
 
 
 def growth(flow: np.ndarray, lags: Lags) -> Growth:
-    """Return the growth of currents from their integrals (routes, B) over successive blocks.
+    """Return the growth of currents, given their integrals (routes, B) over successive blocks.
 
-    The mean current of the run is subtracted. ⟨G²⟩ thereby loses a fraction t/τ in a run of length τ, which is
-    corrected.
+    The mean current of the run is subtracted. This reduces ⟨G²⟩ by a fraction t/τ in a run of length τ, for which the
+    result is corrected.
     """
     routes, blocks = flow.shape
     total = np.zeros((routes, blocks + 1))

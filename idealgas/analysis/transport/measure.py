@@ -1,7 +1,7 @@
 """Transport: collision rates, free paths, diffusion, viscosities, thermal conductivity and pair distribution.
 
-Rates, free paths and the currents of momentum and energy count every event of the window. Velocity correlation and
-displacement use the exact positions and velocities of discs at evenly spaced instants.
+Rates, free paths and the currents of momentum and energy include every event in the window. Velocity correlations and
+displacements are calculated from the positions and velocities of discs at evenly spaced instants.
 """
 
 import math
@@ -35,9 +35,9 @@ from idealgas.tallies.samples import SampledImpacts, sampled
 from idealgas.theory import hard_discs
 from idealgas.theory.ensemble import Composition, Ensemble, composition
 
-FEWEST_SEGMENTS = 8  # smallest number of segments of the window, each as long as the longest lag
-LEAST_WINDOW = 16.0  # longest lags; with 8, coefficients of the whole gas are too small by up to a quarter
-SURE_WINDOW = 200.0  # longest lags from which on errors are right; with 75 the rms deviation is up to 1.25 errors
+FEWEST_SEGMENTS = 8  # smallest number of segments in the window, each as long as the longest lag
+LEAST_WINDOW = 16.0  # in longest lags; with 8, coefficients of the whole gas are too small by up to a quarter
+SURE_WINDOW = 200.0  # in longest lags, for correct errors; with 75 the rms deviation is up to 1.25 errors
 
 
 def transport(
@@ -49,16 +49,23 @@ def transport(
 ) -> Transport:
     """Measure how discs, momentum and heat spread in a gas between two times of its log, compared with Enskog's theory.
 
-    The result has collision rates and free paths of each species, the contact value χ of each pair of species, mean
-    square displacements with diffusion coefficients, velocity autocorrelations, and pair distributions. In a periodic
-    box it also has shear and bulk viscosity, thermal conductivity, the mutual diffusion of two species and the pressure
-    tensor. Among fixed discs in a periodic box only diffusion is measured. Without events, the sums of `log.pressure =
-    true` and `log.heat_flow = true` give the collision rates and the coefficients that follow from the currents of a
-    periodic gas.
+    The result contains the collision rates and free paths of each species, the contact value χ of each pair of species,
+    mean square displacements with diffusion coefficients, velocity autocorrelations, pair distributions and the
+    pressure tensor. In a periodic box it also contains the shear and bulk viscosities, the thermal conductivity and the
+    mutual diffusion coefficient of two species. Among fixed discs in a periodic box only diffusion is measured. Without
+    events, the sums of `log.pressure = true` and `log.heat_flow = true` give the collision rates and the coefficients
+    that follow from the currents of a periodic gas.
+
+    Args:
+        log: the log.
+        start: start of the window, time; None to detect it.
+        end: end of the window, time; None for the end of the log.
+        progress: called as progress(done, total) while the log is read.
+        lag: longest lag up to which discs and currents are followed, in mean free times.
 
     Raises:
-        UserError: if no disc moves, if there are no events or too few samples in the window, or for a gas with effects
-            other than periodic sides and fixed discs.
+        UserError: if no disc moves, if there are no events or too few samples in the window, or if the gas is subject
+            to effects other than periodic sides and fixed discs.
     """
     equilibrium, needs = ensemble(log), ("uniform", "conserves_motion")
     if not equilibrium.temperature > 0:
@@ -123,7 +130,7 @@ def _among_fixed_discs(
     progress: Callable[[int, int], None] | None,
     lag: float,
 ) -> Transport:
-    """Return the diffusion among fixed discs, where a mean free time is that between hits of any disc, fixed or not."""
+    """Return the diffusion among fixed discs; a mean free time is the mean time between hits of any discs."""
     impacts = Impacts(len(log.walls), log.periodic)
     window = measure(log, [impacts], start, end, progress, ("conserves_motion",))
     gas, discs = log.discs, composition(log.discs)
@@ -152,7 +159,7 @@ def _among_fixed_discs(
 
 
 def _short_currents(whole: Collective | None, free_times: float, lags: float) -> Iterator[str]:
-    """Yield a caveat if currents are followed for too short a time, or in a window of too few such times."""
+    """Yield a caveat if currents are not followed for long enough, or if the window is too short for the lags."""
     if whole and free_times < LEAST_LAG:
         yield (
             f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
@@ -171,10 +178,10 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
 
 
 def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ...]) -> tuple[Contact, ...]:
-    """Return contact values χ_ij: measured collision rates Γ_ij over those of discs at random positions."""
+    """Return contact values χ_ij, the ratios of measured collision rates Γ_ij to those of discs at random positions."""
     discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
-    partners = discs.number - np.eye(len(discs.number))  # a disc does not meet itself
+    partners = discs.number - np.eye(len(discs.number))  # a disc does not collide with itself
     random = discs.with_partners(2 * (discs.radius[:, None] + discs.radius) * partners / area * speed)
     groups = random.shape[1]
     return tuple(
@@ -185,7 +192,7 @@ def _contacts(area: float, equilibrium: Ensemble, rates: tuple[CollisionRate, ..
 
 
 def _free_time(impacts: Impacts | SampledImpacts, discs: Composition, window: Window) -> float:
-    """Return the longest mean free time of a species, time; infinite if none collides."""
+    """Return the longest of the mean free times of all species, time; infinite if no discs collide."""
     per_disc = window.of(impacts.collisions).sum(axis=2).mean(axis=0) / discs.number
     colliding = per_disc[per_disc > 0]
     return 1 / float(colliding.min()) if len(colliding) else math.inf

@@ -16,7 +16,7 @@ FRAMES = 64  # number of instants
 
 @dataclass(frozen=True)
 class Contact:
-    """Contact value χ of the pair distribution of two species (no unit), from their collision rate."""
+    """Contact value χ of the pair distribution of two species (no unit), from the collision rate of the two."""
 
     species: str
     other: str
@@ -30,10 +30,10 @@ class PairDistribution:
     Attributes:
         species: name of the first species.
         other: name of the second species.
-        contact: sum of their mean radii, length.
-        edges: (bins + 1,), edges of the bins, from the smallest distance at contact on.
+        contact: sum of the mean radii of the two species, length.
+        edges: (bins + 1,), edges of the bins of r, starting at the smallest possible distance, length.
         value: (bins,), g(r).
-        error: (bins,), its standard error.
+        error: (bins,), standard error of g(r).
     """
 
     species: str
@@ -47,9 +47,9 @@ class PairDistribution:
 def pair_distributions(log: Log, discs: Composition, start: float, end: float) -> tuple[PairDistribution, ...]:
     """Return the pair distribution of every pair of species between two times.
 
-    A species of one disc has no pair distribution with itself. More than MOST_PAIRED species are treated together, as
-    "all" discs. In a box with walls the numbers of pairs are divided by those of discs at random positions in the same
-    box.
+    A species with a single disc has no pair distribution with itself. If there are more than MOST_PAIRED species, all
+    discs are treated together under the name "all". In a box with walls, the numbers of pairs are divided by those of
+    discs at random positions in the same box.
     """
     if len(discs.partners) < len(discs.name):
         whole = len(log.discs)
@@ -65,7 +65,7 @@ def pair_distributions(log: Log, discs: Composition, start: float, end: float) -
         edges[i, j] = np.linspace(first, max(reach, 1.01 * sigma[i, j]), bins + 1)
     counts: dict[tuple[int, int], list[np.ndarray]] = {pair: [] for pair in pairs}
     members = [np.flatnonzero(log.discs.partner == s) for s in range(len(discs.name))]
-    period = np.where(log.periodic, log.box, 0.0)  # 0 means no images along this axis
+    period = np.where(log.periodic, log.box, 0.0)  # 0 means that there are no periodic images along this axis
     for state in log.frames(np.linspace(start, end, FRAMES)):
         places = inside(log, state.position)
         trees = [cKDTree(places[ids], boxsize=period) for ids in members]
@@ -85,7 +85,7 @@ def _smallest(log: Log) -> np.ndarray:
 def _normalised(
     log: Log, discs: Composition, i: int, j: int, edges: np.ndarray, counts: np.ndarray
 ) -> PairDistribution:
-    """Return the pair distribution from numbers of pairs (frames, bins), with pairs of one species counted twice."""
+    """Return the pair distribution from numbers of pairs (frames, bins); pairs within a species are counted twice."""
     reach = [
         (side, side) if periodic else (side - 2 * discs.radius[i], side - 2 * discs.radius[j])
         for side, periodic in zip(log.box, log.periodic, strict=True)
@@ -97,9 +97,12 @@ def _normalised(
 
 
 def chance_within(r: np.ndarray, reach: list[tuple[float, float]], periodic: tuple[bool, bool]) -> np.ndarray:
-    """Return the probability that two random points in concentric rectangles are closer than the distances r.
+    """Return the probability that two random points, each in one of two concentric rectangles, are closer than r.
 
-    reach: sides of the two rectangles along each axis, length.
+    Args:
+        r: (n,), distances, length.
+        reach: sides of the two rectangles along each axis, length.
+        periodic: whether the box is periodic along each axis.
     """
     if all(periodic):
         return np.asarray(math.pi * r**2 / math.prod(a for a, _ in reach))

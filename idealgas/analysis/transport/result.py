@@ -1,4 +1,4 @@
-"""Transport in the gas of one log."""
+"""Result of a measurement of transport in the gas of one log."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
@@ -31,13 +31,14 @@ class Transport(Result):
         window: window of time that was used.
         packing_fraction: packing fraction φ.
         number: number of discs.
-        free_times: lag up to which discs and currents are followed, in mean free times of the slowest species.
+        free_times: longest lag up to which discs and currents are followed, in mean free times of the species that
+            collides least often.
         walled: whether walls reflect diffusing discs.
         collision_rates: collision rate of each pair of species.
-        free_paths: free path of each species.
+        free_paths: mean free path and mean free time of each species.
         contacts: contact value of each pair of species.
         diffusion: diffusion of each species.
-        collective: viscosities and thermal conductivity; None with walls, which change the currents.
+        collective: viscosities and thermal conductivity; None if there are walls, which change the currents.
         pressure: components xx, yy and xy of the pressure tensor, energy/length².
         pair_distributions: pair distribution of each pair of species.
     """
@@ -56,7 +57,7 @@ class Transport(Result):
     pair_distributions: tuple[PairDistribution, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of collisions, pair distribution at contact, diffusion, and coefficients."""
+        """Return the tables of collisions, contact values, diffusion, coefficients and pressure tensor."""
         rates, paths = collision_tables(self.collision_rates, self.free_paths)
         contacts = [(f"{contact.species} and {contact.other}", contact.value) for contact in self.contacts]
         diffusion, lags = [], []
@@ -77,7 +78,7 @@ class Transport(Result):
         return [table for table in tables if table.rows or table.notes]
 
     def summary(self) -> str:
-        """Return diffusion coefficients, or else mean free paths, and whether all coefficients agree with theory."""
+        """Return the headline: all coefficients, or else the mean free paths, and whether they agree with theory."""
         rows = [(f"D of {entry.species}", entry.coefficient) for entry in self.diffusion if entry.coefficient]
         if self.collective:
             rows += [(SYMBOLS[name], estimate.value) for name, estimate in self.collective.coefficients.items()]
@@ -91,9 +92,9 @@ class Transport(Result):
         return f"{sentence}; {agreement(rows, theory)}."
 
     def figure(self) -> "Figure":
-        """Draw velocity correlation, mean square displacement, pair distribution and coefficients against time.
+        """Draw the velocity correlation, mean square displacement, pair distribution and coefficients.
 
-        Without events only the coefficients are drawn; among fixed discs there is no pair distribution.
+        If the log has no events, only the coefficients are drawn; among fixed discs there is no pair distribution.
         """
         from idealgas.analysis.transport.figure import draw_coefficients, draw_diffusion, draw_pairs
         from idealgas.presentation.style import panels
@@ -127,7 +128,7 @@ def _of_currents(collective: Collective, free_times: float) -> list[Table]:
 
 
 def _rows(name: str, coefficient: Coefficient) -> list[tuple[str, Estimate]]:
-    """Return the rows of a coefficient and, if there are several routes, of each route and of their difference."""
+    """Return the rows for a coefficient and, if there are several routes, for each route and their difference."""
     rows = [(f"{name}, {coefficient.unit}", coefficient.value)]
     if coefficient.difference is not None:
         first_route, second_route = coefficient.routes

@@ -33,7 +33,7 @@ class TransportState:
         kind: kind of gas in words; empty if unknown.
         runs: number of runs.
         seeds: seeds of the runs.
-        coefficients: coefficients over Enskog's, by symbol (no unit).
+        coefficients: coefficients in units of Enskog's values, by symbol (no unit).
     """
 
     name: str
@@ -47,7 +47,7 @@ class TransportState:
 
 @dataclass(frozen=True)
 class TransportStates(Result):
-    """Transport coefficients over Enskog's, state by state in order of φ."""
+    """Transport coefficients in units of Enskog's values, for each state in order of φ."""
 
     states: tuple[TransportState, ...]
 
@@ -69,7 +69,7 @@ class TransportStates(Result):
         return [Table("Transport coefficients over Enskog's", heads, rows)]
 
     def summary(self) -> str:
-        """Return the coefficients of the densest state, and whether all agree with Enskog's theory."""
+        """Return the headline: coefficients of the densest state, and whether all coefficients agree with theory."""
         rows = [
             (f"{symbol} at φ = {state.packing_fraction:.5g}", estimate)
             for state in self.states
@@ -82,7 +82,7 @@ class TransportStates(Result):
         return f"{densest}; {agreement(rows, 'Enskog')}."
 
     def figure(self) -> "Figure":
-        """Draw coefficients over Enskog's against φ, or against N if all logs have the same φ."""
+        """Draw the coefficients in units of Enskog's values against φ, or against N if all logs have the same φ."""
         from idealgas.analysis.transport.figure import draw_band
         from idealgas.presentation.style import COLOURS, GREY, panels
 
@@ -112,12 +112,15 @@ class TransportStates(Result):
 
 
 def transport_states(results: Sequence[Transport]) -> TransportStates:
-    """Return the coefficients over Enskog's of several runs, averaged over runs of one kind of gas, φ and N."""
+    """Return the coefficients of several runs, averaged over runs with the same kind of gas, φ and N.
+
+    The coefficients are in units of Enskog's values.
+    """
     return TransportStates(tuple(_state(kind, runs) for kind, runs in by_state(results)))
 
 
 def _over_theory(result: Transport) -> dict[str, Estimate]:
-    """Return the coefficients of a run that have a theory, in units of it, by their symbols."""
+    """Return the coefficients of a run for which theory is available, in units of the theoretical values, by symbol."""
     alone = result.diffusion[0].coefficient if len(result.diffusion) == 1 else None
     coefficients = {DIFFUSION: alone} if alone else {}
     if result.collective:
@@ -128,7 +131,7 @@ def _over_theory(result: Transport) -> dict[str, Estimate]:
 
 
 def _state(kind: str, runs: Sequence[Transport]) -> TransportState:
-    """Return the mean over the runs of one state, for all coefficients that every run has."""
+    """Return the means over the runs of one state, for coefficients that every run has."""
     first, *others = measured = [_over_theory(run) for run in runs]
     symbols = [symbol for symbol in first if all(symbol in coefficients for coefficients in others)]
     means = {symbol: mean_of_replicates([coefficients[symbol] for coefficients in measured]) for symbol in symbols}

@@ -1,4 +1,4 @@
-"""Measure the work of a piston and compare it with the free energy, by Jarzynski's equality and Crooks' theorem.
+"""Measure the work of a piston and derive the free energy from Jarzynski's equality and Crooks' theorem.
 
 The strokes of several logs are combined. DIR is the folder of a sweep with the analysis "work".
 """
@@ -45,8 +45,8 @@ class Work(Result):
     Attributes:
         temperature: temperature of the heat bath, energy.
         number: number of discs.
-        processes: strokes of each kind.
-        crossings: crossing of each kind of strokes that is also made in reverse.
+        processes: results for each kind of stroke.
+        crossings: crossing of the distributions for each kind of stroke that is also made in reverse.
     """
 
     temperature: float
@@ -55,7 +55,7 @@ class Work(Result):
     crossings: tuple[Crossing, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of work and free energy of each kind of strokes, and of the crossings."""
+        """Return the tables of work and free energy for each kind of stroke, and of the crossings."""
         rows = [
             (f"{strokes.name}: {name}", estimate)
             for strokes in self.processes
@@ -77,7 +77,7 @@ class Work(Result):
         return [*tables, *([estimates("Work forward and minus work back", crossings)] if crossings else [])]
 
     def summary(self) -> str:
-        """Return the free energy of the first kind of strokes, and whether all agree with theory."""
+        """Return the headline: ΔF and mean work of the first kind of stroke, and whether all ΔF agree with theory."""
         rows = [(strokes.name, strokes.free_energy) for strokes in self.processes]
         rows += [(f"crossing {strokes.name}", strokes.free_energy) for strokes in self.crossings]
         first = self.processes[0]
@@ -85,7 +85,7 @@ class Work(Result):
         return f"{difference}; their mean work is {format_estimate(first.mean_work)}; {agreement(rows)}."
 
     def figure(self) -> "Figure":
-        """Draw the distributions of the work and of minus the work of the reverse strokes, and their ratio."""
+        """Draw the distributions of W and of -W of the reverse strokes, and the ratio of the two."""
         from idealgas.presentation.style import COLOURS, panels
 
         if not self.crossings:
@@ -102,7 +102,7 @@ class Work(Result):
             names = f"W, {crossing.name}", "−W of the reverse strokes"
             for count, work, colour, label in zip(counts, (forward, back), COLOURS, names, strict=False):
                 works.stairs(count / len(work) / np.diff(edges), edges, color=colour, label=label)
-                if still := np.count_nonzero(work == 0):  # a discrete value, which has no density
+                if still := np.count_nonzero(work == 0):  # a discrete value has no density
                     share = f"{100 * still / len(work):.0f} % of {'W' if work is forward else '−W'} are 0"
                     marker = "^" if work is forward else "v"
                     works.plot(0, 0, marker, color=colour, clip_on=False, fillstyle="none", label=share)
@@ -141,16 +141,16 @@ class WorkAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> WorkOfRun:
-        """Measure the work of each stroke of a piston and compare it with the free energy difference ΔF of the gas.
+        """Measure the work W of each stroke of a piston, and derive the free energy difference ΔF of the gas from it.
 
-        Whatever the speed of the piston, ⟨exp(-W/T)⟩ = exp(-ΔF/T) over strokes that begin in equilibrium with a heat
-        bath (Jarzynski, Phys. Rev. Lett. 78, 2690 (1997)), and the distribution of the work crosses that of minus the
-        work of the reverse strokes at ΔF (Crooks, Phys. Rev. E 60, 2721 (1999)). A stroke is a motion of the piston
-        after a rest.
+        At any speed of the piston, ⟨exp(-W/T)⟩ = exp(-ΔF/T) for strokes that begin in equilibrium with a heat bath
+        (Jarzynski, Phys. Rev. Lett. 78, 2690 (1997)), and the distribution of W crosses the distribution of -W of the
+        reverse strokes at ΔF (Crooks, Phys. Rev. E 60, 2721 (1999)). A stroke is a motion of the piston that follows a
+        rest.
 
         Raises:
-            UserError: unless there is a single driven piston and a thermostat or thermal walls of one temperature, or
-                if no stroke lies in the window.
+            UserError: if there is not exactly one driven piston, if there is neither a thermostat nor thermal walls at
+                a single temperature, or if no stroke lies in the window.
         """
         must_apply(log, 0.0, ("elastic", "collisions_conserve_energy"))
         temperatures = log.scene.properties.temperatures
@@ -182,7 +182,7 @@ class WorkAnalysis(Analysis):
 
     @staticmethod
     def combine(results: Sequence[Work]) -> Work:
-        """Combine the strokes of one or several runs of one gas.
+        """Combine the strokes of one or several runs of the same gas.
 
         Raises:
             UserError: if the runs are of different gases.
@@ -198,10 +198,9 @@ class WorkAnalysis(Analysis):
 
 
 def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return works (n,) and numbers (2, n) of strokes forward and back in the bins that contain both, energy.
+    """Return the mean work (n,), energy, and the numbers (2, n) of forward and reverse strokes, in bins with both.
 
-    Strokes without work have a bin of their own, as it may happen that no disc hits the piston. The position of a bin
-    is the mean of its works.
+    Strokes with W = 0 are counted in a separate bin, because no disc may hit the piston.
     """
     works, rows = (forward, back), []
     for low, high in pairwise(edges):
@@ -213,7 +212,7 @@ def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np
 
 
 def _mark(ax: Any, free_energy: Estimate) -> None:
-    """Draw a line at the free energy in a panel with distributions of the work."""
+    """Draw a line at the free energy in a panel with the distributions of the work."""
     from idealgas.presentation.style import BAND, BLACK
 
     where, error, label = free_energy.value, free_energy.standard_error, "free energy by the work"
@@ -228,7 +227,7 @@ def _mark(ax: Any, free_energy: Estimate) -> None:
 def _strokes(
     steps: Sequence[tuple[float, float]], end: float
 ) -> Iterator[tuple[float, float, tuple[tuple[float, float], ...]]]:
-    """Yield start, end and protocol (pieces of time and velocity) of each motion that follows a rest."""
+    """Yield start, end and protocol (durations and velocities) of each motion of the piston that follows a rest."""
     begun, rested = 0.0, False
     pieces: list[tuple[float, float]] = []
     for (time, velocity), (later, _) in pairwise((*(step for step in steps if step[0] < end), (end, 0.0))):
@@ -244,9 +243,9 @@ def _strokes(
 
 
 def _difference(log: Log, ends: Sequence[float], temperature: float) -> Theory | None:
-    """Return ΔF between two positions of the piston by theory.
+    """Return the theoretical ΔF between two positions of the piston.
 
-    The result is None with walls inside the box or an external field, or if the discs do not fit.
+    The result is None if there are walls inside the box or external fields, or if the discs do not fit.
     """
     properties, (piston,) = log.scene.properties, log.scene.piston
     if (

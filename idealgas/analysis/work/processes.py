@@ -1,4 +1,4 @@
-"""Strokes of one kind, the free energy from their work, and the crossing of the works forward and back."""
+"""Strokes of one kind, the free energy from their work, and the crossing of the forward and reverse distributions."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -12,19 +12,19 @@ from idealgas.statistics.estimates import Estimate, parts_of
 from idealgas.theory.values import Theory
 
 FEWEST_EFFECTIVE = 200.0
-"""Effective number of strokes in ⟨exp(-W/T)⟩, (Σx)²/Σx², below which its error may be too small.
+"""Smallest effective number of strokes (Σx)²/Σx², where x = exp(-W/T), for a reliable error of ⟨exp(-W/T)⟩.
 
-At 200, the error of the outward strokes of the example is too small by a seventh.
+At 200, the error for the outward strokes of the example is too small by a seventh.
 """
 
 FEWEST_STROKES = 10
-"""Smallest number of strokes in each direction for the ratio of their distributions."""
+"""Smallest number of strokes in each direction for which the two distributions are compared."""
 
 DIGITS = 9
-"""Number of decimals in which two strokes of the same kind agree."""
+"""Number of decimals to which positions and durations of strokes of the same kind must agree."""
 
 Protocol = tuple[tuple[float, float], ...]
-"""Durations and velocities of the motion of a piston: (time, length/time)."""
+"""Durations (time) and velocities (length/time) of the successive pieces of the motion of a piston."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class WorkProcess:
     """Strokes of one kind: all begin in equilibrium with the heat bath and move the piston in the same way.
 
     Attributes:
-        name: start, end and duration in words.
-        ends: positions of the piston, length.
+        name: initial position, final position and duration, in words.
+        ends: initial and final position of the piston, length.
         protocol: motion of the piston.
-        work: (n,), energy that the piston gave in each stroke.
+        work: (n,), energy that the piston gave to the gas in each stroke.
         start_energy: (n,), kinetic energy of all discs before each stroke.
         mean_work: mean work of a stroke, energy.
         free_energy: ΔF = -T ln⟨exp(-W/T)⟩, energy.
@@ -54,14 +54,14 @@ class WorkProcess:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Distribution P_F of the work of strokes, and distribution P_R of minus the work of the reverse strokes.
+    """Comparison of the distribution P_F of the work W with the distribution P_R of -W of the reverse strokes.
 
     Attributes:
         name: name of the process.
-        free_energy: work at which they cross, which is ΔF by Crooks' theorem, energy.
+        free_energy: value at which the distributions cross, which equals ΔF by Crooks' theorem, energy.
         slope: T d ln(P_F/P_R)/dW, which is 1 by Crooks' theorem (no unit).
-        forward: work of the strokes, energy.
-        back: work of the reverse strokes, energy.
+        forward: (n,), work of the strokes, energy.
+        back: (m,), work of the reverse strokes, energy.
     """
 
     name: str
@@ -72,7 +72,7 @@ class Crossing:
 
 
 def expectation_of(estimate: Estimate) -> Theory | None:
-    """Return the theory of an estimate; None without one."""
+    """Return the theoretical value of an estimate and its error; None if there is none."""
     return None if estimate.theory is None else Theory(estimate.theory, estimate.theory_error, "")
 
 
@@ -85,7 +85,17 @@ def process(
     number: int,
     difference: Theory | None,
 ) -> WorkProcess:
-    """Return the process of strokes with work (n,) and kinetic energy before (n,), and with ΔF by theory."""
+    """Return the results for strokes of one kind.
+
+    Args:
+        ends: initial and final position of the piston, length.
+        protocol: motion of the piston.
+        work: (n,), work of each stroke, energy.
+        energy: (n,), kinetic energy of all discs before each stroke.
+        temperature: temperature of the heat bath, energy.
+        number: number of discs.
+        difference: theoretical ΔF; None if it is not known.
+    """
     least = float(work.min())
     weight = _independent(np.exp(-(work - least) / temperature))
     free, error = least - temperature * math.log(weight.value), temperature * weight.standard_error / weight.value
@@ -102,14 +112,14 @@ def process(
 
 
 def joined(same: Sequence[WorkProcess], temperature: float, number: int) -> WorkProcess:
-    """Return the strokes of one kind of several runs together."""
+    """Return the results for all strokes of one kind from several runs."""
     work, energy = (np.concatenate([getattr(run, name) for run in same]) for name in ("work", "start_energy"))
     first = same[0]
     return process(first.ends, first.protocol, work, energy, temperature, number, expectation_of(first.free_energy))
 
 
 def poorly_sampled(process: WorkProcess, temperature: float) -> Iterator[str]:
-    """Yield a caveat if few strokes dominate the mean of exp(-W/T)."""
+    """Yield a caveat if a few strokes dominate the mean of exp(-W/T)."""
     weight = np.exp(-(process.work - process.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
@@ -119,7 +129,7 @@ def poorly_sampled(process: WorkProcess, temperature: float) -> Iterator[str]:
 
 
 def crossings(processes: Sequence[WorkProcess], temperature: float) -> tuple[Crossing, ...]:
-    """Return the crossing of each process that is also made in reverse, each once."""
+    """Return the crossing for each process that is also made in reverse; each pair of processes appears once."""
     known = {(forward.ends, forward.protocol): forward for forward in processes}
     pairs = []
     for (ends, protocol), forward in list(known.items()):
@@ -131,10 +141,11 @@ def crossings(processes: Sequence[WorkProcess], temperature: float) -> tuple[Cro
 
 
 def _crossing(forward: WorkProcess, back: WorkProcess, temperature: float) -> Crossing | None:
-    """Return the crossing of two distributions by logistic regression, or None if they do not overlap.
+    """Return the crossing of two distributions from a logistic regression; None if they do not overlap.
 
-    ln(P_F/P_R) = a + bW/T maximizes the likelihood of the works being forward or back (Shirts et al., Phys. Rev. Lett.
-    91, 140601 (2003)). The errors are those of a regression with given numbers of strokes.
+    The parameters of ln(P_F/P_R) = a + bW/T maximise the likelihood that strokes with the measured works are forward or
+    reverse strokes (Shirts et al., Phys. Rev. Lett. 91, 140601 (2003)). The errors are those of a regression in which
+    the numbers of strokes in both directions are fixed.
     """
     works = np.concatenate((forward.work, -back.work)) / temperature
     n, m, middle = len(forward.work), len(back.work), works.mean()
@@ -164,7 +175,7 @@ def _crossing(forward: WorkProcess, back: WorkProcess, temperature: float) -> Cr
 
 
 def _independent(values: np.ndarray) -> Estimate:
-    """Return the mean of independent values."""
+    """Return the mean of independent values with its standard error."""
     n = len(values)
     return _estimate(values.mean(), values.std(ddof=1) / math.sqrt(n) if n > 1 else math.nan, n, None)
 
