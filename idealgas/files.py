@@ -104,7 +104,7 @@ def _check_replaceable(path: Path, existing: os.stat_result, kind: str, force: b
         raise OutputError(f"{path}: already exists (use force=True to overwrite)")
     if existing.st_size and not is_of_kind(path, kind):
         what = "log" if kind == LOG else f"{kind} file"
-        raise OutputError(f"{path}: is not a {what} of idealgas and is not overwritten")
+        raise OutputError(f"{path}: is not a {what} of idealgas and will not be overwritten")
 
 
 def is_of_kind(path: Path, kind: str) -> bool:

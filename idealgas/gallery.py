@@ -17,7 +17,7 @@ from idealgas.report.page import description_html, text_of
 SCENES = tuple(name for name in names() if name != TEMPLATE)
 """Names of the scenes in the gallery."""
 
-ABOUT = "The example scenes, with the discs at the start, coloured by speed or, in mixtures, by species."
+ABOUT = "The example scenes in their initial states, with discs coloured by speed or, in mixtures, by species."
 
 PAGE = Template("""<!doctype html>
 <html lang="en">

@@ -165,6 +165,6 @@ def orbit_figure(study: OrbitStudy) -> Figure:
     ax.plot(x, line, "--", color=COLOURS[1], label=f"{study.time_per_digit:.3g} time units per digit")
     ax.set_xlim(0, 1.2 * digits.max())
     ax.set_ylim(bottom=0)
-    ax.set(xlabel="decimal digits carried (no unit)", ylabel="orbit lasts (time, at speed 1)")
+    ax.set(xlabel="decimal digits carried (no unit)", ylabel="lifetime of the orbit (time, at speed 1)")
     ax.legend()
     return add_title(figure, "Unstable periodic orbit: lifetime against digits")

@@ -127,11 +127,11 @@ class OrbitStudy:
         return [
             f"In exact arithmetic the orbit would last indefinitely. Median over {self.placements} boxes and radii, in "
             f"time units at speed 1: {medians}.",
-            f"Each decimal digit carried buys {self.time_per_digit:.3g} time units, the time in which a deviation "
+            f"Each additional decimal digit adds {self.time_per_digit:.3g} time units, the time in which a deviation "
             "grows tenfold. More digits, not a better method, make the orbit last longer.",
-            f"{unbroken} of {trials} trials never broke; the luckiest of those that did lasted "
-            f"{max(spread):.2g} times the median. Where roundings happen to cancel, the rounded motion can even be "
-            "exactly periodic: a single placement proves nothing, hence the median.",
+            f"{unbroken} of {trials} trials never broke; the longest-lived of the others "
+            f"lasted {max(spread):.2g} times the median. If rounding errors happen to cancel, the computed motion can "
+            "even be exactly periodic. A single trial is therefore not conclusive, and the median is used.",
         ]
 
 

@@ -116,7 +116,7 @@ def _pressure(study: Accuracy) -> str:
     if exact is None:
         return ""
     sentence = (
-        f"The event-driven pressure is {exact.value:+.2%} ± {exact.standard_error:.2%} from theory. "
+        f"The event-driven pressure deviates by {exact.value:+.2%} ± {exact.standard_error:.2%} from theory. "
         if exact.standard_error > 0
         else ""
     )
@@ -157,9 +157,9 @@ def _motion(study: Accuracy) -> list[str]:
         f"with the 16 digits of the event-driven run, after {life(single)} with 7 digits, and after {life(finest)} "
         f"with dt = {finest.case.dt:.2g}. The reference is the double-double motion of the whole gas over "
         f"{last:.2g} collisions per disc, which takes "
-        f"{twice.timing.median / study.event_driven.timing.median:.2g} times the event-driven time.",
+        f"{twice.timing.median / study.event_driven.timing.median:.2g} times the CPU time of the event-driven run.",
         f"Double-double arithmetic takes {twice.timing.median / double.timing.median:.2g} times the time of double "
-        "precision by the same method.",
+        "precision with the same method.",
     ]
 
 

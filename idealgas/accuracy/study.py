@@ -298,7 +298,7 @@ def _motion(
     truth = positions(start.simulation(reference.make()), times)
     trajectories, ways_back = {}, {}
     for k, case in enumerate(cases):
-        progress("trajectories and ways back", k / len(cases))
+        progress("trajectories and reversals", k / len(cases))
         if case is not reference:
             trajectories[case] = rms_distance(positions(start.simulation(case.make()), times), truth, start.gas)
         ways_back[case] = error_on_return(start, case, min(times[-1], 1 / rate))

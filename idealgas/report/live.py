@@ -77,7 +77,7 @@ class Live:
         """Return the HTML of the page, which then requests all data that may change."""
         log, scene = self._log, self._log.scene.scene
         heading = "The discs" if log.has_positions else "The speeds"
-        shown = "After each part of the motion comes the newest one, or with the mark removed the next one."
+        shown = "Each part of the motion is followed by the newest part, or by the next part if the box is unticked."
         lead, description = first_sentence(scene.description)
         return Template(text_of("watch.html")).substitute(
             title=escape(scene.title or Path(log.path).name),
@@ -194,7 +194,7 @@ class Live:
         for ax in axes:
             ax.time_axis()
             ax.legend()
-        caption = f"Temperature at, and pressure around, {len(times)} times of the run; a click shows the discs there"
+        caption = f"Temperature at, and pressure around, {len(times)} times of the run; click to show the discs"
         return html_pictures(figure, caption, "live")
 
 

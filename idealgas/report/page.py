@@ -50,7 +50,7 @@ SUMMARY = {
     "deepest_overlap": "deepest overlap (relative to the sum of the radii)",
     "max_wall_penetration": "largest penetration of a wall (diameters)",
     "seconds": "wall time (s)",
-    "compile_seconds": "compiling or loading machine code, before that (s)",
+    "compile_seconds": "compiling or loading machine code beforehand (s)",
 }
 """Labels, with units, of the values from the summary of a run that the report shows."""
 
@@ -163,8 +163,8 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
     if log.has_positions:
         width, height = log.box
         shown = (
-            f"A box of {width:g} × {height:g} (length); the strip below the speeds shows the colours of the discs, "
-            "which are exact at any time; very small ones are drawn larger."
+            f"The box is {width:g} × {height:g} (length). The strip below the speeds shows the colours of the discs. "
+            "The discs are exact at any time, but very small ones are drawn larger."
         )
     else:
         shown = f"No discs to show: {log.scene.run.method} has no positions. Their speeds are exact."
@@ -173,7 +173,7 @@ def _player(log: Log, played: Player | None, heading: str) -> str:
         shown += f"t = {played.start:.6g} to {played.end:.6g} of a run up to {log.end_time:.6g}."
     else:
         shown += "the whole run."
-    shown += f" It is played in 20 s; at a playback of 1 × a second is {played.head['speed']:.3g} units of time."
+    shown += f" It plays for 20 s; at a playback speed of 1 ×, one second is {played.head['speed']:.3g} units of time."
     return player_html(log, heading, shown)
 
 

@@ -97,7 +97,7 @@ def check_outputs(folder: Path, points: Iterable[int]) -> None:
             check_output(path, LOG, force=True)
             with open_log(path) as log:
                 if log.command != COMMAND:
-                    raise OutputError(f"{path}: was not written by this sweep and is not overwritten")
+                    raise OutputError(f"{path}: was not written by this sweep and will not be overwritten")
 
 
 def resume_numbering(sweep: Sweep, folder: Path) -> Sweep:
@@ -157,8 +157,8 @@ def _free(taken: Iterable[int]) -> Iterator[int]:
 def _foreign_point(folder: Path, stored: dict[str, Any]) -> UserError:
     where = ", ".join(f"{key} = {value}" for key, value in stored["values"].items()) or "base scene"
     return UserError(
-        f"{folder}: holds another sweep: point {stored['point']} ({where}) is not part of this one; "
-        "use another folder or remove it"
+        f"{folder}: contains another sweep: point {stored['point']} ({where}) is not part of this one; "
+        "use another folder or remove this one"
     )
 
 

@@ -205,7 +205,7 @@ def _apply(override: str, document: dict[str, Any], place: str) -> Key:
     except OverrideError as error:
         raise SceneError([f"{place}: {error}"]) from None
     if _seed(document) != before:
-        allowed = "sweep.seed and sweep.replicates, from which the seeds of all points follow"
+        allowed = "sweep.seed and sweep.replicates, from which the seeds of all points are derived"
         raise SceneError([f"{place}: the seed of a scene cannot be chosen in a sweep (allowed {allowed})"])
     return key
 

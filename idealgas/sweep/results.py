@@ -114,7 +114,7 @@ def _read_point(path: Path) -> dict[str, Any]:
 
 
 def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is not a number of JSON")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 def stored_scene(folder: str | os.PathLike[str], result: dict[str, Any]) -> Scene:
@@ -203,7 +203,7 @@ def _set_aside(table: Path, text: str) -> Iterator[str]:
             names = (table.with_name(f"{table.stem}.previous-{k}{table.suffix}") for k in count(1))
             kept = next(path for path in names if not os.path.lexists(path))
             table.rename(kept)
-            reason = "edited, or of other points"
+            reason = "edited, or from other points"
             yield f"{table}:{number}: not a row of this sweep ({reason}); the file is kept as {kept.name}"
             return
 

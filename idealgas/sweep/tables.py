@@ -28,7 +28,7 @@ class Settings(Table):
     """Table `[sweep]`: base scene, seed, replicates and analyses."""
 
     scene: str | None = Field(default=None, description="path of the base scene, from this file's folder")
-    seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the seeds of all points follow")
+    seed: int = Field(default=0, ge=0, lt=2**63, description="whole number from which the points' seeds are derived")
     replicates: Count = Field(default=1, description="runs of each point that differ in their seeds, 1 to 100000")
     analyses: Annotated[tuple[AnalysisName, ...], Field(strict=False)] = Field(
         default=(), description=f"names of {', '.join(commands())}"

@@ -93,8 +93,8 @@ def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
     if not lost.any():
         return ()
     return (
-        f"The gas starts with a common motion ({lost[0]:.4g}, {lost[1]:.4g}), {share_of_motion(gas, lost):.1%} of its "
-        "kinetic energy; it is not in the temperatures at the start, and "
+        f"The gas starts with a common velocity ({lost[0]:.4g}, {lost[1]:.4g}), {share_of_motion(gas, lost):.1%} of "
+        "its kinetic energy; this motion is not included in the initial temperatures and "
         f"{'becomes heat at the walls' if scene.properties.bath is None else 'is lost to the heat bath'}.",
     )
 
@@ -129,21 +129,21 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     sentences = []
     if any(scene.properties.free_fall_axes):
         sentences.append(
-            "Gravity makes the gas flow along periodic sides: temperatures and speeds contain this motion, except for "
-            "those of `profile`."
+            "Gravity makes the gas flow along periodic sides: temperatures and speeds include this motion, except "
+            "in `profile`."
         )
     if len(gas) == 1 and not is_ergodic(scene, gas):
         if not all(scene.properties.periodic):
             sentences.append("A single disc does not share its energy evenly: its motions have no common temperature.")
     elif not is_ergodic(scene, gas):
         sentences.append(
-            "Two equal discs that start without total momentum between walls do not reach all states: pressures and "
+            "Two equal discs with zero total momentum between walls do not reach all states: pressures and "
             "temperatures along x and y may differ indefinitely. Give them different speeds."
         )
     velocity = centre_of_mass_velocity(scene, gas)
     if (share := share_of_motion(gas, velocity)) > SAID_FROM:
         sentences.append(
-            f"The gas moves as a whole with the velocity ({velocity[0]:.4g}, {velocity[1]:.4g}), {share:.1%} of its "
-            "kinetic energy; temperatures and speeds are relative to this motion, which nothing stops."
+            f"The gas moves as a whole with velocity ({velocity[0]:.4g}, {velocity[1]:.4g}), {share:.1%} of its "
+            "kinetic energy; temperatures and speeds are relative to this motion, which never stops."
         )
     return tuple(sentences)

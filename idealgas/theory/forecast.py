@@ -172,8 +172,8 @@ def _slow_bath(scene: Scene, gas: Gas, duration: float | None) -> tuple[str, ...
     if abs(gas.temperature / bath - 1) < NEARLY:
         return ()
     return (
-        f"The heat bath needs a time of about {1 / rate:.3g} to bring the gas to its temperature; until then rates are "
-        f"those of the start, with T = {gas.temperature:.3g}.",
+        f"The heat bath needs a time of about {1 / rate:.3g} to bring the gas to its temperature; until then the rates "
+        f"are those at the initial temperature, {gas.temperature:.3g}.",
     )
 
 
@@ -285,7 +285,7 @@ def _rates_without_positions(scene: Scene, gas: Gas, temperature: float, discs: 
     speeds = len(gas) + (scene.run.trials or 0)  # number of speeds drawn in a run, each of which may be the largest
     fastest = math.sqrt(2 * temperature * math.log(speeds) / discs.mass.min())
     rises = scene.run.v_ref is None and scene.run.trials is not None and fastest > v_ref / 2
-    rough = "v_ref rises as discs get faster than they are at the start, so that trials come faster" if rises else ""
+    rough = "v_ref rises when discs become faster than at the start, which makes trials more frequent" if rises else ""
     return _Rates(discs.shares @ per_disc, float(discs.number @ per_disc) / 2, 0.0, trials, rough=rough)
 
 

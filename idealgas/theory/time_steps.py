@@ -16,13 +16,11 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
         return ()
     heat = gas.kinetic_energy - conserved.centre_of_mass_energy(scene, gas)
     if not heat > 0:
-        return (
-            "In a run with time steps, collisions come late or are missed; `idealgas accuracy` measures the effect.",
-        )
+        return ("With time steps, collisions are detected late or missed; `idealgas accuracy` measures the effect.",)
     moved = scene.run.dt * math.sqrt(math.pi * heat / gas.mass.sum())  # √2 ⟨|v|⟩ dt
     part = moved / (2 * float(gas.radius.mean()))
     return (
-        f"In a run with time steps, collisions come late or are missed. At the start two discs move {part:.2g} "
-        "diameters relative to each other per step: Z - 1 is too small by one to two times this fraction, and rates by "
-        "less; `idealgas accuracy` measures the effect.",
+        "With time steps, collisions are detected late or missed. On average, two discs initially move "
+        f"{part:.2g} diameters relative to each other per step: Z - 1 is too small by one to two times this fraction, "
+        "and rates by less; `idealgas accuracy` measures the effect.",
     )

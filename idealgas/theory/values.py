@@ -173,7 +173,7 @@ def fluid(packing_fraction: float) -> Theory:
     """
     if packing_fraction > hard_discs.HIGHEST:
         raise NoTheoryError(
-            f"the packing fraction is above {hard_discs.HIGHEST:g}, where the virial series no longer holds"
+            f"the packing fraction is above {hard_discs.HIGHEST:g}, where the virial series is no longer accurate"
         )
     z = float(hard_discs.compressibility_factor(packing_fraction))
     return Theory(z, _series_error(packing_fraction) * (z - 1), "virial series to B10, resummed")
@@ -191,7 +191,7 @@ def crystal(packing_fraction: float) -> Theory:
         NoTheoryError: if discs form no crystal, or beyond close packing.
     """
     if not SOLID <= packing_fraction < hard_discs.CLOSE_PACKING:
-        raise NoTheoryError(f"discs form a crystal from a packing fraction of {SOLID:g} on")
+        raise NoTheoryError(f"discs form a crystal only at packing fractions from {SOLID:g} to close packing")
     room = hard_discs.CLOSE_PACKING / packing_fraction - 1
     error = TOO_LOW[0] + TOO_LOW[1] * room
     return Theory(
@@ -219,7 +219,7 @@ def box_theory(
     radius, number = np.asarray(radius, float), np.asarray(number, float)
     try:
         if not ergodic and number.sum() > 1:
-            raise NoTheoryError("two equal discs that start without momentum do not reach all states between walls")
+            raise NoTheoryError("two equal discs with zero total momentum do not reach all states between walls")
         if math.pi * float((number * radius**2).sum()) / (box[0] * box[1]) < THINNEST:
             raise NoTheoryError(f"the packing fraction is below {THINNEST:g}, where Z - 1 loses its digits to rounding")
         if number.sum() == 2:
@@ -236,7 +236,7 @@ def _two(radius: np.ndarray, number: np.ndarray, box: tuple[float, float], perio
     radii = np.repeat(radius, number.astype(int))
     exact = two_discs((radii[0], radii[1]), box, periodic)
     if exact is None:
-        raise NoTheoryError("the box has no room for two such discs to pass from place to place")
+        raise NoTheoryError("the box is too small for two such discs")
     pairs, walls, *sides = (
         None if z is None else Theory(z, 0.0, "two discs, exact") for z in (exact.pairs, exact.walls, *exact.sides)
     )
@@ -335,7 +335,7 @@ def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float
     n_square = min(n, 4 * phi / math.pi * across**2 * (1 + 1e-9))  # discs in the square of the shorter side
     if n_square < NUMBERS[0]:
         raise NoTheoryError(
-            "at this packing fraction the square of the box's shorter side holds fewer than "
+            "at this packing fraction a square with the shorter side of the box holds fewer than "
             f"{NUMBERS[0]} of the largest discs"
         )
     if phi > FRACTIONS[-1] and n_square < NUMBERS[-1]:

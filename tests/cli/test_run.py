@@ -43,7 +43,7 @@ def test_overrides_come_last(tmp_path):
         assert (log.scene.run.until, log.scene.run.events) == (2.0, 3)
 
 
-NO_LOG = "is not a log of idealgas and is not overwritten"
+NO_LOG = "is not a log of idealgas and will not be overwritten"
 
 
 def test_an_existing_output_and_a_scene_are_left_alone(tmp_path):

@@ -42,8 +42,8 @@ def test_only_files_of_the_same_kind_are_replaced(tmp_path):
     page.write_text("<!doctype html><title>mine</title>")
     empty.touch()
     assert refused(scene) == "already exists (use force=True to overwrite)"
-    assert refused(scene, force=True) == "is not a log of idealgas and is not overwritten"
-    assert refused(page, ".html", force=True) == "is not a .html file of idealgas and is not overwritten"
+    assert refused(scene, force=True) == "is not a log of idealgas and will not be overwritten"
+    assert refused(page, ".html", force=True) == "is not a .html file of idealgas and will not be overwritten"
     check_output(empty, LOG, force=True)
     assert (scene.read_text(), page.read_text()) == ("[box]", "<!doctype html><title>mine</title>")
 

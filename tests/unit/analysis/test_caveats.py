@@ -118,7 +118,7 @@ def test_time_steps_are_said():
     assert "time steps" in "".join(status(steps).caveats)
     assert silent(analysed("pressure", PERIODIC), "time steps")
     velocities = np.random.default_rng(3).normal((50, 0), 1, (40, 2)).tolist()
-    for motion, words in ((f"velocities={velocities}", far.split()[0]), ("temperature=0", "come late or are missed")):
+    for motion, words in ((f"velocities={velocities}", far.split()[0]), ("temperature=0", "detected late or missed")):
         discs = f"species=[{{name='gas', count=40, radius=0.1, {motion}}}]"
         scene = parse_scene(GAS, overrides=(*by_steps, "run.until=10", discs))
         assert re.search(words, forecast(scene, make_gas(scene)).caveats[-1])

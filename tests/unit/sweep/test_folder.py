@@ -112,7 +112,7 @@ def test_what_is_done_must_be_of_the_sweep(plan, folder, change):
     resume_numbering(old, folder)
     finish(old, folder, old.points)
     before = {path: path.read_bytes() for path in folder.rglob("*.*")}
-    with pytest.raises(UserError, match=r"out: holds another sweep: point \d \(species\..*remove it"):
+    with pytest.raises(UserError, match=r"out: contains another sweep: point \d \(species\..*remove this one"):
         resume_numbering(plan(**change), folder)
     assert {path: path.read_bytes() for path in folder.rglob("*.*")} == before
 
@@ -167,7 +167,7 @@ def test_a_folder_of_others_is_left_alone(tmp_path):
 def test_files_of_others_are_not_replaced(plan, folder, name, text):
     with hold_folder(folder / "new"):
         (folder / "new" / name).write_text(text)
-        with pytest.raises(UserError, match=rf"{name}: is not a .* of idealgas and is not overwritten"):
+        with pytest.raises(UserError, match=rf"{name}: is not a .* of idealgas and will not be overwritten"):
             resume_numbering(plan(), folder / "new")
         assert (folder / "new" / name).read_text() == text
 
@@ -200,7 +200,7 @@ def test_a_table_that_was_changed_by_hand_is_kept(plan, folder, old, new, line):
     )
     table.write_bytes(edited.encode())
     (notice,) = write_tables(folder)[1]
-    why = "not a row of this sweep (edited, or of other points); the file is kept as results.previous-1.csv"
+    why = "not a row of this sweep (edited, or from other points); the file is kept as results.previous-1.csv"
     assert notice == f"{table}:{line}: {why}"
     assert (table.read_bytes(), kept.read_bytes()) == (written, edited.encode())
     table.write_text("precious")

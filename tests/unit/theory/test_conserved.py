@@ -28,7 +28,7 @@ def test_two_discs_without_momentum_between_walls_are_not_ergodic():
     scene, gas = made(TWO)
     assert not conserved.is_ergodic(scene, gas)
     (sentence,) = conserved.caveats(scene, gas)
-    assert sentence.startswith("Two equal discs that start without total momentum between walls")
+    assert sentence.startswith("Two equal discs with zero total momentum between walls")
     assert forecast(scene, gas).caveats == (sentence,)
 
 
@@ -61,7 +61,7 @@ def test_a_flow_that_nothing_stops_is_no_temperature():
     assert result.species[0].temperature == pytest.approx(0.005, rel=1e-9)
     assert result.temperature == pytest.approx(0.04 / 6, rel=1e-9)
     (sentence,) = result.caveats
-    assert "moves as a whole with the velocity (3, 0), 99.9% of its kinetic energy" in sentence
+    assert "moves as a whole with velocity (3, 0), 99.9% of its kinetic energy" in sentence
 
 
 def test_unequal_discs_have_a_centre_of_mass_and_a_fixed_disc_takes_momentum():
@@ -82,7 +82,7 @@ def test_a_flow_that_walls_stop_becomes_heat():
     assert result.species[0].temperature == pytest.approx(0.005, rel=1e-9)
     assert result.temperature == pytest.approx(4.505, rel=1e-9)
     (sentence,) = result.caveats
-    assert "starts with a common motion (3, 0), 99.9% of its kinetic energy" in sentence
+    assert "starts with a common velocity (3, 0), 99.9% of its kinetic energy" in sentence
     assert "becomes heat at the walls" in sentence
     (sentence,) = forecast(*made(STREAM, "thermostat={ temperature = 0.1, rate = 1 }", "run.events=10000")).caveats
     assert "is lost to the heat bath" in sentence
