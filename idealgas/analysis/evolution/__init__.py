@@ -1,9 +1,9 @@
-"""Follow temperature, pressure, discs beyond a wall, pistons and energies in time, and compare them with theory.
+"""Follow temperature, pressure, discs beyond a wall, pistons and energies over time, and compare them with theory.
 
-The temperature follows Haff's law in a cooling gas and the adiabat of a slow piston; a piston under pressure has a
-position of rest, and isolated gases, gases under gravity and gases in heat baths have an equilibrium. The pressure is
-the mechanical pressure on the walls. With a piston the figure shows the pressure against the area, with the isotherm
-and the adiabat through the initial state.
+Theory predicts Haff's law for the temperature of a cooling gas, the adiabat for a slow piston, the mean position of a
+piston under pressure, and the equilibrium of isolated gases, gases under gravity and gases in heat baths. The pressure
+is the mechanical pressure on the walls. With a piston, the figure shows the pressure against the area, with the
+isotherm and the adiabat through the initial state.
 """
 
 from collections.abc import Mapping
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INSTANTS = 257
-"""Number of instants of the time series."""
+"""Number of times in the time series."""
 
 MOST_IN_COLUMN = 3
-"""Largest number of panels of the figure in a single column."""
+"""Largest number of panels that the figure stacks in a single column."""
 
 MOST_SAMPLES = 2**14
 """Largest number of samples of the energy."""
@@ -49,34 +49,34 @@ MOST_SAMPLES = 2**14
 
 @dataclass(frozen=True)
 class Evolution(Result):
-    """Evolution of a gas, at F evenly spaced times and at the P times of samples stored during the run.
+    """Evolution of a gas at F evenly spaced times, and at P times at which samples were stored during the run.
 
     Attributes:
         time: (F,), times.
-        temperature: (F,), mean m v²/2 per disc, energy.
-        spin: (F,), mean I ω² per disc, energy; None without spin.
-        beyond: fraction of the discs of each species beyond the first gate or permeable wall along an axis, (F,), by
-            species.
-        spread: these fractions in equilibrium without walls inside the box, by species; their error is the standard
-            deviation of a binomial distribution.
-        law: theory of the temperature at these times; None without theory.
+        temperature: (F,), mean of m v²/2 over the discs, energy.
+        spin: (F,), mean of I ω² over the discs, energy; None without spin.
+        beyond: (F,), fraction of the discs beyond the first gate or permeable wall along an axis, by species.
+        spread: these fractions in equilibrium with free passage between both sides, by species; their error is the
+            standard deviation of a binomial distribution.
+        law: theoretical temperature at these times; None without theory.
         samples: (P,), times of the samples, thinned evenly to at most MOST_SAMPLES.
-        parts: parts of the energy, (P,), by name.
-        given: energy received from each wall, each piston (its work) and a heat bath since the start, (P,), by name.
-        pistons: coordinate of each piston, (P,), length, by name.
-        balance: (P,), change since the start of the energy of discs and pistons minus the energy from outside, relative
-            to the largest part of the energy; only rounding changes it.
-        dissipated: energy lost since the start in collisions of two discs and at walls, (P,), by name.
-        pressure: mechanical pressure on walls in bins of time; None without events or wall hits.
-        rest: mean position of a single piston with a mass once it is steady, length; None without such a piston, or if
-            it is not steady by the end.
-        rest_start: time from which on the piston is steady; None if `rest` is None.
-        mean_temperature: mean temperature once it is steady, energy; None if it is constant, or if the law is not one
-            of equilibrium.
-        adiabatic_exponent: γ from temperature and area at both ends; None unless a piston compresses the gas without
-            heat exchange.
+        parts: (P,), terms of the energy, by name.
+        given: (P,), energy received since the start from each wall, each piston (its work) and a heat bath, by name.
+        pistons: (P,), coordinate of each piston, length, by name.
+        balance: (P,), change since the start of the energy of discs and pistons that no source or loss explains,
+            relative to the largest term of the energy; it is due to rounding errors only.
+        dissipated: (P,), energy lost since the start in collisions between discs and at walls, by name.
+        pressure: mechanical pressure on walls in time bins; None without events or wall hits.
+        rest: mean position of a single piston of finite mass once it is steady, length; None without such a piston, or
+            if the position does not become steady.
+        rest_start: time at which the position of the piston becomes steady; None if `rest` is None.
+        mean_temperature: mean temperature once it is steady, energy; None if the temperature is constant or does not
+            become steady, or if the law does not describe an equilibrium.
+        adiabatic_exponent: γ from the temperatures and areas at the start and end; None unless a piston compresses the
+            gas without heat exchange.
         isothermal_work: work of a piston on a gas at the temperature of a heat bath, energy; None otherwise.
-        chambers: mean m v²/2 per disc of each gas beside inner pistons, (F,), by name as in `beside_pistons`.
+        chambers: (F,), mean of m v²/2 over the discs on each side of inner pistons, energy, by name as in
+            `beside_pistons`.
     """
 
     time: np.ndarray
@@ -114,7 +114,7 @@ class Evolution(Result):
         return {name: float(values[-1]) for name, values in series.items() if values is not None and len(values)}
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of temperature and of discs beyond a wall, of the pressure, and of the energies."""
+        """Return the tables of temperatures and discs beyond a wall, of the pressure, of the energies, and of means."""
         law = self.law
         series = {
             "t": self.time,
@@ -155,13 +155,14 @@ class Evolution(Result):
         return [*tables, time_series("Energy", energy), *totals]
 
     def summary(self) -> str:
-        """Return sentences on the temperature and its theory, the pistons, and the discs beyond a wall."""
+        """Return sentences on the temperature and its prediction, the pistons, and the discs beyond a wall."""
         return evolution_summary(self)
 
     def figure(self) -> "Figure":
-        """Draw temperature with its law dashed, discs beyond a wall, pressure, pistons and energy from walls.
+        """Draw the temperature with its law dashed, discs beyond a wall, pressure, pistons and energies from walls.
 
-        With a piston the last panel shows pressure against area, with the isotherm and the adiabat through the start.
+        With a piston, the last panel shows the pressure against the area, with the isotherm and the adiabat through the
+        initial state.
         """
         from idealgas.presentation.style import BLACK, COLOURS, curve_style, panels
 
@@ -188,7 +189,7 @@ class Evolution(Result):
         low, high = self.temperature.min(), self.temperature.max()
         if high > 10 * low > 0:
             ax.set_yscale("log")
-        elif high - low < 1e-6 * high:  # constant, except for rounding
+        elif high - low < 1e-6 * high:  # constant, except for rounding errors
             ax.set_ylim(0.9 * low, 1.1 * high)
         ax.set_ylabel("temperature (energy, k_B = 1)")
         if self.beyond:
@@ -233,7 +234,7 @@ class EvolutionAnalysis(Analysis):
     sections = (
         Section(
             "Evolution",
-            "Temperature in time with its law dashed, then discs beyond a wall, the pressure, the piston and the walls",
+            "Temperature with its law dashed, then discs beyond a wall, pressure, pistons and energy, against time",
         ),
     )
     start = "the log's start"
@@ -243,14 +244,13 @@ class EvolutionAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Evolution:
-        """Follow temperature, pressure, energies, pistons and discs beyond a wall in time.
+        """Follow temperature, pressure, energies, pistons and discs beyond a wall over time.
 
-        The gas need not be in equilibrium. Theory, where it is available, predicts the temperature: that of
-        equilibrium, of a gas that cools by its collisions (Haff's law), or of a gas that a moving piston compresses
-        (the adiabat).
+        The gas need not be in equilibrium. Where theory is available, it predicts the temperature in equilibrium, in a
+        gas that cools due to collisions (Haff's law), or in a gas that is compressed by a moving piston (the adiabat).
 
         Raises:
-            UserError: if the log does not cover the times or has no samples of the energy.
+            UserError: if the log does not cover the times or contains no samples of the energy.
         """
         first, last = span(log, start, end)
         observables = log.observables.thinned(MOST_SAMPLES)
@@ -289,23 +289,23 @@ class EvolutionAnalysis(Analysis):
 
 
 def _source_label(name: str, result: Evolution) -> str:
-    """Return the heading of the energy that a wall, a piston or a heat bath gave to the discs."""
+    """Return the heading for the energy that discs received from a wall, a piston or a heat bath."""
     return f"work done by the {name}" if name in result.pistons else f"energy from {name}"
 
 
 def _chamber_label(name: str, several: bool) -> str:
-    """Return the label of the gas between two pistons, or between a side of the box and one or several pistons."""
+    """Return the label for the gas between two pistons, or between a side of the box and a piston."""
     return name if name.startswith("between") else f"{name} of the piston{'s' if several else ''}"
 
 
 # ── measurement ──
 
 Frames = tuple[np.ndarray, np.ndarray, np.ndarray | None, Series, Series]
-"""The first four series of an Evolution, and its chambers."""
+"""Values of `time`, `temperature`, `spin`, `beyond` and `chambers` of an Evolution."""
 
 
 def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]], inside: np.ndarray) -> Frames:
-    """Return the evolution from the samples stored during the run, for a log without events."""
+    """Return the time series from the samples stored during the run, for a log without events."""
     time, kinetic = observables["kinetic_energy"]
     n, spin = len(log.discs) - observables["escaped"][1][inside] if log.escapes else len(log.discs), None
     n = np.maximum(n, 1)
@@ -315,7 +315,7 @@ def _samples(log: Log, observables: Mapping[str, tuple[np.ndarray, np.ndarray]],
 
 
 def _frames(log: Log, first: float, last: float, progress: ReadProgress | None) -> Frames:
-    """Return the evolution at evenly spaced times, from the events of a log."""
+    """Return the time series at evenly spaced times, from the events in a log."""
     gas, frame, inertia = log.discs, centre_of_mass_velocity(log.scene, log.discs), log.inertia
     wall = first_passable(log)
     number = np.bincount(gas.species)

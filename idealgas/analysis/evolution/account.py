@@ -1,4 +1,4 @@
-"""Energy balance of a gas: its parts, its sources and its losses."""
+"""Energy balance of a gas: terms of the energy, sources and losses."""
 
 import numpy as np
 
@@ -7,27 +7,27 @@ from idealgas.physics.piston import piston_energy
 from idealgas.tallies.chambers import piston_names
 
 HEAT_BATH, STEPS = "the heat bath", "changes in time"
-"""Names of sources of energy besides walls; pistons have the names of `piston_names`."""
+"""Names of sources of energy other than walls; pistons are named as in `piston_names`."""
 
 ROUNDING = 1e-12
-"""Energy lost in collisions, relative to the largest energy, that is attributed to rounding."""
+"""Largest energy loss in collisions, relative to the largest energy, that is attributed to rounding errors."""
 
 Series = dict[str, np.ndarray]
 
 
 def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Series, Series, np.ndarray]:
-    """Return the parts of the energy, the energy by source, the losses by kind of collision, and the balance.
+    """Return the terms of the energy, the energy received by source, the losses by kind of collision, and the balance.
 
     Args:
         log: log of the run.
         time: (P,), times of the samples.
-        observed: observables at these times, by name.
+        observed: (P,), observables at these times, by name.
 
     Returns:
-        parts: parts of the energy, (P,), by name.
-        by_source: energy received since the start, (P,), by source.
-        losses: energy lost since the start, (P,), by kind of collision.
-        balance: (P,), relative change of the energy that no source or loss explains.
+        parts: (P,), terms of the energy, by name.
+        by_source: (P,), energy received since the start, by source.
+        losses: (P,), energy lost since the start, by kind of collision.
+        balance: (P,), change of the energy that no source or loss explains, relative to the largest term.
     """
     names = {"motion": "kinetic_energy", "spin": "rotational_energy", "height": "potential_energy"}
     parts = {part: observed[name] for part, name in names.items() if name in observed}
@@ -38,7 +38,7 @@ def account(log: Log, time: np.ndarray, observed: Series) -> tuple[Series, Serie
     for k, (piston, name) in enumerate(zip(log.scene.piston, piston_names(log.scene), strict=True)):
         number = walls.index(piston.wall)
         walls[number] = name
-        if piston.mass:  # its energy is one of the parts, so that none comes from outside
+        if piston.mass:  # its energy is one of the terms, so that it is not a source from outside
             counted[number], unpaid = False, unpaid + lost[:, 1 + number]
             pull = piston.acceleration(log.box, log.scene.properties.acceleration, time)
             place, velocity = (observed[column][:, k] for column in ("piston_position", "piston_velocity"))

@@ -1,4 +1,4 @@
-"""Means of an evolution once it is steady, and the adiabatic exponent and isothermal work of a compression."""
+"""Means of steady series, and the adiabatic exponent and isothermal work of a compression."""
 
 import math
 
@@ -16,28 +16,29 @@ from idealgas.tallies.observables import Observable
 from idealgas.theory.values import Theory
 
 LEAST_CHANGE = 0.05
-"""Smallest change of the logarithm of the area for which an adiabatic exponent is given."""
+"""Smallest change of the logarithm of the area for which an adiabatic exponent or an isothermal work is given."""
 
 ROUND_TRIPS = 8.0
-"""Smallest number of round trips of a disc within a stroke for which the error of γ is reliable.
+"""Smallest number of round trips of a disc during a stroke for which the error of γ is reliable.
 
-In 40 runs each, the rms of deviation over error is 1.03 with 8 round trips and 0.57 with 0.8: the hits of few round
-trips are more regular than the differences between instants suggest.
+In 40 runs each, the rms deviation of γ in units of its error is 1.03 with 8 round trips and 0.57 with 0.8: if there are
+few round trips, hits are more regular than the differences between successive times suggest.
 """
 
 PARTS = 256
-"""Largest number of parts of the stroke of a piston whose work gives the error of the total."""
+"""Largest number of sections of a stroke from whose work the error of the total work is estimated."""
 
 ROUNDING = 1e-9
-"""Relative change below which a temperature is constant."""
+"""Relative change below which a temperature counts as constant."""
 
 
 def mean_position(
     log: Log, series: PressureSeries | None, law: EvolutionLaw | None
 ) -> tuple[Estimate | None, float | None]:
-    """Return the mean position of a single piston with a mass once it is steady, and the time at which this begins.
+    """Return the mean position of a single piston of finite mass once it is steady, and the time when this begins.
 
-    The position is compared with theory. Both results are None without such a piston, or if it is never steady.
+    The estimate includes the theoretical position. Both results are None without such a piston, or if its position does
+    not become steady.
     """
     masses = [piston.mass for piston in log.scene.piston]
     if len(masses) != 1 or not masses[0] or series is None or series.track is None:
@@ -51,9 +52,10 @@ def mean_position(
 
 
 def mean_temperature(temperature: np.ndarray, law: EvolutionLaw | None) -> Estimate | None:
-    """Return the mean of a temperature (F,) once it is steady, compared with equilibrium.
+    """Return the mean of a temperature (F,) once it is steady, with the equilibrium temperature as theory.
 
-    The result is None if the temperature is constant or never steady, or if the law is not one of equilibrium.
+    The result is None if the temperature is constant or does not become steady, or if the law does not describe an
+    equilibrium.
     """
     if law is None or not law.steady or np.ptp(temperature) <= ROUNDING * temperature.max():
         return None
@@ -62,11 +64,11 @@ def mean_temperature(temperature: np.ndarray, law: EvolutionLaw | None) -> Estim
 
 
 def adiabatic_exponent(temperature: np.ndarray, law: EvolutionLaw | None) -> Estimate | None:
-    """Return the exponent γ of P A^γ = const from a temperature (F,): 1 + ln(T₂/T₁)/ln(A₁/A₂) between both ends.
+    """Return the adiabatic exponent γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) from the start and end of a temperature series (F,).
 
-    Its theory is the exponent of the adiabat of these discs, which is 2 for an ideal gas. Its error follows from the
-    deviations of the temperature from the adiabat between instants. The result is None unless a piston compresses the
-    gas without heat exchange.
+    Theory predicts the value that follows from the adiabat of these discs, which is 2 for an ideal gas. The standard
+    error follows from the deviations between the measured and the adiabatic changes of ln T between successive times.
+    The result is None unless a piston compresses the gas without heat exchange and changes its area noticeably.
     """
     if law is None or law.area is None or not (temperature > 0).all():
         return None
@@ -80,27 +82,27 @@ def adiabatic_exponent(temperature: np.ndarray, law: EvolutionLaw | None) -> Est
 
 
 def short_stroke(log: Log, exponent: Estimate | None, time: np.ndarray, temperature: np.ndarray) -> tuple[str, ...]:
-    """Return a caveat for γ from a temperature (F,) at times (F,) if discs make few round trips within the stroke."""
+    """Return a caveat for γ if discs make too few round trips during the stroke; time and temperature are (F,)."""
     if exponent is None:
         return ()
     speed = math.sqrt(2 * float(temperature.mean()) / (math.pi * float(log.discs.mass.mean())))  # mean of |vx|
     trips = float(time[-1] - time[0]) * speed / (2 * log.box[log.scene.piston[0].axis])
     if trips >= ROUND_TRIPS:
         return ()
-    return (f"Discs make only {trips:.2g} round trips within the stroke: the error of γ may be up to twice too large.",)
+    return (f"Discs make only {trips:.2g} round trips during the stroke: the error of γ may be up to twice too large.",)
 
 
 def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None:
     """Return the work of a single piston on a gas at the temperature of a heat bath, energy.
 
-    Its theory is N T ∫ Z dA/A, the work of a slow piston, which is N T ln(A₁/A₂) for an ideal gas. Its error follows
-    from the deviations from theory on parts of the stroke. The result is None unless the gas lies on one side of a
-    driven piston at the temperature of a heat bath, and changes its area noticeably.
+    Theory predicts -N T ∫ Z dA/A for a slow piston, which is N T ln(A₁/A₂) for an ideal gas. The standard error follows
+    from the deviations from theory in sections of the stroke. The result is None unless a driven piston has gas
+    on one side only, the gas has the temperature of a heat bath, and its area changes noticeably.
 
     Args:
         log: log with the piston.
-        pistons: coordinates of each piston at the times of samples, (P,), length.
-        given: energy that the discs have received from each wall and piston, (P,), energy.
+        pistons: (P,), coordinates of each piston at the times of the samples, length, by name.
+        given: (P,), energy that the discs have received from each wall and piston, energy, by name.
     """
     properties, gas = log.scene.properties, log.discs
     ((name, place),) = pistons.items() if len(pistons) == 1 else (("", np.empty(0)),)

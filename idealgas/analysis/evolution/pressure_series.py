@@ -1,4 +1,4 @@
-"""Mechanical pressure on walls in bins of time, the area of the gas, and its isotherm and adiabat."""
+"""Mechanical pressure on walls in time bins, the area of the gas, and its isotherm and adiabat."""
 
 import math
 from dataclasses import dataclass
@@ -21,43 +21,43 @@ if TYPE_CHECKING:
     from idealgas.presentation.style import Panel
 
 BLOCKS = 2048
-"""Number of blocks of time; a bin consists of several blocks, whose scatter gives its error bar."""
+"""Number of time blocks; a bin consists of several blocks, from whose scatter its error bar is estimated."""
 
 POINTS = 256
-"""Number of points of the track of a piston."""
+"""Number of points in the track of a piston."""
 
 MOST_BINS = 64
 STATES = 16
-"""Largest number of pressures that are drawn against the area."""
+"""Largest number of states that are drawn in the plot of pressure against area."""
 
 HITS = 32
-"""Smallest mean number of wall hits in a bin, if there is more than one bin."""
+"""Smallest mean number of wall hits per bin, if there is more than one bin."""
 
 GROUP = 16
-"""Number of successive bins whose scatter about a straight line is compared with their error bars."""
+"""Number of successive bins in a group, whose scatter about a straight line is compared with the error bars."""
 
 FAR = 0.999
-"""Fraction of groups, if all are alike, that count because they are not far beyond the median."""
+"""Fraction of the groups that would be retained if all groups had the same distribution; others are outliers."""
 
 ALL_SIDES = "all sides"
 
 WIDER = 1.2
-"""Range of the areas at which isotherm and adiabat are drawn, in units of that of the gas."""
+"""Range of areas over which the isotherm and the adiabat are drawn, relative to the range of areas of the gas."""
 
 
 @dataclass(frozen=True)
 class PressureSeries:
-    """Mechanical pressure on walls in B bins of time.
+    """Mechanical pressure on walls in B time bins.
 
     Attributes:
-        edges: (B + 1,), times between the bins.
+        edges: (B + 1,), edges of the bins, time.
         area: (B,), mean area of the gas, length².
-        pressure: (B,), momentum given per time and length, energy/length², by the name of the wall.
-        error: (B,), its standard error, energy/length², by the name of the wall; nan for a wall that was not hit.
-        shown: walls in table and figure: all sides of a uniform gas together, otherwise pistons or each side.
-        lines: isotherm and adiabat through the start; None without theory, or unless a single piston has gas on one
-            side.
-        track: times (T,) and, by name, mean coordinates (T,) of pistons in POINTS blocks of time; None without pistons.
+        pressure: (B,), momentum transferred to the wall per time and length, energy/length², by name of the wall.
+        error: (B,), standard error of the pressure, energy/length², by name of the wall; nan for bins without hits.
+        shown: walls in the table and figure: all sides together if the gas is uniform, otherwise pistons or each side.
+        lines: isotherm and adiabat through the initial state; None without theory, or unless there is a single piston
+            with gas on one side only.
+        track: (POINTS,), times and, by name, mean coordinates of pistons in time blocks; None without pistons.
     """
 
     edges: np.ndarray
@@ -70,12 +70,12 @@ class PressureSeries:
 
     @property
     def middles(self) -> np.ndarray:
-        """Times of the middles of the bins, (B,)."""
+        """Centres of the bins, (B,), time."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
 
 def pressure_series(log: Log, first: float, last: float) -> PressureSeries | None:
-    """Return the mechanical pressure on the walls of a log between two times; None without events or wall hits."""
+    """Return the mechanical pressure on walls between two times of a log; None without events or wall hits."""
     if not log.has_events or not log.has_positions:
         return None
     gauge, blocks = WallGauge(log), np.linspace(first, last, BLOCKS + 1)
@@ -111,7 +111,13 @@ def pressure_series(log: Log, first: float, last: float) -> PressureSeries | Non
 
 
 def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pressure in each bin and its standard error, (bins,), from momentum and exposed length (BLOCKS,)."""
+    """Return the pressure in each bin and its standard error, both (bins,).
+
+    Args:
+        push: (BLOCKS,), momentum transferred to a wall in each time block.
+        exposed: (BLOCKS,), exposed length of the wall, integrated over each time block.
+        bins: number of bins.
+    """
     values, errors = np.zeros(bins), np.full(bins, np.nan)
     for k, (given, there) in enumerate(zip(push.reshape(bins, -1), exposed.reshape(bins, -1), strict=True)):
         if given.any():
@@ -121,10 +127,11 @@ def _in_bins(push: np.ndarray, exposed: np.ndarray, bins: int) -> tuple[np.ndarr
 
 
 def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
-    """Return the scatter of bins about straight lines through GROUP of them, relative to that of independent blocks.
+    """Return the scatter of bins about straight lines through GROUP successive bins, relative to error bars.
 
-    Sound and pistons push a wall back and forth within a bin, so that the mean of a bin varies less than its blocks.
-    Groups far beyond the median do not count: in them a gate opens, or a heat bath starts.
+    The error bars follow from the scatter of time blocks. As sound and pistons make the pressure oscillate within a
+    bin, the mean over a bin varies less than the scatter of the blocks suggests. Groups whose scatter is far above the
+    median are excluded, because a gate opens or a heat bath starts in them.
     """
     if len(values) < GROUP:
         return 1.0
@@ -141,7 +148,7 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
 
 
 def draw_pressure(ax: "Panel", series: PressureSeries, law: EvolutionLaw | None) -> None:
-    """Draw pressure against time, with the external pressure on a free piston or the adiabat of a driven one."""
+    """Draw the pressure against time, with the external pressure on a free piston or the adiabat of a driven piston."""
     from idealgas.presentation.style import BLACK, COLOURS
 
     for name, colour in zip(series.shown, COLOURS, strict=False):
@@ -156,9 +163,9 @@ def draw_pressure(ax: "Panel", series: PressureSeries, law: EvolutionLaw | None)
 
 
 def draw_state(ax: "Panel", series: PressureSeries, rest_start: float | None) -> None:
-    """Draw pressure against area, with arrows in the order of time, and with isotherm and adiabat.
+    """Draw the pressure against the area, with arrows in the direction of time, and the isotherm and the adiabat.
 
-    From the time `rest_start` on, if it is given, the piston only fluctuates: all later bins are merged into one point.
+    If `rest_start` is given, the piston only fluctuates after this time, and all later bins are merged into one point.
     """
     from idealgas.presentation.style import COLOURS, GREY
 

@@ -1,4 +1,4 @@
-"""Headline of the evolution of a gas."""
+"""Summary of the evolution of a gas in sentences."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from idealgas.analysis.evolution import Evolution
 
 RETURNED = 0.2
-"""Fraction of the discs that have returned from beyond a wall, from which on the headline gives their maximum."""
+"""Fraction of the discs that must have returned from beyond a wall for the summary to state the maximum there."""
 
 
 def evolution_summary(result: "Evolution") -> str:
-    """Return sentences on the temperature and its theory, the pistons, and the discs beyond a wall."""
+    """Return sentences on the temperature and its prediction, the pistons, and the discs beyond a wall."""
     return " ".join([*_temperatures(result), *_pistons(result), *_beyond(result)])
 
 
 def _change(values: np.ndarray) -> str:
-    """Return the change of a series (F,) from its first to its last instant, as a predicate."""
+    """Return a predicate that describes the change of a series (F,) from its first to its last value."""
     first, last = (f"{value:.4g}" for value in values[[0, -1]])
     return f"stays at {first}" if first == last else f"goes from {first} to {last}"
 
@@ -52,7 +52,7 @@ def _pistons(result: "Evolution") -> Iterator[str]:
         yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {verdict}, 2 for an ideal gas."
     if work := result.isothermal_work:
         verdict = agreement([("work", work)], "a slow piston at constant T")
-        yield f"The piston does the work {format_estimate(work)} on the discs; {verdict}."
+        yield f"The work of the piston on the discs is {format_estimate(work)}; {verdict}."
 
 
 def _beyond(result: "Evolution") -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Theory of the temperature of a gas against time, and of the discs beyond a wall in equilibrium."""
+"""Theory of the temperature of a gas over time, of the positions of pistons, and of the discs beyond a wall."""
 
 import math
 from collections.abc import Mapping
@@ -19,45 +19,46 @@ from idealgas.theory.conserved import centre_of_mass_velocity, degrees_of_freedo
 from idealgas.theory.ensemble import composition
 
 SLOW = 0.05
-"""Largest speed of a piston, relative to the mean speed of the discs, for which the adiabat is accurate."""
+"""Largest speed of a piston, relative to the mean speed of the discs, at which the adiabat is accurate."""
 
 FEW = 5
-"""Number of discs below which theory does not predict how they share their energy with a piston."""
+"""Number of discs below which theory does not predict how discs and a piston share the energy."""
 
 DILUTE = 0.1
-"""Largest packing fraction for which one compressibility factor is used for both gases beside an inner piston."""
+"""Largest packing fraction at which one compressibility factor is used for both gases beside an inner piston."""
 
 EQUAL = 3
-"""Difference of two pressures, in standard deviations, up to which a piston is taken to be in equilibrium.
+"""Largest difference between two pressures, in standard deviations, at which a piston counts as in equilibrium.
 
-The piston vibrates with the energy T/2 between two gases that are compressed without heat exchange, and the variance of
-the difference is 2 (1/N₁ + 1/N₂) P².
+The piston vibrates between two gases that it compresses without heat exchange. As the mean potential energy of this
+vibration is T/2, the variance of the pressure difference is 2 (1/N₁ + 1/N₂) P².
 """
 
 STEPS = 128
-"""Number of steps in the integration of the adiabat."""
+"""Number of steps in the numerical integration of the adiabat."""
 
 REST_ERROR = 0.12
-"""Error of the length of a gas below a piston at rest, relative to it and times N.
+"""Relative error of the predicted mean length of a gas below a piston, multiplied by the number of discs N.
 
-In 30 runs the length was 1.1 % larger than theory for 10 discs, and 0.15 % larger for 50 discs at φ = 0.5.
+In 30 runs, the mean length was larger than predicted by 1.1 % for 10 discs, and by 0.15 % for 50 discs at φ = 0.5.
 """
 
 
 @dataclass(frozen=True)
 class EvolutionLaw:
-    """Law of the temperature of a gas at F times.
+    """Theoretical prediction for a gas at F times.
 
     Attributes:
         text: name of the law.
-        temperature: (F,), mean m v²/2 per disc, energy.
-        spin: mean I ω² per disc, energy.
-        piston: coordinate of the piston at rest, length.
-        pressure: external pressure on the piston, energy/length².
-        caveats: conditions of the law that are not met.
-        piston_error: error of the coordinate at rest, length.
-        chambers: (F,), mean m v²/2 per disc on each side of an inner piston, energy, by name as in `beside_pistons`.
-        steady: whether the law is an equilibrium that the gas approaches.
+        temperature: (F,), mean of m v²/2 over the discs, energy.
+        spin: mean of I ω² over the discs, energy; None without prediction.
+        piston: mean coordinate of the piston in equilibrium, length; None without prediction.
+        pressure: external pressure on the piston, energy/length²; None without external pressure.
+        caveats: sentences about conditions of the law that are not met or not checked.
+        piston_error: error of `piston`, length.
+        chambers: (F,), mean of m v²/2 over the discs on each side of an inner piston, energy, by name as in
+            `beside_pistons`.
+        steady: whether the law describes an equilibrium that the gas approaches.
         area: (F,), area of a gas that a piston compresses without heat exchange, length²; None for other laws.
     """
 
@@ -80,7 +81,8 @@ class StateLines:
     Attributes:
         area: (L,), areas of the gas, length².
         isotherm: (L,), pressure on the piston at constant temperature, energy/length².
-        adiabat: (L,), pressure without heat exchange, energy/length²; None if heat flows in or discs spin.
+        adiabat: (L,), pressure on the piston without heat exchange, energy/length²; None if heat is exchanged or discs
+            spin.
     """
 
     area: np.ndarray
@@ -91,17 +93,17 @@ class StateLines:
 def expected_law(
     log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray] | None = None, start: float = 0.0
 ) -> EvolutionLaw | None:
-    """Return the law of the temperature at times (F,); None if no simple theory applies to the scene.
+    """Return the theoretical prediction for a gas at times (F,); None if no simple theory applies to the scene.
 
     Args:
         log: log of the gas.
         time: (F,), times.
-        apart: mean kinetic energy per disc at these times on each side of an inner piston.
-        start: coordinate of the piston at the first time, if it is known.
+        apart: (F,), mean kinetic energy per disc on each side of an inner piston, energy, by name.
+        start: coordinate of the piston at the first time, length; used for inner pistons only.
     """
     properties, ones = log.scene.properties, np.ones(len(time))
     discs = composition(log.discs)
-    single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effect changes the kinetic energy
+    single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effects change the kinetic energy
     alone = (
         len(discs.name) == 1
         and not log.discs.unlike
@@ -136,10 +138,11 @@ def expected_law(
 
 
 def _haff(log: Log, time: np.ndarray) -> EvolutionLaw | None:
-    """Return Haff's law T = T₀/(1 + t/τ)² with τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
+    """Return Haff's law T = T₀/(1 + t/τ)², where τ = 4/((1 - e²) Γ (1 + 3a₂/16)) (`granular.cooling_time`).
 
-    e is the restitution coefficient, Γ Enskog's collision rate of a disc at the start, and a₂ the fourth cumulant. If
-    the velocity of the centre of mass is conserved, it does not contribute to the temperature.
+    Here e is the restitution coefficient, Γ the collision rate of a disc at the start from Enskog theory, and a₂ the
+    fourth cumulant of the velocities. If momentum is conserved, the motion of the centre of mass does not contribute to
+    the temperature.
     """
     gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
     if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
@@ -155,7 +158,7 @@ def _haff(log: Log, time: np.ndarray) -> EvolutionLaw | None:
 
 
 def _kinetic(log: Log) -> float:
-    """Return the initial kinetic energy, relative to the centre of mass along axes where momentum is conserved."""
+    """Return the initial kinetic energy, without that of the centre of mass along axes with conserved momentum."""
     gas = log.discs
     return float(
         (gas.mass * ((gas.velocity - centre_of_mass_velocity(log.scene, log.discs)) ** 2).sum(axis=1)).sum() / 2
@@ -163,21 +166,21 @@ def _kinetic(log: Log) -> float:
 
 
 def _track(log: Log) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the times of the samples, and the coordinates and velocities of the only piston at them."""
+    """Return the times of the samples, and the coordinates and velocities of the only piston at these times."""
     time, place = log.observables["piston_position"]
     return time, place[:, 0], log.observables["piston_velocity"][1][:, 0]
 
 
 def room(log: Log, place: np.ndarray) -> np.ndarray:
-    """Return the length of the gas along the axis of the only piston, (P,), for coordinates of the piston (P,)."""
+    """Return the length (P,) of the gas along the axis of the only piston, from coordinates (P,) of the piston."""
     (table,) = log.scene.piston
     return place if outward(log, table) >= 0 else log.box[table.axis] - place
 
 
 def piston_force(log: Log, length: float) -> float:
-    """Return the force on a piston at rest over N T, 1/length.
+    """Return the force on a piston at rest, divided by N T, 1/length.
 
-    It is Z/(L - 2R), as the centres of the discs stay one radius away from the piston.
+    For a gas of length L it is Z/(L - 2R), because the centres of the discs remain one radius away from both ends.
     """
     gas, size = log.discs, list(log.box)
     size[log.scene.piston[0].axis] = length
@@ -188,7 +191,8 @@ def piston_force(log: Log, length: float) -> float:
 def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     """Return the isotherm and adiabat through the initial state of a gas below a piston, over the range of its areas.
 
-    The result is None without theory: for several species or pistons, above freezing, or if the gas is not uniform.
+    The result is None if theory is not available: for several species or pistons, above the freezing density, or if the
+    gas is not uniform.
     """
     gas, lacking = log.discs, log.scene.lacking("uniform", "straight_flight", "elastic")
     if len(log.scene.piston) != 1 or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike:
@@ -209,19 +213,25 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
 
 
 def is_crowded(log: Log, length: float) -> bool:
-    """Return whether the gas below the piston is denser than a fluid if its length is `length`."""
+    """Return whether a gas of the given length below the piston is too dense for a fluid."""
     gas, across = log.discs, log.box[1 - log.scene.piston[0].axis]
     return bool(gas.packing_fraction * gas.area > hard_discs.HIGHEST * length * across)
 
 
 def work_integral(log: Log, grid: np.ndarray, lengths: np.ndarray | float) -> np.ndarray:
-    """Return the work ∫ F dL/NT of the gas on a piston from the length grid[0] to other lengths, on a rising grid."""
+    """Return the work ∫ F dL of a gas on a piston, divided by N T, from the length grid[0] to other lengths.
+
+    Args:
+        log: log with a single piston.
+        grid: (G,), ascending lengths at which the integral is evaluated.
+        lengths: lengths at which the integral ends.
+    """
     slope = np.array([piston_force(log, length) for length in (grid[1:] + grid[:-1]) / 2])
     return np.interp(lengths, grid, np.append(0.0, np.cumsum(slope * np.diff(grid))))
 
 
 def _adiabat(log: Log, time: np.ndarray) -> EvolutionLaw | None:
-    """Return the adiabatic law d ln T = -F dL/NT, for a piston that moves slowly compared with the discs.
+    """Return the adiabat d ln T = -F dL/NT, which holds if the piston moves slowly compared with the discs.
 
     The result is None if the gas does not remain a fluid.
     """
@@ -244,11 +254,12 @@ def _adiabat(log: Log, time: np.ndarray) -> EvolutionLaw | None:
 
 
 def _at_rest(log: Log, ones: np.ndarray) -> EvolutionLaw | None:
-    """Return the mean position of a piston with a mass and the temperature there, from the energy N T + T/2 + P L X.
+    """Return the mean position of a piston of finite mass and the temperature in equilibrium.
 
-    These are the energies of the discs, of the motion of the piston and of its position X. At fixed energy E the
-    probability of a position is proportional to X^N (E - P L X)^(N - 1/2) in a dilute gas; the result is the mean. It
-    is None for few discs, and if the end stop holds the piston.
+    They follow from the total energy N T + T/2 + P L X, whose terms are the energies of the discs, of the motion of the
+    piston and of its position X; L is the length of the piston. At fixed energy E, the probability of a position is
+    proportional to X^N (E - P L X)^(N - 1/2) in a dilute gas, and the mean position is returned. The result is None for
+    few discs, or if the piston rests on its end stop.
     """
     (table,), (_, places, speeds) = log.scene.piston, _track(log)
     if not table.pressure or len(log.discs) < FEW:
@@ -271,11 +282,11 @@ def _at_rest(log: Log, ones: np.ndarray) -> EvolutionLaw | None:
 
 
 def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray], start: float) -> EvolutionLaw | None:
-    """Return temperature and position of an inner piston with a mass in equilibrium, and the relaxation of both gases.
+    """Return the equilibrium of an inner piston of finite mass with two gases, and the relaxation of both gases.
 
-    In equilibrium the probability of a position X between dilute gases of N₁ and N₂ discs is proportional to
-    X^N₁ (L - X)^N₂. Once the pressures are equal, the temperatures follow `adiabatic_piston.relaxation`. Theory does
-    not predict the temperatures at which different pressures become equal.
+    In equilibrium, the probability of a position X between dilute gases of N₁ and N₂ discs is proportional to
+    X^N₁ (L - X)^N₂. Once the pressures are equal, the temperatures follow `adiabatic_piston.relaxation`. If the initial
+    pressures differ, theory does not predict the temperatures at which they become equal.
     """
     (table,), gas = log.scene.piston, log.discs
     if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
@@ -300,7 +311,7 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
 def first_passable(log: Log) -> tuple[int, float] | None:
     """Return the axis normal to the first straight gate or permeable wall along an axis, and its coordinate.
 
-    The result is None without such a wall.
+    The result is None if there is no such wall.
     """
     walls = (wall for wall in walls_inside(log.scene) if wall.is_passable and wall.is_straight)
     return next(((k, wall.start[k]) for wall in walls for k in range(2) if wall.start[k] == wall.end[k]), None)
@@ -309,7 +320,8 @@ def first_passable(log: Log) -> tuple[int, float] | None:
 def equilibrium_spread(log: Log, end: float) -> dict[str, Estimate]:
     """Return the equilibrium fraction of the discs of each species beyond a wall.
 
-    The result is empty without such a wall, or if the discs are not distributed uniformly over both sides.
+    The wall is that of `first_passable`. The result is empty if there is no such wall, or if the discs do not become
+    uniformly distributed over both sides by the time `end`.
     """
     wall, gas = first_passable(log), log.discs
     if wall is None or gas.unlike or known_ensemble(log) is None or not becomes_uniform(log, end):

@@ -1,8 +1,10 @@
 """Measure the heat capacity by every route that the logs allow.
 
-Logs at several temperatures give the slope dE/dT. A single log gives E/T from the pressure on the walls of a closed
-box, Var(E)/T² in a heat bath, and the fluctuations of the kinetic energy with spin, gravity or a piston. DIR is the
-folder of a sweep with the analysis "heat-capacity".
+Logs at several temperatures give the slope dE/dT. A single log gives the heat capacity from E/T in a closed box, where
+T is measured from the pressure on the walls, from Var(E)/T² in a heat bath, or from the fluctuations of the kinetic
+energy in an isolated gas with spin, gravity or a piston.
+
+DIR is the folder of a sweep with the analysis "heat-capacity".
 """
 
 import math
@@ -44,7 +46,7 @@ class HeatCapacityAnalysis(Analysis):
     position = 100
     headline = "routes.*"
     results = (Measured, HeatCapacity)
-    sections = (Section("Heat capacity", "Heat capacity per disc by every route with its standard error, and theory"),)
+    sections = (Section("Heat capacity", "Heat capacity per disc from every route with standard errors, and theory"),)
     averages = True
     combine = staticmethod(combine_logs)
 
@@ -52,21 +54,22 @@ class HeatCapacityAnalysis(Analysis):
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Measured:
-        """Measure the heat capacity per disc, in units of k_B, by every route that one log allows.
+        """Measure the heat capacity per disc, in units of k_B, by the route that a log allows.
 
-        A closed box gives E/T, with T from the pressure on its walls. A heat bath gives Var(E)/T². Discs with spin,
-        gravity or a piston give the heat capacity from the fluctuations of the kinetic energy at fixed total energy. If
-        there are too few independent samples there is no result, and `caveats` contains the reason.
+        In a closed box, it is E/T, where T is measured from the pressure on the walls. In a heat bath, it is Var(E)/T².
+        In an isolated gas with spin, gravity or a piston, it follows from the fluctuations of the kinetic energy at
+        fixed total energy. If there are too few independent samples, the result contains no value, and `caveats`
+        contains the reason.
 
         Raises:
-            UserError: if no equilibrium exists or is known: walls of two temperatures, collisions that lose energy, a
-                driven piston, a gas without positions.
+            UserError: if no equilibrium exists or is known, for example because walls have different temperatures,
+                collisions lose energy, a piston is driven or the discs have no positions.
         """
         scene, properties, n = log.scene, log.scene.properties, len(log.discs)
         if not log.has_positions:
             raise NotApplicableError(f"{log.path}: the heat capacity requires discs with positions")
         if why := nonequilibrium_reason(log):
-            follow = "use `idealgas evolution` to follow the gas in time"
+            follow = "use `idealgas evolution` to follow the gas over time"
             if not properties.fixed_walls:
                 follow = "use `idealgas evolution` for γ of an adiabatic compression"
             raise NotApplicableError(f"{log.path}: the heat capacity requires equilibrium, but {why}; {follow}")
@@ -115,7 +118,7 @@ class HeatCapacityAnalysis(Analysis):
 
 
 def _mean_energy(energy: np.ndarray) -> Estimate:
-    """Return the mean of a series of energies, which is known exactly if only rounding changes it."""
+    """Return the mean of a series of energies, with an error of 0 if the series varies only by rounding errors."""
     if np.ptp(energy) <= 1e-9 * np.abs(energy).max():
         return Estimate(float(energy.mean()), 0.0, math.inf)
     return mean(energy)
@@ -124,7 +127,7 @@ def _mean_energy(energy: np.ndarray) -> Estimate:
 def _closed_box(log: Log, start: float | None, end: float | None, progress: ReadProgress | None) -> Measured:
     """Return the heat capacity E/T of a gas in a closed box.
 
-    Hard discs have no energy scale, so that E is proportional to T.
+    As hard discs have no energy scale, E is proportional to T.
     """
     measured = pressure(log, start, end, progress)
     walls = next((route.compressibility_factor for route in measured.routes if route.name.startswith(WALLS)), None)

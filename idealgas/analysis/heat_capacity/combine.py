@@ -1,4 +1,4 @@
-"""Heat capacity from several logs: the slope dE/dT of each gas, means of the routes of single logs, and γ."""
+"""Heat capacity from several logs: the slope dE/dT of each gas, averages over single logs for each route, and γ."""
 
 import math
 from collections import Counter
@@ -20,25 +20,25 @@ if TYPE_CHECKING:
 CLOSED, BATH, ROUGH, GRAVITY, PISTON = "closed box", "heat bath", "rough discs", "gravity", "piston"
 
 MANY = 12
-"""Largest number of logs that the table lists individually."""
+"""Largest number of logs that a table lists individually."""
 
 ROUTES = {
     "dE/dT": "it requires logs of one gas at several energies",
     "E/T": "it requires the pressure on the walls of a closed box, in a log with events",
-    "Var(E)/T²": "it requires thermal walls of one temperature, or a thermostat",
+    "Var(E)/T²": "it requires thermal walls at a common temperature, or a thermostat",
     "fluctuations of the kinetic energy": "it requires an isolated gas with spin, gravity or a piston",
-    "γ": "it requires a piston with a mass",
+    "γ": "it requires a piston of finite mass",
 }
-"""Reason for which a route does not apply to a set of logs, by the name of the route."""
+"""Reason why a route does not apply to a set of logs, by name of the route."""
 
 
 @dataclass(frozen=True)
 class Measured(RunResult):
     """Energy, temperature and heat capacities of one log.
 
-    The temperature must be measured independently of the energy. It follows from the pressure on the walls if all
-    energy is kinetic; in a heat bath it is the temperature of the thermal walls or of the thermostat; and if the
-    kinetic energy is only a part of the energy, it follows from the kinetic energy.
+    The temperature must be known independently of the energy. In a closed box, where all energy is kinetic, it is
+    measured from the pressure on the walls. In a heat bath, it is the temperature of the thermal walls or of the
+    thermostat. If the kinetic energy is only one term of the energy, it is measured from the kinetic energy.
 
     Attributes:
         path: path of the log.
@@ -47,11 +47,11 @@ class Measured(RunResult):
         energy: mean energy per disc, relative to an arbitrary zero, energy.
         temperature: temperature, energy (k_B = 1).
         thermometer: how the temperature was measured.
-        routes: heat capacity per disc (k_B = 1) by the name of each route.
-        theory: heat capacity per disc by theory.
-        excess: C_P - C_A per disc by theory; None without a piston.
-        theory_error: error of the heat capacity by theory.
-        refused: why the log gives no value by a route that applies to it, by the name of the route.
+        routes: heat capacity per disc (k_B = 1), by name of the route.
+        theory: theoretical heat capacity per disc (k_B = 1); None if theory is not available.
+        excess: theoretical C_P - C_A per disc (k_B = 1); None without a piston or without theory.
+        theory_error: error of the theoretical heat capacity.
+        refused: why a route that applies to the log gives no value, by name of the route.
     """
 
     path: str
@@ -69,13 +69,13 @@ class Measured(RunResult):
 
 @dataclass(frozen=True)
 class HeatCapacityRoute:
-    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas by one route.
+    """Heat capacity per disc (k_B = 1), or γ (no unit), of one gas from one route.
 
     Attributes:
         name: name of the route.
         kind: kind of gas.
         value: heat capacity or γ.
-        gas: number of discs, box and effects of the gas; None if the logs contain one gas of this kind.
+        gas: description of the gas by discs, box and effects; None if the logs contain only one gas of this kind.
     """
 
     name: Annotated[str, Key("route")]
@@ -86,12 +86,12 @@ class HeatCapacityRoute:
 
 @dataclass(frozen=True)
 class HeatCapacity(Result):
-    """Heat capacity by every route that a set of logs allows.
+    """Heat capacity from every route that a set of logs allows.
 
     Attributes:
         routes: heat capacities, one for each route and kind of gas.
-        refused: why a route does not apply, by the name of the route.
-        logs: measurements of each log.
+        refused: why a route does not apply or gives no value, by name of the route.
+        logs: measurements from each log.
     """
 
     routes: tuple[HeatCapacityRoute, ...]
@@ -99,7 +99,7 @@ class HeatCapacity(Result):
     logs: tuple[Measured, ...]
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of energy and temperature of each log, and of the heat capacity by every route."""
+        """Return the table of energies and temperatures of the logs, and that of the heat capacity from every route."""
         tables = []
         if len(self.logs) <= MANY:
             rows = [(f"{log.path}: E/N", log.energy) for log in self.logs]
@@ -110,17 +110,18 @@ class HeatCapacity(Result):
         return [*tables, estimates("C per disc, and γ (no unit, k_B = 1)", routes, refused)]
 
     def summary(self) -> str:
-        """Return the heat capacity per disc by the first route, and whether all routes agree with theory."""
+        """Return the heat capacity per disc from the first route, and whether all routes agree with theory."""
         rows = [(_listed(route.name, route.kind, route.gas), route.value) for route in self.routes]
         if not rows:
             return "No route gives a heat capacity for these logs."
         name, estimate = rows[0]
         return (
-            f"C = {format_estimate(estimate)} per disc by {name} (1 for a large ideal gas, k_B = 1); {agreement(rows)}."
+            f"C = {format_estimate(estimate)} per disc from {name} (1 for a large ideal gas, k_B = 1); "
+            f"{agreement(rows)}."
         )
 
     def figure(self) -> "Figure":
-        """Draw C per disc (and γ) by every route with its error bar and its theory."""
+        """Draw C per disc (and γ) from every route with error bars and theoretical values."""
         from idealgas.presentation.style import COLOURS, name_rows, panels
 
         figure, (ax,) = panels(1)
@@ -134,14 +135,14 @@ class HeatCapacity(Result):
         ax.locator_params(axis="x", nbins=6)
         ax.plot([], [], "o", color=COLOURS[0], label="measured")
         ax.plot([], [], color=COLOURS[1], label="theory")
-        ax.set(xlabel="C/N, and γ (no unit, k_B = 1)", ylabel="by every route")
+        ax.set(xlabel="C/N, and γ (no unit, k_B = 1)", ylabel="route")
         ax.legend()
         figure.set_figheight(1.5 + 0.3 * len(names))
         return figure
 
 
 Groups = dict[tuple[str, str], list[Measured]]
-"""Logs by kind of gas and gas in words; the words are empty if all logs of the kind contain the same gas."""
+"""Logs by kind of gas and description of the gas, which is empty if all logs of the kind contain the same gas."""
 
 
 def _listed(*parts: str | None) -> str:
@@ -149,7 +150,7 @@ def _listed(*parts: str | None) -> str:
 
 
 def combine_logs(logs: Sequence[Measured]) -> HeatCapacity:
-    """Combine the logs of each gas: slopes dE/dT, means of the routes of single logs, and γ."""
+    """Combine the logs of each gas: slopes dE/dT, averages over single logs for each route, and γ."""
     groups = _groups(logs)
     routes = [route for (kind, gas), members in groups.items() for route in _of_gas(kind, gas, members)]
     routes += _gammas(tuple(routes), groups)
@@ -171,17 +172,17 @@ def _groups(logs: Sequence[Measured]) -> Groups:
         origin = members[0].origin
         words = origin.words if origin and kinds[kind] > 1 else ""
         if (kind, words) in groups and origin:
-            words = f"{words}, as in {origin.path}"  # the gases differ in something that the words omit
+            words = f"{words}, as in {origin.path}"  # the gases differ in something that the description omits
         groups[kind, words] = members
     return groups
 
 
 def _apart(groups: Groups) -> Iterator[str]:
-    """Yield a caveat for each kind of gas of which there is more than one gas."""
+    """Yield a caveat for each kind of gas that occurs as several different gases."""
     for kind in dict.fromkeys(kind for kind, _ in groups):
         if len(gases := [gas for kind_of_gas, gas in groups if kind_of_gas == kind]) > 1:
             words = "; ".join(gases)
-            yield f"Different gases ({kind}) are analysed separately, each with its slope dE/dT and its means: {words}."
+            yield f"Different gases ({kind}) are analysed separately, each with its own dE/dT and averages: {words}."
 
 
 def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[HeatCapacityRoute]:
@@ -193,7 +194,7 @@ def _of_gas(kind: str, gas: str, members: Sequence[Measured]) -> Iterator[HeatCa
 
 
 def _slope(members: Sequence[Measured]) -> Estimate | None:
-    """Return the slope dE/dT per disc by weighted least squares with errors of E or T; None if all T are the same."""
+    """Return dE/dT per disc from least squares weighted by the errors of E and T; None if all T are nearly the same."""
     energy, t = (np.array([getattr(m, name).value for m in members]) for name in ("energy", "temperature"))
     if len(members) < 2 or not np.ptp(t) > 0.05 * np.abs(t).max():
         return None
@@ -220,9 +221,9 @@ def _slope(members: Sequence[Measured]) -> Estimate | None:
 
 
 def _gammas(routes: Sequence[HeatCapacityRoute], groups: Groups) -> Iterator[HeatCapacityRoute]:
-    """Yield the ratio γ = C_P/C_A of each gas with a piston.
+    """Yield the ratio γ = C_P/C_A for each gas with a piston.
 
-    C_A is measured in a log without the piston if there is one; otherwise C_P - C_A is taken from theory.
+    C_A is taken from logs without a piston if there are any; otherwise C_P - C_A is taken from theory.
     """
     for route in routes:
         excess = next((m.excess for m in groups[route.kind, route.gas or ""] if m.excess), None)

@@ -1,8 +1,8 @@
-"""Heat capacity from the fluctuations of the energy, and its theory.
+"""Heat capacity from the fluctuations of the energy, and its theoretical value.
 
-Events give the energy at all times. Samples are stored at the starts of epochs, whose length depends on the speed of
-the discs at that time. With `log.snapshot_every` they are also stored at evenly spaced times, which are independent of
-the state of the gas.
+The energy at any time follows from the events in a log. In addition, samples of the energy are stored at the start of
+each epoch, whose duration depends on the speeds of the discs at that time. With `log.snapshot_every`, samples are also
+stored at evenly spaced times, which are independent of the state of the gas.
 """
 
 import math
@@ -22,22 +22,23 @@ from idealgas.theory.conserved import centre_of_mass_energy, degrees_of_freedom
 from idealgas.theory.values import Theory
 
 FEWEST = 16
-"""Smallest number of samples from which fluctuations can be measured."""
+"""Smallest number of samples from which fluctuations are measured."""
 
 LEAST_SAMPLES = 128
 """Smallest number of independent samples for a heat capacity from fluctuations; the error of a variance is then 13 %.
 
-With fewer samples, a variance that is too small also has an error that is too small: the rms of deviation over error is
-1.46 with 32 samples, 1.24 with 64 and 1.11 with 100 (synthetic series).
+With fewer samples, a variance that is too small by chance also has an error that is too small. In synthetic series, the
+rms deviation in units of the error is 1.46 with 32 samples, 1.24 with 64 and 1.11 with 100.
 """
 
 LARGEST_ERROR = 0.5
 """Largest relative standard error of a heat capacity from fluctuations."""
 
 FEW_IN_COLUMN = 0.47
-"""Relative error of the heat capacity under gravity by the theory of many discs, for N discs of fixed energy, times N.
+"""N times the relative error of the theoretical heat capacity of N discs under gravity at fixed energy.
 
-It is the maximum over all heights of the box, from exact integration over the states of 2 to 20 points.
+The theory assumes many discs. The error is the maximum over all heights of the box, from exact integration over the
+states of 2 to 20 point particles.
 """
 
 SOURCE = "degrees of freedom"
@@ -48,12 +49,13 @@ SOURCE = "degrees of freedom"
 class EnergySeries:
     """Energies of a gas at n times after equilibration.
 
-    Along axes where nothing stops its motion, the gas as a whole does not contribute to the energies.
+    Along axes with conserved momentum, the motion of the gas as a whole is excluded from the energies.
 
     Attributes:
-        kinetic: (n,), kinetic energy of translation of the discs.
-        energy: (n,), energy of the discs by motion, spin and position, including that of a piston with a mass.
-        position: (n,), coordinate of the piston, length; None without a piston.
+        kinetic: (n,), translational kinetic energy of the discs.
+        energy: (n,), translational, rotational and potential energy of the discs, plus the energy of a piston of finite
+            mass.
+        position: (n,), coordinate of the piston, length; None without such a piston.
         start: first of the times.
     """
 
@@ -66,11 +68,11 @@ class EnergySeries:
 def energy_series(log: Log, start: float | None = None, end: float | None = None) -> EnergySeries:
     """Return the energies between two times, by default from detected equilibrium to the end of the log.
 
-    With events, the energies at the edges of the blocks of the window are used. Without events, and with a piston,
-    those of the samples are used.
+    For a log with events, the energies at the edges of the time blocks in the window are used. For a log without
+    events, or with a piston, stored samples are used.
 
     Raises:
-        UserError: if there are no samples, or too few in equilibrium.
+        UserError: if there are no samples, or too few samples in equilibrium.
     """
     if log.has_events:
         window = measure(log, [], start, end)
@@ -81,7 +83,7 @@ def energy_series(log: Log, start: float | None = None, end: float | None = None
 
 
 def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
-    """Return the energies of the discs at given times (n,)."""
+    """Return the energies of the discs at given times (n,), from the events."""
     gas, kinetic, inner = log.discs, np.zeros(len(times)), np.zeros(len(times))
     for k, state in enumerate(log.frames(times)):
         kinetic[k] = gas.mass @ (state.velocity**2).sum(axis=1) / 2
@@ -94,7 +96,7 @@ def _in_events(log: Log, times: np.ndarray) -> EnergySeries:
 
 
 def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
-    """Return the energies at samples between two times, evenly spaced if possible."""
+    """Return the energies from stored samples between two times, evenly spaced if possible."""
     scene, observed = log.scene, log.observables
     time = observed["kinetic_energy"][0]
     if len(time) < 2 or not np.diff(time).max() > 0:
@@ -105,7 +107,7 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
     else:
         step = np.diff(time).max()
         grid = np.arange(first_time, end + 1e-9 * step, step)
-        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample may be off the grid by rounding
+        at = np.unique(time.searchsorted(grid - 1e-9 * step))  # a sample may be off the grid by a rounding error
         at = at[(at >= time.searchsorted(first_time)) & (at < time.searchsorted(end, "right"))]
     common = centre_of_mass_energy(log.scene, log.discs)
     kinetic, energy = (observed[name][1][at] - common for name in ("kinetic_energy", "energy"))
@@ -126,14 +128,14 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
 
 
 def bath_fluctuations(energy: np.ndarray, n: int, bath: float, other: float, capacity: Theory | None) -> Estimate:
-    """Return the heat capacity C = Var(E)/T² per disc in a heat bath, corrected for the variance of the mean.
+    """Return the heat capacity per disc in a heat bath, Var(E)/(N T²), corrected for the variance of the mean.
 
     Args:
-        energy: series of energies.
-        n: number of discs.
+        energy: (n,), energies at successive times.
+        n: number of discs N.
         bath: temperature of the bath, energy.
-        other: part of C that is not due to discs: 3/2 for position and motion of a piston, else 0.
-        capacity: theory of the result.
+        other: contribution to C that is not due to discs: 3/2 for the position and motion of a piston, otherwise 0.
+        capacity: theoretical heat capacity per disc; None without theory.
     """
     energy = energy - energy.mean()
     lost = mean(energy).standard_error ** 2
@@ -143,17 +145,18 @@ def bath_fluctuations(energy: np.ndarray, n: int, bath: float, other: float, cap
 
 
 def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, capacity: Theory | None) -> Estimate:
-    """Return the heat capacity per disc from the variance of the kinetic energy K at fixed energy E, exact at finite N.
+    """Return the heat capacity per disc from the variance of the kinetic energy K at fixed energy E, for finite N.
 
-    All states of one energy are equally probable, so that K/E follows Beta(a, b) with a = D/2 and a + b = C, and r = a
-    Var(K)/⟨K⟩² is b/(a + b + 1). Source: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967).
+    All states of equal energy are equally probable. If the other terms of the energy contribute a constant heat
+    capacity, K/E is therefore distributed as Beta(a, b), where a = D/2 and a + b = C, and r = a Var(K)/⟨K⟩² equals
+    b/(a + b + 1). Source: Lebowitz, Percus & Verlet, Phys. Rev. 153, 250 (1967).
 
     Args:
-        kinetic: series of kinetic energies.
-        n: number of discs.
-        dof: degrees of freedom D of their motion.
-        other: part of C that is not due to discs: 3/2 for position and motion of a piston, else 0.
-        capacity: theory of the result.
+        kinetic: (n,), kinetic energies at successive times.
+        n: number of discs N.
+        dof: number of degrees of freedom D of the translational motion of the discs.
+        other: contribution to C that is not due to discs: 3/2 for the position and motion of a piston, otherwise 0.
+        capacity: theoretical heat capacity per disc; None without theory.
     """
     a = dof / 2
     kinetic = kinetic / kinetic.mean() - 1
@@ -167,7 +170,12 @@ def kinetic_fluctuations(kinetic: np.ndarray, n: int, dof: int, other: float, ca
 
 
 def too_few(capacity: Estimate, series: np.ndarray) -> str:
-    """Return why the fluctuations of a series give no heat capacity, as part of a sentence; empty if they do."""
+    """Return why fluctuations do not determine the heat capacity, as part of a sentence; empty if they do.
+
+    Args:
+        capacity: heat capacity from the fluctuations.
+        series: (n,), fluctuating energies.
+    """
     samples, error = len(series) / inefficiency(series), capacity.standard_error
     if samples < LEAST_SAMPLES:
         why = f"{samples:.0f} independent samples of the energy are too few ({LEAST_SAMPLES} needed)"
@@ -179,11 +187,12 @@ def too_few(capacity: Estimate, series: np.ndarray) -> str:
 
 
 def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, float | None]:
-    """Return C per disc by theory and, with a piston, C_P - C_A per disc (k_B = 1); None if theory is not available.
+    """Return the theoretical C per disc and, with a piston, C_P - C_A per disc (k_B = 1); None without theory.
 
-    Each degree of freedom contributes 1/2; each conserved momentum removes one. The position of a disc under gravity
-    contributes 1 - x² eˣ/(eˣ - 1)² with x = m g h/T, where h is the height that its centre can reach; for N discs of
-    fixed energy this is off by a fraction of order 1/N. A piston contributes Z²/(Z + φZ') = T (∂P/∂T)²/(-∂P/∂A).
+    Each degree of freedom contributes 1/2, and each conserved component of the momentum removes a degree of freedom.
+    The position of a disc under gravity contributes 1 - x² eˣ/(eˣ - 1)², where x = m g h/T and h is the height that its
+    centre can reach; for N discs at fixed energy, the relative error of this expression is of order 1/N. A piston
+    contributes T (∂P/∂T)²/(-∂P/∂A) in total, which is Z²/(Z + φZ') per disc, where Z' = dZ/dφ.
     """
     scene, gas, part = log.scene, log.discs, 0.0
     motion = degrees_of_freedom(log.scene, log.discs) / (2 * len(gas))

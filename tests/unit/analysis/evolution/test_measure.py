@@ -140,7 +140,7 @@ def test_work_of_a_piston_at_constant_temperature(make):
     assert work.theory == pytest.approx(40 * 1.5 * math.log(12 / 11), rel=0.06)
     assert work.theory > 40 * 1.5 * math.log(12 / 11)
     assert abs(work.deviation) < 4
-    assert "The piston does the work " in result.summary()
+    assert "The work of the piston on the discs is " in result.summary()
     assert evolution(make(PISTON)).isothermal_work is None
 
 
