@@ -1,1 +1,1 @@
-"""Sums over the flights and collisions in a log, and the windows of time that they are taken in."""
+"""Sums over the flights and collisions in a log, and the windows of time over which they are taken."""

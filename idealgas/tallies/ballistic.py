@@ -1,7 +1,8 @@
-"""Velocity quantities during a fall at constant acceleration: values, times at which they are reached, and integrals.
+"""Speed, velocity components and kinetic energy during a fall: values, times at which these are reached, integrals.
 
-A fall starts at velocity (vx, vy), length/time, under the acceleration `gravity`, length/time². Quantities are numbered
-as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All arguments but `gravity` may be arrays (n,).
+A fall starts at velocity (vx, vy), length/time, under a constant acceleration `gravity`, length/time². Quantities are
+numbered as in `flights.VELOCITY_QUANTITIES`: speed, vx, vy, and kinetic energy. All arguments except `quantity` and
+`gravity` may be arrays (n,).
 """
 
 import numpy as np
@@ -32,14 +33,14 @@ def value_during_flight(
 
 
 def changes_during_flight(quantity: int, gravity: Gravity) -> bool:
-    """Return whether a quantity changes during a fall; a velocity component across the acceleration does not."""
+    """Return whether a quantity changes during a fall; a velocity component without acceleration does not."""
     if quantity in (ALONG_X, ALONG_Y):
         return gravity[quantity - ALONG_X] != 0.0
     return any(gravity)
 
 
 def turning_time(quantity: int, vx: np.ndarray, vy: np.ndarray, gravity: Gravity) -> np.ndarray:
-    """Return the time at which a quantity is smallest, possibly before the start of the fall; infinite if monotonic."""
+    """Return the time at which a quantity is smallest, possibly before the start of a fall; inf for vx and vy."""
     if quantity in (ALONG_X, ALONG_Y):
         return np.full_like(vx, np.inf)
     return -(vx * gravity[0] + vy * gravity[1]) / (gravity[0] ** 2 + gravity[1] ** 2)
@@ -54,7 +55,7 @@ def time_at_value(
     vy: np.ndarray,
     gravity: Gravity,
 ) -> np.ndarray:
-    """Return the time at which a quantity has a value, after its minimum if it `rises`, else before it."""
+    """Return the time at which a quantity reaches a value, after its minimum if `rises` is true, otherwise before."""
     if quantity == ALONG_X:
         return (value - vx) / gravity[0]
     if quantity == ALONG_Y:
@@ -63,7 +64,7 @@ def time_at_value(
     a = gravity[0] ** 2 + gravity[1] ** 2
     across = (
         vx * gravity[1] - vy * gravity[0]
-    )  # velocity across the acceleration, times √a, which the fall does not change
+    )  # the constant velocity component perpendicular to the acceleration, times √a
     apart = np.sqrt(np.maximum(square - across * across / a, 0.0) / a)
     return turning_time(quantity, vx, vy, gravity) + np.where(rises, apart, -apart)
 
@@ -71,7 +72,7 @@ def time_at_value(
 def integral_over_fall(
     quantity: int, mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: Gravity, time: np.ndarray
 ) -> np.ndarray:
-    """Return the integral of a quantity over a fall of a duration."""
+    """Return the integral of a quantity over time during a fall of duration `time`."""
     if quantity == SPEED:
         return path_length(vx, vy, gravity, time)
     if quantity == ALONG_X:

@@ -1,8 +1,8 @@
 """Bond-orientational order of discs: how well the neighbours of a disc form a regular hexagon.
 
-Neighbours are those of the Voronoi diagram of the centres, and each is weighted with the length of the edge that the
-two cells share. ψ₆ is then a continuous function of the positions (Mickel, Kapfer, Schröder-Turk & Mecke, J. Chem.
-Phys. 138, 044501 (2013)).
+Two discs are neighbours if their cells in the Voronoi diagram of the centres share an edge, and each neighbour is
+weighted by the length of this edge. ψ₆ is then a continuous function of the positions (Mickel, Kapfer, Schröder-Turk &
+Mecke, J. Chem. Phys. 138, 044501 (2013)).
 """
 
 import math
@@ -17,30 +17,30 @@ FOLD = 6
 """Number of neighbours of a disc in a triangular lattice."""
 
 DENSE = 0.5
-"""Packing fraction from which on a report includes the order of a gas."""
+"""Smallest packing fraction for which a report includes the order of a gas."""
 
 MARGIN = 4.0
-"""Initial width of the border of images, in mean distances 1/√n between discs."""
+"""Initial width of the border of periodic images around the box, in mean distances 1/√n between discs."""
 
 SHORTEST = 1e-6
-"""Shortest shared edge of two neighbours that counts, in mean distances.
+"""Length of the shortest shared edge that makes two discs neighbours, in mean distances between discs.
 
-Shorter edges come from rounding if four or more discs lie on a circle.
+Shorter edges result from rounding if four or more discs lie on a circle.
 """
 
 SAME = "neighbours cannot be found: two discs have the same position"
 
 ROUNDING = 1e-9
-"""Largest distance of a position from the box, in box lengths, that is attributed to rounding."""
+"""Largest distance of a position outside the box, in box lengths, that is attributed to rounding."""
 
 
 class BondOrder(NamedTuple):
     """Order around each of N discs.
 
     Attributes:
-        value: (N,), local ψ₆ = Σ l exp(6iθ)/Σ l over the neighbours, with the length l of the shared edge and the angle
-            θ of the line to the neighbour; complex. Its modulus is 1 in a triangular lattice and 0 for a disc without
-            neighbours.
+        value: (N,), complex, local ψ₆ = Σ l exp(6iθ)/Σ l over the neighbours, where l is the length of the shared edge
+            and θ the angle of the line to the neighbour. Its modulus is 1 in a triangular lattice and 0 for a disc
+            without neighbours.
         neighbours: (N,), number of neighbours.
     """
 
@@ -51,8 +51,8 @@ class BondOrder(NamedTuple):
 def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]) -> BondOrder:
     """Return the local order of the discs at positions (N, 2) in a box.
 
-    Along a periodic axis the cells continue in the images of the discs. A reflecting side cuts cells off: it is not a
-    neighbour, and its edges do not count.
+    Along a periodic axis, periodic images of the discs count as neighbours. A reflecting side cuts cells off; it is not
+    a neighbour, and edges along it do not count.
 
     Raises:
         UserError: if the positions have no Voronoi diagram because several discs have the same position, or if a disc
@@ -70,7 +70,7 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
         ends, inside = _clipped(ends, low, high)
         pairs = pairs[inside]
         radius = np.hypot(*np.moveaxis(ends - points[pairs[:, :1]], 2, 0))[..., None]
-        known = (ends - radius >= -margin) & (ends + radius <= np.array(box) + margin)  # circles that contain no image
+        known = (ends - radius >= -margin) & (ends + radius <= np.array(box) + margin)  # no image is missing in them
         if known[..., open_sides].all():
             break
         margin *= 2
@@ -80,7 +80,7 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
     bond = points[pairs[:, 1]] - points[pairs[:, 0]]
     turns = edges * np.exp(1j * FOLD * np.arctan2(bond[:, 1], bond[:, 0]))
     total, count, length = np.zeros(number, complex), np.zeros(number, np.int64), np.zeros(number)
-    for side in pairs.T:  # 6θ of the line is the same from either end
+    for side in pairs.T:  # exp(6iθ) is the same from either end of the line
         of_discs = side < number
         np.add.at(total, side[of_discs], turns[of_discs])
         np.add.at(length, side[of_discs], edges[of_discs])
@@ -91,7 +91,7 @@ def bond_order(position: np.ndarray, box: tuple[float, float], periodic: tuple[b
 def _with_images(
     position: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool], margin: float
 ) -> np.ndarray:
-    """Return positions (M, 2) of the discs, then of their images up to `margin` (length) beyond periodic sides."""
+    """Return positions (M, 2) of the discs, followed by their images up to `margin` (length) beyond periodic sides."""
     points = position
     for axis, (size, wrapped) in enumerate(zip(box, periodic, strict=True)):
         if wrapped:
@@ -104,10 +104,10 @@ def _with_images(
 
 
 def _edges(points: np.ndarray, number: int, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs (E, 2) of points that share an edge and the ends of the edges (E, 2, 2).
+    """Return the pairs (E, 2) of points that share an edge, and the ends of the edges (E, 2, 2).
 
-    One point of each pair is among the first `number`. Four more points close all cells; each is further `away` (2,)
-    from the first point than any position in the box is from a disc.
+    At least one point of each pair is among the first `number`. Four additional points close all cells; their distance
+    `away` (2,) from the first point is larger than that of any position in the box from a disc.
     """
     frame = points[0] + away * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
     try:
@@ -122,9 +122,10 @@ def _edges(points: np.ndarray, number: int, away: np.ndarray) -> tuple[np.ndarra
 
 
 def _clipped(ends: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends (K, 2, 2) of the parts of edges between coordinates `low` and `high` (2,).
+    """Clip edges, given by their ends (E, 2, 2), to coordinates between `low` and `high` (2,).
 
-    The second result is whether each edge has such a part, (E,).
+    Returns:
+        The ends (K, 2, 2) of the clipped edges of nonzero length, and whether each edge has such a part, (E,).
     """
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Chambers into which walls from side to side divide a box, and which of them contain discs."""
+"""Chambers into which walls from side to side divide a box, and whether they contain discs."""
 
 from collections import defaultdict
 from itertools import pairwise
@@ -12,14 +12,14 @@ from idealgas.scene.walls import walls_inside
 
 
 class Chambers:
-    """Chambers of the box while all of its dividing walls are present, from the start of a log to a given time.
+    """Chambers of the box, divided by walls that are present from the start of a log to a given time.
 
-    A row of walls from side to side along x or y divides the box if it has no gap and no disc passes it, unless the gas
-    gets past it through a periodic boundary or a piston may reach it. Chambers that are empty at the start remain
-    empty.
+    A row of walls from side to side along x or y divides the box if it has no gap and no disc can pass it. Walls do not
+    count as dividing if the gas gets around them through a periodic boundary, or if the scene has a piston. Chambers
+    that are empty at the start remain empty.
 
     Attributes:
-        cuts: positions (K + 1,) of the dividing walls and of the sides along x and y.
+        cuts: for x and for y, positions (K + 1,) of the dividing walls and of the sides, length.
         occupied: (Kx, Ky), whether the chambers contain discs.
     """
 
@@ -32,16 +32,16 @@ class Chambers:
 
     @property
     def area(self) -> float:
-        """Area of the chambers with discs, length²; without solids if all chambers contain discs."""
+        """Area of the chambers with discs, length²; solids are subtracted only if all chambers contain discs."""
         x, y = map(np.diff, self.cuts)
         return float(x @ self.occupied @ y) - self._solid_area * bool(self.occupied.all())
 
     def along(self, side: int) -> np.ndarray:
-        """Return whether each of the chambers along a side of the box contains discs."""
+        """Return whether each chamber along a side of the box contains discs."""
         return self.occupied.take(-(side % 2), axis=axis_of(side))
 
     def length(self, side: int) -> float:
-        """Return the length of a side of the box beside chambers with discs; its whole length if there are none."""
+        """Return the length of a side of the box along chambers with discs; its whole length if there are none."""
         lengths, there = np.diff(self.cuts[1 - axis_of(side)]), self.along(side)
         return float(lengths[there].sum() if there.any() else lengths.sum())
 
@@ -53,19 +53,19 @@ class Chambers:
 
 
 def outward(log: Log, piston: PistonTable) -> float:
-    """Return the direction from the gas to a piston along its axis, +1 or -1; 0 with gas on both sides."""
+    """Return the direction from the gas to a piston along its axis, +1 or -1; 0 if there is gas on both sides."""
     directions = set(piston.outward_from(log.discs.position, log.box).tolist())
     return directions.pop() if len(directions) == 1 else 0.0
 
 
 def piston_names(scene: Scene) -> list[str]:
-    """Return unique names of the pistons in tables and figures: "piston" for a single one, else with side or name."""
+    """Return unique names of the pistons for tables and figures: "piston" for one, otherwise with side or name."""
     walls = [piston.wall for piston in scene.piston]
     return ["piston"] if len(walls) == 1 else [wall if wall == "piston" else f"{wall} piston" for wall in walls]
 
 
 def beside_pistons(log: Log) -> dict[str, np.ndarray]:
-    """Return masks (N,) of the discs of each gas beside inner pistons, by the name of the side or of the pistons."""
+    """Return masks (N,) of the discs in each of the gases that inner pistons separate, by the name of the gas."""
     inner = [
         (piston, name) for piston, name in zip(log.scene.piston, piston_names(log.scene), strict=True) if piston.inner
     ]

@@ -1,4 +1,4 @@
-"""Collision rates and mean free paths of each species of discs, measured and by kinetic theory."""
+"""Collision rates and mean free paths of each species of discs, measured and from kinetic theory."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from idealgas.theory.values import BoxTheory, Theory, box_theory
 
 @dataclass(frozen=True)
 class CollisionRate:
-    """Collision rate of one disc of `species` with all discs of the group `other` (see `Gas.partners`), 1/time."""
+    """Collision rate of a disc of `species` with all discs of the group `other` (see `Gas.partners`), 1/time."""
 
     species: str
     other: str
@@ -33,8 +33,8 @@ class FreePath:
 
     Attributes:
         species: name of the species.
-        path: mean path between successive collisions of a disc with other discs, length.
-        time: mean time between them, time.
+        path: mean path length between successive collisions of a disc with other discs, length.
+        time: mean time between these collisions, time.
         speed: mean speed of a disc, length/time.
     """
 
@@ -45,13 +45,13 @@ class FreePath:
 
 
 class ExpectedRates(NamedTuple):
-    """Collision rates Γ_ij of one disc of species i with the discs of group j by theory, with their errors.
+    """Theoretical collision rates Γ_ij of a disc of species i with the discs of group j, with their errors.
 
     Attributes:
-        rate: (S, G), 1/time; nan if theory has no value.
-        relative_error: (S, G), relative standard deviation of its error.
+        rate: (S, G), Γ_ij, 1/time; nan if theory is not available.
+        relative_error: (S, G), relative standard error of Γ_ij.
         discs: kinds of discs, see `classes`.
-        of_kinds: the same rates and errors (2, K, K) between kinds.
+        of_kinds: (2, K, K), rates between kinds of discs, 1/time, and their relative errors.
     """
 
     rate: np.ndarray
@@ -60,11 +60,11 @@ class ExpectedRates(NamedTuple):
     of_kinds: np.ndarray
 
     def between(self, i: int, j: int) -> Theory | None:
-        """Return the rate Γ_ij, 1/time; None if theory has no value."""
+        """Return the rate Γ_ij, 1/time; None if theory is not available."""
         return self._theory(self.rate[i, j], self.relative_error[i, j] * self.rate[i, j])
 
     def of(self, i: int) -> Theory | None:
-        """Return the rate of collisions of one disc of species i with all other discs, 1/time; None without a value."""
+        """Return the rate of collisions of a disc of species i with all other discs, 1/time; None if not available."""
         return self._theory(self.rate[i].sum(), (self.relative_error[i] * self.rate[i]).sum())
 
     @staticmethod
@@ -73,7 +73,7 @@ class ExpectedRates(NamedTuple):
 
 
 def theory_of(log: Log) -> BoxTheory:
-    """Return the theory of the pressure and of the contacts of the kinds of discs of a log, for a uniform gas."""
+    """Return the theory of the pressure and of the contacts between discs for the gas of a log, if it is uniform."""
     discs = classes(log.discs)
     return box_theory(
         discs.radius, discs.number, log.box, log.periodic, ergodic=conserved.is_ergodic(log.scene, log.discs)
@@ -81,15 +81,16 @@ def theory_of(log: Log) -> BoxTheory:
 
 
 def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None) -> ExpectedRates:
-    """Return the collision rates Γ_ij of one disc of species i with the discs of group j by theory, 1/time.
+    """Return the theoretical collision rates Γ_ij of a disc of species i with the discs of group j, 1/time.
 
-    A rate is the number of contacts per relative speed, from which the pressure follows as well, times the mean
-    relative speed. The latter is slightly larger at fixed total energy than in the Maxwell-Boltzmann distribution.
+    A rate is the product of the collision rate at unit relative speed, which also determines the pressure, and the mean
+    relative speed. The mean relative speed at fixed total energy is slightly larger than that of the Maxwell-Boltzmann
+    distribution.
 
     Args:
         box: width and height of the box, length.
         equilibrium: ensemble of the gas.
-        theory: contacts of the gas from `theory_of`; None for a method whose discs have no positions.
+        theory: result of `theory_of`; None for a method whose discs have no positions.
     """
     discs = equilibrium.discs
     speed = hard_discs.mean_relative_speeds(equilibrium.temperature, discs.mass, equilibrium.dof)
@@ -106,21 +107,21 @@ def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxT
 def collision_rates(
     discs: Composition, expected: ExpectedRates, window: Window, impacts: Impacts | SampledImpacts
 ) -> tuple[CollisionRate, ...]:
-    """Return the measured collision rates of each species with each group of discs, 1/time; empty if they are unknown.
+    """Return the measured collision rates of each species with each group of discs, 1/time; empty if not recorded.
 
-    n collisions count as at most n samples.
+    The number of independent samples is at most the number of collisions.
 
     Args:
         discs: species of the gas.
-        expected: rates by theory, from `expected_rates`.
+        expected: theoretical rates, from `expected_rates`.
         window: window of time.
-        impacts: numbers of collisions.
+        impacts: tally with the numbers of collisions.
     """
     counts, partners = window.of(impacts.collisions), discs.partners
 
     def rate(i: int, j: int) -> Estimate:
         rate = mean(counts[:, i, j] / discs.number[i], theory=expected.between(i, j))
-        of_pairs = 2 if partners[j] == discs.name[i] else 1  # a collision of two like discs counts for both
+        of_pairs = 2 if partners[j] == discs.name[i] else 1  # both discs of a pair of one species count
         number = float(counts[:, i, j].sum()) * window.width / of_pairs
         return replace(rate, independent_samples=min(rate.independent_samples, number))
 
@@ -138,7 +139,7 @@ def free_paths(
 ) -> tuple[FreePath, ...]:
     """Return the mean free path λ = ⟨v⟩/Γ, mean free time 1/Γ and mean speed ⟨v⟩ of each species.
 
-    expected: collision rates by theory, from `expected_rates`.
+    expected: theoretical collision rates, from `expected_rates`.
     """
     counts, flights, mean_speeds = window.of(impacts.collisions), window.of(moments.flights), equilibrium.mean_speed
     paths = []
@@ -162,9 +163,9 @@ def free_paths(
 
 
 def collisions_per_disc(log: Log, time: np.ndarray) -> np.ndarray:
-    """Return the mean number of collisions of a disc from time[0] up to each time, (K,).
+    """Return the mean number of collisions per disc from time[0] up to each time, (K,).
 
-    A collision counts for both discs.
+    Each collision counts for both of its discs.
     """
     counts = np.zeros(len(time))
     for rows in log.chunks(("time", "partner"), log.row_at(time[0], "right"), log.row_at(time[-1], "right")):

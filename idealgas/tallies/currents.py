@@ -1,9 +1,9 @@
 """Currents of momentum, energy and species in the whole gas, integrated over blocks of time, from the events of a log.
 
-Between two events a current is constant: Σ m v_a v_b for momentum, Σ (m v²/2) v_a for energy, and for two species the
-difference of their mean velocities. In a collision of two discs, momentum Δp and energy ΔE jump from the centre of one
-disc to that of the other, and their time integrals grow by Δp_a r_b and ΔE r_a. These sums are the Helfand moments:
-Helfand, Phys. Rev. 119, 1 (1960).
+Between two events the currents are constant: Σ m v_a v_b for momentum, Σ (m v²/2) v_a for energy and, for two species,
+the difference between their mean velocities. When two discs collide, momentum Δp and energy ΔE jump from the centre of
+one disc to the centre of the other, over a vector r, and the time integrals of the currents grow by Δp_a r_b and
+ΔE r_a. The integrals are the Helfand moments: Helfand, Phys. Rev. 119, 1 (1960).
 """
 
 import numpy as np
@@ -18,29 +18,30 @@ from idealgas.theory.ensemble import Ensemble
 from idealgas.theory.values import BoxTheory
 
 XX, XY, YY, HEAT_X, HEAT_Y, APART_X, APART_Y = range(7)
-"""Components of the current: of momentum, of energy, and of one species relative to the other."""
+"""Components of the currents of momentum, of energy, and of one species relative to the other."""
 
 CARRIED, PASSED_ON = range(2)
-"""Part of a current that discs carry in flight, and part that collisions transfer."""
+"""Kinetic part of a current, which discs carry in flight, and collisional part, which collisions transfer."""
 
 
 class Currents:
     """Time integrals of the currents in each of B blocks; contributions of walls and of a heat bath are not included.
 
-    flow: (B, 2, 7), parts CARRIED and PASSED_ON of the components XX, XY, YY (energy·time), HEAT_X, HEAT_Y
-    (energy·length), APART_X and APART_Y (length). The last two are only carried, and are 0 unless there are two
-    species.
+    Attributes:
+        flow: (B, 2, 7), parts CARRIED and PASSED_ON of the components XX, XY, YY (energy·time), HEAT_X, HEAT_Y
+            (energy·length), APART_X and APART_Y (length). The last two have a kinetic part only, and are 0 unless there
+            are two species.
     """
 
     columns = ("disc", "block", "end", "kind", "partner", "velocity", "new_velocity", "end_position")
     cut = False
 
     def __init__(self, periodic: tuple[bool, ...] = (True, True)) -> None:
-        """Take whether x and y are periodic."""
+        """Set whether x and y are periodic."""
         self._periodic = periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self.edges = edges
         self._flow = np.zeros((2, 7, len(edges) - 1))
         self._box, self._mass, self._share = gas.box, gas.mass, shares(gas)
@@ -48,7 +49,7 @@ class Currents:
         self._reached = float(edges[0])
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         mass, share = self._mass.take(flights.disc), self._share.take(flights.disc)
         change = carried(mass, share, flights.new_velocity) - carried(mass, share, flights.velocity)
         current = np.cumsum(
@@ -70,7 +71,7 @@ class Currents:
         self.flow = np.ascontiguousarray(np.moveaxis(self._flow, 2, 0))
 
     def _flow_until(self, times: np.ndarray, current: np.ndarray) -> None:
-        """Add currents (n, 7) up to times (n,) in order, each from the previous time."""
+        """Integrate currents (n, 7) in time; each lasts from the previous time to its time in `times` (n,)."""
         inner = self.edges[(self.edges > self._reached) & (self.edges < times[-1])]
         at = times.searchsorted(inner)
         ends = np.insert(times, at, inner)
@@ -82,7 +83,7 @@ class Currents:
 
 
 def shares(gas: Gas) -> np.ndarray:
-    """Return weights (N,) of the velocities of the discs in the difference of the mean velocities of two species."""
+    """Return the weights (N,) of the discs in the difference between the mean velocities of two species, else zeros."""
     number = np.bincount(gas.species, minlength=len(gas.species_names))
     if len(number) != 2:
         return np.zeros(len(gas))
@@ -90,7 +91,7 @@ def shares(gas: Gas) -> np.ndarray:
 
 
 def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Return the contribution of each disc to the currents, (n, 7)."""
+    """Return the kinetic contribution of each disc to the currents, (n, 7)."""
     vx, vy = velocity.T
     px, py = mass * vx, mass * vy
     energy = 0.5 * mass * (vx * vx + vy * vy)
@@ -100,8 +101,8 @@ def carried(mass: np.ndarray, share: np.ndarray, velocity: np.ndarray) -> np.nda
 def pressure_tensor(log: Log, equilibrium: Ensemble, theory: BoxTheory, current: np.ndarray) -> dict[str, Estimate]:
     """Return components xx, yy and xy of the pressure tensor of a uniform gas, energy/length², from momentum currents.
 
-    By equipartition discs carry NT of xx and of yy. This value is used, as the measured one fluctuates far more than
-    the collisional part.
+    According to equipartition the kinetic parts of xx and yy are NT. This value is used because the measured one
+    fluctuates far more than the collisional part.
 
     Args:
         log: log of the gas.
@@ -116,6 +117,6 @@ def pressure_tensor(log: Log, equilibrium: Ensemble, theory: BoxTheory, current:
         for name, k, z in zip(("xx", "yy"), (XX, YY), along, strict=True)
     }
     shear = current[:, :, XY].sum(axis=1) / gas.area
-    if conserved_momentum(log.scene).sum() == 1:  # walls take no momentum along themselves: Σ m y vx is bounded
+    if conserved_momentum(log.scene).sum() == 1:  # walls exert no tangential force, so Σ m y vx stays bounded
         return components | {"xy": mean_of_flux(shear, np.zeros(len(shear)), 0.0)}
     return components | {"xy": mean(shear, 0.0)}

@@ -1,11 +1,12 @@
 """Window of time that an analysis uses: given by the user, or starting at the detected equilibrium.
 
-The start of a run is tested against the rest, as by Heidelberger & Welch (Oper. Res. 31, 1109 (1983)), with errors from
-autoregressive models of the last blocks or, if smaller, the fluctuations of the known ensemble. As a transient can be
-as short as a few collisions per disc, means of stretches of 1, 2, 4, … blocks are compared for each of the observables.
+The beginning of a run is compared with the remainder, as in the test of Heidelberger & Welch (Oper. Res. 31, 1109
+(1983)). The standard errors follow from autoregressive models of the last blocks or, if these are smaller, from the
+fluctuations in the known ensemble. As a transient can be as short as a few collisions per disc, the means of stretches
+of 1, 2, 4, … blocks are compared for each observable.
 
-The start with the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)) also discards
-these transients, but discards more than a tenth of every fourth short run of a steady gas.
+Choosing the start that gives the largest effective number of samples (Chodera, J. Chem. Theory Comput. 12, 1799 (2016))
+would also discard the transients, but in a quarter of the short runs of steady gases it discards more than a tenth.
 """
 
 import math
@@ -25,31 +26,34 @@ from idealgas.tallies.observables import Observable, TimeSeries
 from idealgas.tallies.stream import Tally, block_edges, stream
 
 LEAST_TESTED = 16
-"""Smallest number of blocks in which a transient is looked for."""
+"""Smallest number of blocks that are searched for a transient."""
 
 LEVEL = 0.1
-"""Largest probability that a steady gas loses a part of its start; that of losing ℓ blocks is proportional to 1/ℓ."""
+"""Largest probability of discarding data of a steady gas; that of discarding ℓ blocks is proportional to 1/ℓ."""
 
 REFERENCE = 64
-"""Number of last blocks that determine the fluctuations: at most half of the series, and at least its last quarter."""
+"""Number of final blocks that determine the fluctuations, but at least the last quarter and at most half of them."""
 
 STARTS = 33
-"""Number of starts that are tried in the first half, evenly spaced in the logarithm of time."""
+"""Number of possible starts in the first half of the log, evenly spaced on a logarithmic scale."""
 
 MARGIN = 2
-"""Factor by which the start is later than the time at which a transient vanishes in the fluctuations.
+"""Ratio of the start of the window to the time at which a transient becomes smaller than the fluctuations.
 
-Smaller than the fluctuations, the transient lasts for longer.
+The transient does not end at this time but continues below the fluctuations.
 """
 
 MEMORIES = 10.0
-"""Number of correlation times after which a gas has lost its initial positions, if its equilibrium is not known."""
+"""Number of correlation times after which a gas no longer depends on its initial positions.
+
+It is used if the equilibrium of the gas is not known.
+"""
 
 FEWEST_SAMPLES = 4.0
-"""Smallest number of independent samples of a series that is longer than its fluctuations."""
+"""Smallest number of independent samples in a series that is longer than its correlation time."""
 
 _KNOWN: WeakKeyDictionary[Log, dict[tuple[int, float, float, bool], tuple[int, Exchange]]] = WeakKeyDictionary()
-"""First block of the steady gas of a log and its slowest exchange, by the number of event rows and the request."""
+"""For each log, the first block of the steady state and the slowest exchange, by number of event rows and window."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +61,8 @@ class Window:
     """Blocks of equal width in time that were read from a log, and the first block that an analysis uses.
 
     Attributes:
-        edges: (B + 1,), times between the blocks.
-        first: index of the first block used.
+        edges: (B + 1,), boundaries of the blocks, time.
+        first: index of the first block that is used.
         detected: whether the start was detected.
         state: the detected state, "equilibrium" or "steady state"; see `kind_of_state`.
         slowest: slowest exchange in the gas; see `slowest_exchange`.
@@ -94,20 +98,20 @@ class Window:
 
     @property
     def memory(self) -> float:
-        """Number of blocks per independent block by the slowest exchange."""
+        """Number of blocks per independent block, according to the slowest exchange."""
         return self.slowest.time / self.width
 
     def of(self, sums: np.ndarray) -> np.ndarray:
-        """Return the sums (B, …) of a tally in the blocks of the window over the width of a block: rates per time."""
+        """Return the sums (B, …) of a tally in the blocks of the window, divided by the width of a block."""
         return sums[self.first :] / self.width
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain values by name, ready for JSON."""
+        """Return the window as plain values by name, ready for JSON."""
         return as_dict(self)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Window":
-        """Restore a window from its plain values, as a single block of time."""
+        """Restore a window, as a single block of time, from its plain values."""
         edges = np.array([values["start"], values["end"]], float)
         return cls(edges, first=0, detected=bool(values["equilibration_detected"]))
 
@@ -122,19 +126,19 @@ def measure(
 ) -> Window:
     """Read the events of a log between two times into tallies, and return the window of time to use.
 
-    Without `start` the window begins at the detected equilibrium, at the same time for all analyses of a log.
+    If no start is given, the window begins at the detected equilibrium, at the same time for all analyses of a log.
 
     Args:
         log: the log to read.
         tallies: sums to collect over the events.
-        start: start of the window, time; None for detected equilibrium.
+        start: start of the window, time; None for the detected equilibrium.
         end: end of the window, time; None for the end of the log.
-        progress: called with the numbers of rows read and of all rows.
-        needs: properties of a scene (`idealgas.effects.properties`) that the analysis relies on.
+        progress: called as progress(done, total), with numbers of event rows.
+        needs: properties of the scene (`idealgas.effects.properties`) that the analysis requires.
 
     Raises:
-        UserError: if the log has no events in the window, or if the gas lacks a needed property or does not become
-            steady.
+        UserError: if the log has no events in the window, if the scene lacks a required property, or if the gas does
+            not become steady.
     """
     must_apply(log, start, needs)
     edges, detected = block_edges(log, start, end), start is None
@@ -157,14 +161,14 @@ def measure(
 
 
 class _Series(NamedTuple):
-    """Series of n blocks and its fluctuations, which are determined from a reference, its last r blocks.
+    """Series of n blocks and its fluctuations, which are determined from the last r blocks, the reference.
 
     Attributes:
         sums: (n + 1,), running sums of the deviations from the mean of the reference.
-        variance: (r,), variances of means of 1 to r blocks.
-        dof: degrees of freedom of the variance of long means.
+        variance: (r,), variances of the means of 1 to r blocks.
+        dof: number of degrees of freedom of the variance of the mean of many blocks.
         memory: number of blocks per independent block.
-        most: largest variance of a mean.
+        most: theoretical upper bound on the variance of a mean.
     """
 
     sums: np.ndarray
@@ -174,11 +178,11 @@ class _Series(NamedTuple):
     most: float
 
     def agrees(self, start: int, level: float, floor: float = 0.0) -> bool:
-        """Return whether the means of all stretches from `start` on agree with the mean of the later half of the rest.
+        """Return whether the mean of every stretch that begins at `start` agrees with the later half of the remainder.
 
-        The variance of a mean of few blocks has more degrees of freedom than that of many: one for each such stretch. A
-        steady series disagrees with the probability `level`: half of it in one block, a quarter in two, and so on. The
-        variance of a difference is at least `floor`.
+        The variance of a mean over few blocks has more degrees of freedom than that over many blocks: one for each such
+        stretch in the reference. A steady series fails the test with probability `level`: half of this in the stretch
+        of one block, a quarter in that of two blocks, and so on. The variance of a difference is at least `floor`.
         """
         from scipy import special
 
@@ -189,14 +193,14 @@ class _Series(NamedTuple):
         difference = (self.sums[start + lengths] - self.sums[start]) / lengths - mean
         single, later = self.variance[np.minimum(lengths, known) - 1], self.variance[min(n - middle, known) - 1]
         dof = np.maximum(self.dof, known / np.maximum(lengths, self.memory) - 1)
-        chance = level / lengths / 4  # half of the level, and a half of that on either side
+        chance = level / lengths / 4  # half of the level, divided between the two tails
         by_series = special.stdtrit(dof, chance) ** 2 * np.maximum(single + later, floor)
         by_theory = special.ndtri(chance) ** 2 * (self.most + min(later, self.most))
         return bool((difference**2 <= np.minimum(by_series, by_theory)).all())
 
 
 def detect_equilibration(series: Iterable[Observable]) -> int | None:
-    """Return the index from which on all series are steady; None if there is no such index in their first half."""
+    """Return the index after which all series are steady; None if there is no such index in their first half."""
     varied = [item for item in series if np.ptp(item.values) > ROUNDING * np.abs(item.values).max()]
     if not varied or (n := len(varied[0].values)) < LEAST_TESTED:
         return 0
@@ -211,7 +215,7 @@ def detect_equilibration(series: Iterable[Observable]) -> int | None:
 
 
 def _tested(observable: Observable, reference: int) -> _Series:
-    """Return the series to test, with the fluctuations of its last `reference` blocks about a linear trend."""
+    """Return the series to be tested, with the fluctuations of its last `reference` blocks about a linear trend."""
     values = observable.values
     last = values[len(values) - reference :]
     sums = np.append(0.0, np.cumsum(values - last.mean()))
@@ -223,19 +227,19 @@ def _tested(observable: Observable, reference: int) -> _Series:
     process = process_of(residual)
     samples = process.spread().samples
     dof = max(samples - 2, 1.0)
-    covariance = process.covariances(reference) * samples / dof  # mean and trend take two degrees of freedom
+    covariance = process.covariances(reference) * samples / dof  # mean and trend use two degrees of freedom
     variance = np.maximum(variance_of_mean(covariance), rounding)
     return _Series(sums, variance, dof, max(reference * variance[-1] / covariance[0], 1.0), observable.most)
 
 
 def memory_time(series: Iterable[np.ndarray]) -> float:
-    """Return the longest correlation time of series (n,), number of samples."""
+    """Return the longest correlation time among several series (n,), in numbers of samples."""
     varied = [values for values in series if np.ptp(values) > ROUNDING * np.abs(values).max()]
     return max((error_of_mean(x).error ** 2 * len(x) / (2 * x.var()) for x in varied), default=0.0)
 
 
 def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]:
-    """Return a caveat on a series (n,) at times (n,) that is averaged, if it is not steady after its first tenth."""
+    """Return a caveat if a series (n,) at times (n,), which is averaged, is not steady after its first tenth."""
     first, samples = detect_equilibration([Observable(series)]), error_of_mean(series).samples
     if first is not None and first > len(series) // 10:
         return (
@@ -254,13 +258,13 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
 
 
 def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable]) -> int:
-    """Return the index of the first block after the last change of the scene from which on all series are steady.
+    """Return the index of the first block, after the last change in the scene, at which all series are steady.
 
-    If its equilibrium is not known, the gas is given MEMORIES correlation times to lose its initial positions.
+    If the equilibrium of the gas is not known, the index is at least MEMORIES correlation times later.
 
     Args:
         log: log of the gas.
-        edges: (B + 1,), times between the blocks, or times of B samples.
+        edges: (B + 1,), boundaries of the blocks, or times of B samples.
         series: observables in the B blocks.
 
     Raises:
@@ -278,9 +282,9 @@ def equilibrated_from(log: Log, edges: np.ndarray, series: Iterable[Observable])
 
 
 def after_changes(log: Log, edges: np.ndarray) -> int:
-    """Return the index of the first block after the last change in time of the scene; 0 without changes.
+    """Return the index of the first block after the last change in the scene; 0 if the scene does not change.
 
-    edges: (B + 1,), times between the blocks.
+    edges: (B + 1,), boundaries of the blocks, time.
 
     Raises:
         NotApplicableError: if too few blocks follow the last change.

@@ -1,4 +1,4 @@
-"""Equilibrium of the gas of a log: whether it has one, and how discs share the energy in it."""
+"""Equilibrium of the gas of a log: whether the gas has one, and how discs share the energy in equilibrium."""
 
 import math
 from collections.abc import Sequence
@@ -14,28 +14,28 @@ from idealgas.theory.barometric import ColumnProfile
 from idealgas.theory.ensemble import Ensemble, composition
 
 UNLIKELY = 1e-5
-"""Probability that a gas in equilibrium is refused because of its mean temperatures, whatever their number."""
+"""Probability that a gas in equilibrium is refused because of its mean temperatures, regardless of their number."""
 
 FAR = 0.0455
-"""Probability that any temperature of a gas in equilibrium is, at one instant, above the upper bound on its mean.
+"""Probability that, at one instant, any temperature of a gas in equilibrium is above the upper bound on its mean.
 
-The probability for the lower bound is the same. Beyond the bounds, energy is exchanged more slowly than the log is
-long, and error bars from the log are too small. For the two temperatures of one species of many discs, the bounds are
-two standard deviations at an instant.
+The probability for the lower bound is the same. If a mean lies beyond the bounds, the exchange of energy takes longer
+than the log lasts, and standard errors from the log are too small. For the two temperatures of a single species with
+many discs, the bounds are two standard deviations of the temperature at one instant.
 """
 
 ON_A_LINE = 8
-"""Number of discs of a species below which a low temperature is no violation, as they may move along a line."""
+"""Smallest number of discs of a species that is refused for a low temperature; fewer discs may move along a line."""
 
 ROUNDING = 1e-9
-"""Relative change below which a quantity is constant."""
+"""Relative change below which a quantity counts as constant."""
 
 
 def ensemble(log: Log) -> Ensemble:
     """Return the ensemble of the gas of a log.
 
     Raises:
-        UserError: if the effects of the scene leave the temperature in equilibrium unknown.
+        UserError: if the temperature in equilibrium does not follow from the scene.
     """
     known = known_ensemble(log)
     if known is None:
@@ -51,7 +51,7 @@ def ensemble(log: Log) -> Ensemble:
 
 
 def known_ensemble(log: Log) -> Ensemble | None:
-    """Return the ensemble of the gas of a log; None if its scene leaves it unknown (`theory.ensemble.equilibrium`)."""
+    """Return the ensemble of the gas of a log; None if the scene does not fix it (`theory.ensemble.equilibrium`)."""
     return ensembles.equilibrium(log.scene, log.discs, _spin_energy(log))
 
 
@@ -74,7 +74,7 @@ def tends_to_equilibrium(log: Log) -> bool:
 
 
 def _spin_energy(log: Log) -> float:
-    """Return the initial energy of the spins of all discs, energy."""
+    """Return the initial rotational energy of all discs, energy."""
     if log.inertia is None or (spin := log.state_at(log.start_time).angular_velocity) is None:
         return 0.0
     return float(log.inertia @ spin**2) / 2
@@ -83,7 +83,7 @@ def _spin_energy(log: Log) -> float:
 def nonstationary_reason(log: Log) -> str:
     """Return why a gas never becomes stationary, as part of a sentence; empty if nothing is known to prevent it.
 
-    Such a gas is driven by a moving wall, or loses or gains energy without a balance.
+    Such a gas is driven by a moving wall, or its losses and gains of energy do not balance.
     """
     scene, properties = log.scene, log.scene.properties
     keeps_energy = properties.collisions_conserve_energy and properties.isolated
@@ -104,7 +104,7 @@ def nonstationary_reason(log: Log) -> str:
 
 
 def nonequilibrium_reason(log: Log) -> str:
-    """Return why a gas never comes to equilibrium, as part of a sentence; empty if nothing is known to prevent it."""
+    """Return why a gas never reaches equilibrium, as part of a sentence; empty if nothing is known to prevent it."""
     if why := nonstationary_reason(log):
         return why
     scene, properties = log.scene, log.scene.properties
@@ -129,10 +129,10 @@ def nonequilibrium_reason(log: Log) -> str:
 
 
 def equipartition_violation(log: Log, energies: np.ndarray) -> str:
-    """Return why the energy of a gas is not shared as in equilibrium, as part of a sentence; empty if it may be.
+    """Return in which way the energies of a gas violate equipartition, as part of a sentence; empty if they may not.
 
     energies: (B, S, 2), sums of m vx² and of m vy² over the discs of each species in blocks of time, energy; or (B, 1,
-    2), over all discs. Velocities are relative to the gas as a whole along axes where its momentum is conserved.
+    2), sums over all discs. Along axes with conserved momentum, velocities are relative to the centre of mass.
     """
     ensemble, gas = known_ensemble(log), composition(log.discs)
     from scipy import special
@@ -164,9 +164,9 @@ def equipartition_violation(log: Log, energies: np.ndarray) -> str:
 
 
 def becomes_uniform(log: Log, start: float | None) -> bool:
-    """Return whether the gas in equilibrium is uniform from time `start` on; None for the time of equilibrium.
+    """Return whether the equilibrium density is uniform after time `start`; None for the detected equilibrium.
 
-    Walls inside the box do not count once all of them are gone for good.
+    Walls inside the box do not matter if all of them have been removed for good.
     """
     gone = log.scene.properties.last_wall_removed_at
     walls_are_gone = 0 < gone < log.end_time and (start is None or start >= gone)
@@ -175,10 +175,10 @@ def becomes_uniform(log: Log, start: float | None) -> bool:
 
 
 def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
-    """Refuse a log whose scene lacks a needed property or, without a given start, whose gas never becomes stationary.
+    """Refuse a log whose scene lacks a required property or, if no start is given, whose gas never becomes stationary.
 
     Raises:
-        NotApplicableError: in both cases.
+        NotApplicableError: in either case.
     """
     if strange := log.scene.lacking(*needs):
         raise NotApplicableError(
@@ -190,7 +190,7 @@ def must_apply(log: Log, start: float | None, needs: Sequence[str]) -> None:
 
 
 def must_be_shared(log: Log, energies: np.ndarray) -> None:
-    """Refuse a log whose gas looks steady but does not have the temperatures of equilibrium.
+    """Refuse a log whose gas looks steady but whose temperatures are not those of equilibrium.
 
     energies: see `equipartition_violation`.
     """
@@ -204,7 +204,7 @@ def kind_of_state(log: Log) -> str:
 
 
 def not_steady(log: Log, why: str) -> NotApplicableError:
-    """Return the error for a gas that does not reach its state, with commands that apply; why: part of a sentence."""
+    """Return the error for a gas that does not become steady, naming commands that apply; why: part of a sentence."""
     steady = not nonstationary_reason(log) and kind_of_state(log) == "steady state"
     state = "a steady state" if steady else "equilibrium"
     follow = "" if log.scene.properties.shear else "`idealgas evolution` to follow the gas in time, or "

@@ -1,7 +1,8 @@
-"""Times in which heat, discs and energy are exchanged across a gas or through its inner pistons, by kinetic theory.
+"""Times in which heat, discs and energy are exchanged across a gas or through inner pistons, from kinetic theory.
 
-Differences between parts of a gas decay in its slowest wave, and its states are independent only after this decay. A
-log that contains few such times does not show how far a profile or a temperature fluctuates.
+Differences between parts of a gas decay as slowly as its longest wave, and two states of the gas are independent only
+if this decay lies between them. A log that is only a few such times long does not show how much a profile or a
+temperature fluctuates.
 """
 
 import math
@@ -17,14 +18,14 @@ from idealgas.theory.conserved import are_fixed, centre_of_mass_energy
 from idealgas.theory.ensemble import classes
 
 INDEPENDENT = 42.0
-"""Number of times of the slowest exchange that a window must contain for errors to be right (to 10 %)."""
+"""Smallest length of a window, in times of the slowest exchange, for standard errors to be right to within 10 %."""
 
 
 class Exchange(NamedTuple):
-    """An exchange within a gas.
+    """A slow exchange within a gas.
 
     Attributes:
-        time: time after which states are independent, at least twice the correlation time; 0 without an exchange.
+        time: time after which states are independent, at least twice the correlation time; 0 if there is no exchange.
         process: description of the process in words.
     """
 
@@ -39,12 +40,12 @@ NOTHING = Exchange(0.0, "")
 def across(log: Log, axis: int) -> Exchange:
     """Return the slowest exchange of heat or, in a mixture, of discs across the box along an axis.
 
-    In the time L²/2D diffusion spreads by the length L (rms), where D is the thermal diffusivity or the diffusion
-    coefficient by Enskog's theory. L is the distance between walls, which is half of the longest wave, or half of the
-    length of a periodic box. The longest wave has a correlation time L²/π²D. Densities and temperatures of strips
-    contain all of it, most of all beside walls, where its amplitude is largest: errors there have the fewest degrees of
-    freedom. A mixture conducts heat like equal discs of its packing fraction and mean mass, and its slowest discs
-    diffuse.
+    Its time is L²/2D, in which the rms displacement due to diffusion reaches the length L. D is the thermal diffusivity
+    or the diffusion coefficient from Enskog theory, and L is the distance between the walls or half the length of a
+    periodic box; either is half the wavelength of the longest wave. This wave has a correlation time L²/π²D and
+    contributes to densities and temperatures in strips, most of all beside walls, where its amplitude is largest:
+    standard errors there have the fewest degrees of freedom. It is assumed that a mixture conducts heat like equal
+    discs at its packing fraction and mean mass. Its diffusion coefficient is that of its slowest discs.
     """
     gas, temperature = log.discs, _temperature(log)
     moving = ~are_fixed(gas.mass)
@@ -66,7 +67,7 @@ def across(log: Log, axis: int) -> Exchange:
 
 
 def through_pistons(log: Log) -> Exchange:
-    """Return the slowest exchange of energy between gases through inner pistons that have a mass."""
+    """Return the slowest exchange of energy between gases through inner pistons of finite mass."""
     if (gases := _gases_in_a_row(log)) is None:
         return NOTHING
     rate = adiabatic_piston.slowest_rate(gases.conductance, gases.capacity)
@@ -74,16 +75,16 @@ def through_pistons(log: Log) -> Exchange:
 
 
 def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: float) -> Estimate:
-    """Return the mean temperature of a part of a gas with an error that includes the exchange through pistons.
+    """Return the mean temperature of a part of a gas, with an error that includes the exchange through pistons.
 
-    If the window is shorter than INDEPENDENT times the exchange, the error is at least that by theory. Gases of equal
-    pressure with a fixed total energy have temperatures with variances T² (1/C - 1/ΣC), where C are their heat
-    capacities at constant pressure; the temperatures are correlated over the time of the exchange.
+    If the window is shorter than INDEPENDENT times the time of the exchange, the error is at least its theoretical
+    value. The temperatures of gases at a common pressure and a fixed total energy have variances T² (1/C - 1/ΣC), where
+    C is the heat capacity of each gas at constant pressure, and they are correlated over the time of the exchange.
 
     Args:
-        estimate: mean over a window, with its error by the fluctuations in the window, energy.
+        estimate: mean over a window, with an error from the fluctuations in the window, energy.
         log: log of the gas.
-        discs: (N,), whether a disc belongs to the part.
+        discs: (N,), whether each disc belongs to the part.
         duration: duration of the window, time.
     """
     time, gases = through_pistons(log).time, _gases_in_a_row(log)
@@ -100,10 +101,10 @@ def with_pistons(estimate: Estimate, log: Log, discs: np.ndarray, duration: floa
 
 
 class _Gases(NamedTuple):
-    """Gases in a row with pistons between them.
+    """Gases in a row, separated by pistons.
 
     Attributes:
-        chamber: (N,), number of the gas of each disc.
+        chamber: (N,), number of the gas to which each disc belongs.
         conductance: (K,), conductance of each piston, 1/time.
         capacity: (K + 1,), heat capacities of the gases at constant pressure.
         temperature: mean temperature of all discs, energy.
@@ -116,7 +117,7 @@ class _Gases(NamedTuple):
 
 
 def _gases_in_a_row(log: Log) -> _Gases | None:
-    """Return the gases beside the inner pistons that have a mass; None without such pistons, and for discs at rest."""
+    """Return the gases that inner pistons of finite mass separate; None without such pistons or if no disc moves."""
     pistons, temperature = log.scene.piston, _temperature(log)
     inner = [k for k, piston in enumerate(pistons) if piston.inner and piston.mass]
     if not inner or not temperature > 0:
@@ -142,7 +143,7 @@ def _gases_in_a_row(log: Log) -> _Gases | None:
 
 
 def _temperature(log: Log) -> float:
-    """Return the mean kinetic energy of a moving disc over the whole log, energy."""
+    """Return the mean kinetic energy of a disc that is not fixed, averaged over the whole log, energy."""
     moving = int((~are_fixed(log.discs.mass)).sum())
     energies = log.observables["kinetic_energy"][1]
     return float(energies.mean() - centre_of_mass_energy(log.scene, log.discs)) / moving if len(energies) else 0.0

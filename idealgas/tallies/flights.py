@@ -1,4 +1,4 @@
-"""Time averages of velocities and numbers of discs in bins of the box, from flights cut at the edges of blocks."""
+"""Time averages of velocities, and numbers of discs in bins of the box, from flights cut at the edges of blocks."""
 
 from collections.abc import Iterator
 
@@ -22,10 +22,10 @@ from idealgas.tallies.stream import add_to
 VELOCITY_QUANTITIES = ("speed", "vx", "vy", "energy")
 
 AT_ONCE = 2**13
-"""Number of falls whose paths through the bins of a histogram are in memory at the same time."""
+"""Number of falls whose passages through the bins of a histogram are held in memory at the same time."""
 
 _COLLISION, _WALL_HIT, _OTHER = range(3)
-_SORT = np.full(NO_EVENT + 1, _OTHER)  # sort of an event, by its kind
+_SORT = np.full(NO_EVENT + 1, _OTHER)  # class of an event, by its kind
 _SORT[Kind.DISC] = _COLLISION
 _SORT[list(WALL_HITS)] = _WALL_HIT
 
@@ -42,17 +42,17 @@ class Moments:
     cut = True
 
     def __init__(self, gravity: tuple[float, float] = (0.0, 0.0)) -> None:
-        """Take the acceleration `gravity` in length/time²; with it flights are parabolas."""
+        """Set the acceleration `gravity`, length/time²; unless it is 0, flights are parabolas."""
         self.gravity = gravity
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._species, self._mass = gas.species.astype(np.intp), gas.mass
         self._sums = np.zeros((3, len(edges) - 1, len(gas.species_names)))
         self._counts = np.zeros((len(edges) - 1, 3), np.int64)
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         add_to(self._counts, flights.block * 3 + _SORT.take(flights.kind))
         index = flights.block * self._sums.shape[2] + self._species.take(flights.disc)
         mass, time = self._mass.take(flights.disc), flights.end - flights.start
@@ -75,7 +75,7 @@ class Moments:
 def _moments_of_fall(
     mass: np.ndarray, vx: np.ndarray, vy: np.ndarray, gravity: tuple[float, float], t: np.ndarray
 ) -> tuple[np.ndarray, ...]:
-    """Return integrals of the moments over parabolic flights of durations t that start at velocities (vx, vy)."""
+    """Return the integrals of the moments over parabolic flights of duration t that start at velocity (vx, vy)."""
     gx, gy = gravity
     return (
         path_length(vx, vy, gravity, t),
@@ -85,12 +85,12 @@ def _moments_of_fall(
 
 
 class VelocityHistogram:
-    """Time-weighted histogram of one velocity quantity, and its values for sampled discs at the inner block edges.
+    """Time-weighted histogram of a velocity quantity, and its values for sampled discs at the edges between blocks.
 
     Attributes:
-        counts: (B, S, bins + 2), time that discs spent below, in and above the bins.
-        sums: (B, S), integral of the quantity over time.
-        snapshots: (B - 1, M), values of the M `sampled` discs at the edges between blocks.
+        counts: (B, S, bins + 2), time that discs spent below the bins, in each bin, and above the bins.
+        sums: (B, S), integral of the quantity over time, summed over discs.
+        snapshots: (B - 1, M), values for the M `sampled` discs at the edges between blocks.
     """
 
     columns = ("disc", "block", "start", "end", "velocity")
@@ -105,9 +105,15 @@ class VelocityHistogram:
         sampled: np.ndarray,
         gravity: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Take the range of the bins of each species: low and high of shape (S,), in the unit of the quantity.
+        """Set the quantity, the range of the bins for each species, and the discs whose values are sampled.
 
-        gravity: acceleration between events, length/time².
+        Args:
+            quantity: name of the quantity, one of VELOCITY_QUANTITIES.
+            low: (S,), lower end of the bins, in the unit of the quantity.
+            high: (S,), upper end of the bins.
+            bins: number of bins.
+            sampled: (M,), indices of the sampled discs.
+            gravity: acceleration between events, length/time².
         """
         self.gravity = gravity
         self.quantity = VELOCITY_QUANTITIES.index(quantity)
@@ -115,7 +121,7 @@ class VelocityHistogram:
         self.sampled = sampled
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self.edges = edges
         self.counts = np.zeros((len(edges) - 1, len(gas.species_names), self.bins + 2))
         self.sums = np.zeros((len(edges) - 1, len(gas.species_names)))
@@ -125,7 +131,7 @@ class VelocityHistogram:
         self._species, self._mass = gas.species.astype(np.intp), gas.mass
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         time, (vx, vy) = flights.end - flights.start, flights.velocity.T
         species, mass = self._species.take(flights.disc), self._mass.take(flights.disc)
         place = flights.block * len(self.low) + species
@@ -157,7 +163,7 @@ class VelocityHistogram:
         vy: np.ndarray,
         duration: np.ndarray,
     ) -> None:
-        """Add the times that a quantity spends in each bin during falls (n,), before its minimum and after it."""
+        """Add the times that a quantity spends in each bin during falls (n,), before and after its minimum."""
         turn = np.clip(turning_time(self.quantity, vx, vy, self.gravity), 0.0, duration)
         for rises, start, end in ((False, np.zeros_like(turn), turn), (True, turn, duration)):
             first, last = (
@@ -165,7 +171,7 @@ class VelocityHistogram:
                 for time in (start, end)
             )
             steps = np.abs(last - first)
-            k = np.repeat(np.arange(len(steps)), steps + 1)  # index of the fall of each stay in a bin
+            k = np.repeat(np.arange(len(steps)), steps + 1)  # index of the fall to which each stay in a bin belongs
             number = np.arange(len(k)) - (np.cumsum(steps + 1) - steps - 1)[k]
             up = last[k] > first[k]
             b = first[k] + np.where(up, number, -number)
@@ -177,7 +183,7 @@ class VelocityHistogram:
 
 
 def bin_of(value: np.ndarray, low: np.ndarray | float, per_unit: np.ndarray | float, bins: int) -> np.ndarray:
-    """Return the index of the bin of each value: 0 below the range, 1 to `bins` inside, bins + 1 above."""
+    """Return the bin index of each value: 0 below the range, 1 to `bins` inside the range, bins + 1 above it."""
     place = (value - low) * per_unit
     return np.where(place < 0, 0, np.clip(place, 0, bins).astype(np.intp) + 1)
 
@@ -185,25 +191,26 @@ def bin_of(value: np.ndarray, low: np.ndarray | float, per_unit: np.ndarray | fl
 class DensityBins:
     """Numbers of discs of each species in bins of the box at the end of each block of time.
 
-    discs: (B, S, 2, bins), for B blocks, S species, x and y.
+    Attributes:
+        discs: (B, S, 2, bins), numbers for B blocks and S species, in bins along x and along y.
     """
 
     columns = ("disc", "block", "start", "kind", "position", "end_position")
     cut = True
 
     def __init__(self, bins: int) -> None:
-        """Take the number of bins along each axis."""
+        """Set the number of bins along each axis."""
         self.bins = bins
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self.edges = edges
         self.discs = np.zeros((len(edges) - 1, len(gas.species_names), 2, self.bins))
         self._per_length = self.bins / np.array(gas.box)
         self._species = gas.species.astype(np.intp)
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights; at the end of each block except the last a flight of each disc begins."""
+        """Add flights; at the end of each block but the last, a cut flight of each disc begins."""
         for chosen, block, position in self._at_edges(flights):
             place = np.clip(position * self._per_length, 0, self.bins - 1).astype(np.intp)
             first = (block * self.discs.shape[1] + self._species[flights.disc[chosen]]) * 2
@@ -214,7 +221,7 @@ class DensityBins:
         """Do nothing: the sums are complete."""
 
     def _at_edges(self, flights: Flights) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Yield flights of discs at ends of blocks, these blocks, and the positions at that time."""
+        """Yield the flights that begin or end at the end of a block, these blocks, and the positions at that time."""
         assert flights.position is not None
         assert flights.end_position is not None
         later = np.flatnonzero((flights.block > 0) & (flights.start == self.edges.take(flights.block)))

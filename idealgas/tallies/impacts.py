@@ -1,7 +1,7 @@
-"""Sums over collisions and wall hits: virials, momentum given to walls and their faces, and numbers of events.
+"""Sums over collisions and wall hits: virials, momentum given to walls, and numbers of events.
 
-An event contributes the change of the momentum of a disc in it; what gravity contributes during the flight is not
-included.
+Each event contributes the change in the momentum of a disc during the event; changes due to gravity during flights are
+not included.
 """
 
 import numpy as np
@@ -16,14 +16,14 @@ class Impacts:
     """Sums over collisions and wall hits in each of B blocks of time, for S species and W walls.
 
     Attributes:
-        pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions with the minimum image of r_ij, energy·time.
-        wall_virial: (B,), -Σ r·Δp over wall hits with r from the centre of the box along axes that are not periodic,
-            energy·time.
+        pair_virial: (B,), Σ r_ij·Δp_ij over pair collisions, where r_ij is the minimum image, energy·time.
+        wall_virial: (B,), -Σ r·Δp over wall hits, summed over axes that are not periodic, where r is measured from the
+            centre of the box, energy·time.
         inner_virial: (B,), Σ r·Δp over all other events along the same axes, energy·time.
-        passed_on: (B, 4), momentum that all events except the hits of a side transfer towards this side, see `add`,
+        passed_on: (B, 4), momentum that events other than hits of a side transfer towards this side, see `add`,
             mass·length/time.
-        collisions: (B, S, G), numbers of collisions of the discs of a species with those of a group (`Gas.partners`); a
-            pair collision counts for both of its discs.
+        collisions: (B, S, G), numbers of collisions of the discs of a species with the discs of a group
+            (`Gas.partners`); a pair collision counts for both of its discs.
         impulse: (B, W, 2), momentum given to each wall, mass·length/time.
         hits: (B, W), numbers of hits of each wall.
     """
@@ -32,11 +32,11 @@ class Impacts:
     cut = False
 
     def __init__(self, walls: int = len(SIDES), periodic: tuple[bool, ...] = (False, False)) -> None:
-        """Take the number of walls, of which the sides of the box come first, and whether x and y are periodic."""
+        """Set the number of walls, of which the sides of the box come first, and whether x and y are periodic."""
         self.walls, self.periodic = walls, periodic
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         blocks = len(edges) - 1
         self.pair_virial = np.zeros(blocks)
         self.wall_virial = np.zeros(blocks)
@@ -49,11 +49,11 @@ class Impacts:
         self._species, self._partner = gas.species.astype(np.intp), gas.partner.astype(np.intp)
 
     def add(self, flights: Flights) -> None:
-        """Add the events at the ends of the next flights.
+        """Add the events at the ends of a batch of flights.
 
-        Momentum counts for a side of the box in proportion to the position of the disc: 0 at the opposite side, 1 at
-        the side itself. An event that transfers momentum from one disc to another therefore moves some of it towards a
-        side.
+        The momentum of a disc counts for a side of the box with a weight that depends on the position of the disc: it
+        grows linearly from 0 at the opposite side to 1 at the side itself. An event that transfers momentum from one
+        disc to another therefore moves part of this momentum towards a side.
         """
         assert flights.end_position is not None
         block, partner, place = flights.block, flights.partner, flights.end_position
@@ -82,7 +82,7 @@ class Impacts:
         self.passed_on, self.impulse = self._passed_on.T, np.moveaxis(self._impulse, 0, 2)
 
     def _add_pairs(self, flights: Flights, given: tuple[np.ndarray, np.ndarray]) -> None:
-        """Add collisions of two discs; given: x and y components, (n,), of the momentum given to each disc."""
+        """Add collisions of two discs; given: x and y components, (n,) each, of the momentum given to each disc."""
         second, apart = contacts(flights, self._box, self.periodic)
         block = flights.block[second]
         add_to(self.pair_virial, block, apart[:, 0] * given[0][second] + apart[:, 1] * given[1][second])
@@ -96,17 +96,18 @@ class Impacts:
 def contacts(
     flights: Flights, box: tuple[float, float], periodic: tuple[bool, ...], shear: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows of flights that end in collisions, once per collision, and the relative positions.
+    """Return the rows of flights that end in collisions, once per collision, and the relative positions of the discs.
 
     Args:
-        flights: whole flights, with the times of their ends if the sides are sheared.
+        flights: whole flights; the times of their ends are needed only if the sides are sheared.
         box: width and height, length.
         periodic: whether x and y are periodic.
-        shear: shear rate, 1/time; the image above is ahead by the rate times the height and the time.
+        shear: shear rate, 1/time. The periodic image above the box is displaced along x by the product of this rate,
+            the height and the time.
 
     Returns:
-        The rows (c,) of the second of the two discs, and the positions (c, 2), length, of these discs relative to the
-            nearest images of their partners.
+        The rows (c,) of the second of the two discs, and the positions (c, 2) of these discs relative to the nearest
+            images of their partners, length.
     """
     assert flights.end_position is not None
     second = np.flatnonzero((flights.kind == Kind.DISC) & (flights.disc > flights.partner))

@@ -10,20 +10,22 @@ from idealgas.tallies.stream import add_to, began_in
 
 
 class Intervals:
-    """Histogram of intervals by the block and the species in which they start, and a sample of every `stride`-th one.
+    """Histogram of intervals by block and species, and a sample that contains every `stride`-th interval.
+
+    An interval counts in the block in which it starts.
 
     Attributes:
-        counts: (B, S, bins + 2), numbers of intervals below, in and above the bins.
-        sums: (B, S), sum of the intervals, in lengths or times.
-        sample: (n,), sampled intervals.
-        sample_block: (n,), block in which they start.
-        sample_species: (n,), species of their disc.
+        counts: (B, S, bins + 2), numbers of intervals below the bins, in each bin, and above the bins.
+        sums: (B, S), sum of the intervals, length or time.
+        sample: (n,), sampled intervals, length or time.
+        sample_block: (n,), block in which each sampled interval starts.
+        sample_species: (n,), species of the disc of each sampled interval.
     """
 
     cut = False
 
     def __init__(self, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
-        """Take the upper end of the histogram of each species, high (S,), in lengths or times."""
+        """Set the upper ends `high` (S,) of the histograms, length or time, the number of bins, and the sampling."""
         self.per_unit, self.bins, self.stride = bins / high, bins, stride
         self._left, self._seen = most_samples, 0
         self._samples: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
@@ -35,7 +37,7 @@ class Intervals:
         self.sums = np.zeros(shape)
 
     def finish(self) -> None:
-        """Set the sample; intervals that have not ended by the end of the window are left out."""
+        """Assemble the sample; intervals that have not ended by the end of the window are left out."""
         columns = zip(*self._samples, strict=True) if self._samples else np.empty((3, 1, 0))
         sample, block, species = (np.concatenate(list(values)) for values in columns)
         self.sample, self.sample_block, self.sample_species = sample, block.astype(int), species.astype(int)
@@ -55,19 +57,19 @@ class FreeFlights(Intervals):
     """Free path or free time of a disc between successive collisions with discs; wall hits do not end a free path."""
 
     def __init__(self, path: bool, high: np.ndarray, bins: int, stride: int, most_samples: int) -> None:
-        """Take whether paths or times are measured."""
+        """Set whether paths or times are measured; the other arguments are those of `Intervals`."""
         super().__init__(high, bins, stride, most_samples)
         self.path = path
         self.columns = ("disc", "block", "start", "end", "ends_in_collision", *(("path",) if path else ()))
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._make_sums(edges)
         self._species = gas.species.astype(np.intp)
         self._total, self._since = np.zeros(len(gas)), np.full(len(gas), -np.inf)
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         length = flights.path if self.path else flights.end - flights.start
         ends, start = flights.ends_in_collision, np.empty(len(length))
         _total_since_collision(
@@ -88,19 +90,19 @@ def _total_since_collision(
     total: np.ndarray,
     since: np.ndarray,
 ) -> None:
-    """Replace the lengths of flights by the lengths since the last collision of each disc.
+    """Replace the lengths of flights by the total lengths since the last collision of the disc.
 
-    This is compiled, as a free path may consist of any number of flights between walls. NumPy would have to sort them
-    by disc, or subtract two sums from the start of the log, which loses digits.
+    This loop is compiled because a free path may consist of any number of flights between walls. With NumPy, the
+    flights would have to be sorted by disc, or two sums from the start of the log subtracted, which loses digits.
 
     Args:
         disc: (n,), disc of each flight.
-        end: (n,), time of its end.
-        collides: (n,), whether it ends in a collision with a disc.
-        length: (n,), its length; replaced.
-        start: (n,), filled with the time of the last collision before it.
-        total: (N,), length since the last collision of each disc; updated.
-        since: (N,), time of that collision; updated.
+        end: (n,), time at which each flight ends.
+        collides: (n,), whether each flight ends in a collision with a disc.
+        length: (n,), length (or duration) of each flight; replaced.
+        start: (n,), filled with the time of the last collision before each flight.
+        total: (N,), length (or duration) since the last collision of each disc; updated.
+        since: (N,), time of the last collision of each disc; updated.
     """
     for k in range(disc.shape[0]):
         i = disc[k]
@@ -116,12 +118,12 @@ class WaitingTimes(Intervals):
     columns = ("disc", "block", "end", "partner")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._make_sums(edges)
         self._last = np.empty(0)
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         ended = np.flatnonzero((flights.partner < 0) | (flights.disc < flights.partner))
         times = np.append(self._last, flights.end[ended])
         block = flights.block[ended][len(ended) + 1 - len(times) :]

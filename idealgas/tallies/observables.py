@@ -1,4 +1,4 @@
-"""Observables of a gas that are steady in equilibrium, and the time in which its structure relaxes."""
+"""Observables of a gas that are steady in equilibrium, and the time in which the structure of the gas relaxes."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -17,33 +17,37 @@ from idealgas.theory.conserved import are_fixed
 from idealgas.theory.ensemble import composition
 
 BINS = 4
-"""Number of bins along each axis in which discs are counted for the centre of a species."""
+"""Number of bins along each axis in which discs are counted to determine the centre of a species."""
 
 MIXING = 0.15
-"""Packing fraction from which on collision rates depend on the positions of the species: at 0.2, but not at 0.06."""
+"""Smallest packing fraction at which collision rates depend on the positions of the species.
+
+They were found to depend on them at 0.2, but not at 0.06.
+"""
 
 DENSE, FREE_TIMES = 0.5, 50.0
-"""Packing fraction from which on the structure of any gas relaxes slowly, and the mean free times that this takes.
+"""Smallest packing fraction at which the structure of any gas relaxes slowly, and the time of this in mean free times.
 
-At φ = 0.6, errors are 1.2 to 1.3 times too small in windows of 300 mean free times, and right in 2000.
+At φ = 0.6, standard errors are 1.2 to 1.3 times too small in windows of 300 mean free times, and correct in 2000.
 """
 
 HEAT = 6.0
-"""Time that heat takes across a gas, in inefficiencies of its kinetic energy, which mostly changes faster.
+"""Time that heat takes to cross a gas, in units of the statistical inefficiency of the kinetic energy.
 
-With 40 discs between thermal walls and under gravity, errors are 1.14 to 1.21 times too small in windows of 30 to 45
-inefficiencies, 1.09 to 1.17 times in 85, and right in 140.
+Most fluctuations of the kinetic energy are faster. For 40 discs between thermal walls and under gravity, standard
+errors are 1.14 to 1.21 times too small in windows of 30 to 45 inefficiencies, 1.09 to 1.17 times too small in windows
+of 85, and correct in windows of 140.
 """
 
 
 class Observable(NamedTuple):
-    """Means over blocks of a quantity that is steady in equilibrium, and theoretical bounds of its variance.
+    """Means over blocks of a quantity that is steady in equilibrium, and theoretical bounds on its variance.
 
     Attributes:
-        values: (n,), means.
+        values: (n,), means over the blocks.
         least: variance of fluctuations that may be slower than the series is long. The series is ignored unless its
-            start differs from the rest by more than these fluctuations explain.
-        most: variance at an instant, which no variance of a mean exceeds.
+            beginning differs from the remainder by more than these fluctuations explain.
+        most: variance at one instant, an upper bound on the variance of any mean.
     """
 
     values: np.ndarray
@@ -52,10 +56,10 @@ class Observable(NamedTuple):
 
 
 class TimeSeries:
-    """Observables of a gas in blocks of time that are steady in equilibrium, and the tallies that fill them."""
+    """Observables of a gas, in blocks of time, that are steady in equilibrium, and the tallies that measure them."""
 
     def __init__(self, log: Log, edges: np.ndarray, present: Iterable[Tally] = ()) -> None:
-        """Take the gas of a log and the times (B + 1,) between blocks, and use the tallies `present` that fit."""
+        """Set up the tallies for a log and blocks with boundaries (B + 1,), reusing suitable tallies in `present`."""
         self.discs, self.ensemble, self.width = composition(log.discs), known_ensemble(log), edges[1] - edges[0]
         self.fraction, properties = log.discs.packing_fraction, log.scene.properties
         through_walls = not properties.isolated and properties.bath is None
@@ -79,9 +83,10 @@ class TimeSeries:
         return self.moments.flights / self.width
 
     def observables(self) -> Iterator[Observable]:
-        """Yield speed and energy of each species, energy along x minus energy along y, numbers of events, and virial.
+        """Yield speed and energy of each species, the difference of the energies along x and y, event counts, virial.
 
-        At fixed energy, equal speeds are 0.84 √N standard deviations of the speed, or 0.50 √N of v⁴, from equilibrium.
+        The speed detects equal initial speeds better than v⁴ would: at fixed energy, the mean speed is then 0.84 √N
+        standard deviations from its equilibrium value, and the mean of v⁴ 0.50 √N.
         """
         speeds, energies = self.rates[:, :, 0], self.rates[:, :, 1:]
         moments = np.array([speeds.T, energies.sum(axis=2).T])
@@ -101,9 +106,9 @@ class TimeSeries:
             yield Observable(self.impacts.pair_virial)
 
     def centres(self) -> Iterator[Observable]:
-        """Yield sums of the positions of each species along x and y, in bins, with the variance of independent discs.
+        """Yield sums of the positions of each species along x and y, in bins, with the variance for independent discs.
 
-        In a dense gas and in a sound wave they fluctuate more slowly than a short log can show.
+        In a dense gas and in a sound wave these sums fluctuate more slowly than a short log can show.
         """
         if self.bins is not None:
             place = np.arange(self.bins.bins) - (self.bins.bins - 1) / 2
@@ -111,13 +116,13 @@ class TimeSeries:
                 yield Observable(discs @ place, least=float(discs[0].sum() * (place**2).mean()))
 
     def slowest_exchange(self, first: int) -> Exchange:
-        """Return the slowest fluctuations that the log shows from a block on.
+        """Return the slowest exchange that the log shows after a given block.
 
-        Their time is 0 if nothing is known to be slow. In a mixture it is twice the longest time for which a species
-        stays where it is, relative to all discs. The collision rates follow this motion with so small an amplitude that
-        their own series do not show it. In a dense gas the time is at least FREE_TIMES mean free times. If heat crosses
-        the gas, it is at least HEAT times the inefficiency of the kinetic energy. Spins and a thermostat exchange
-        energy everywhere.
+        Its time is 0 if nothing is known to be slow. In a mixture it is twice the longest correlation time of the
+        centre of a species relative to the centre of all discs. Collision rates depend on this motion, but so weakly
+        that the motion is not visible in their own series. In a dense gas the time is at least FREE_TIMES mean free
+        times. If heat has to cross the gas, the time is at least HEAT times the inefficiency of the kinetic energy;
+        this does not apply to spins and thermostats, which exchange energy everywhere.
         """
         kinetic, slow, free_time = self.rates[first:, :, 1:].sum(axis=(1, 2)), [], 0.0
         exchange = inefficiency(kinetic) if self.conducts and np.ptp(kinetic) > ROUNDING * kinetic.max() else 0.0

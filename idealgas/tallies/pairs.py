@@ -1,4 +1,4 @@
-"""Distances of pairs of discs: their bins, and positions for k-d trees."""
+"""Distances between pairs of discs: bins of distance, and positions for k-d trees."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from idealgas.log import Log
 
 BINS_A_DIAMETER = 20
 REACH = 5.0
-"""Largest distance, in diameters."""
+"""Largest distance in the bins, in diameters."""
 
 
 def inside(log: Log, position: np.ndarray) -> np.ndarray:
-    """Return positions (N, 2), length, none of them on the upper one of two periodic sides, as `cKDTree` requires."""
+    """Return positions (N, 2), length; those on an upper periodic side are moved inside, as `cKDTree` requires."""
     below = np.nextafter(log.box, 0.0)
     return np.where(log.periodic, np.clip(position, 0.0, below), position)

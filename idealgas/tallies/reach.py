@@ -1,4 +1,4 @@
-"""Area that the centres of discs can reach, and the perimeter along which they touch walls."""
+"""Area that the centres of discs can reach, and the perimeter along which the discs touch walls."""
 
 import math
 from collections import defaultdict
@@ -13,35 +13,35 @@ from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.scene.walls import NumberedWall, number_walls
 
 NEAR = 1e-9
-"""Distance from a wall, in units of the box, by which its sides are distinguished."""
+"""Distance from a wall, relative to the larger side of the box, at which its two sides are distinguished."""
 
 FEWEST_PLACES, MOST_PLACES, ALL_PLACES = 8, 256, 2**14
-"""Smallest and largest number of positions along a wall at which contact is tested, and number for all walls."""
+"""Smallest and largest numbers of positions at which contact is tested along a wall, and their total for all walls."""
 
 NONE = np.empty(0)
 
 HALVINGS = 40
-"""Number of bisections between two such positions if discs touch the wall at only one of them."""
+"""Number of bisections between two neighbouring positions if discs touch the wall at only one of them."""
 
 
 Fit = Callable[[np.ndarray], np.ndarray]
-"""Function that returns whether discs with centres (M, 2) overlap no wall."""
+"""Function that returns, for centres (M, 2), whether a disc at each of them overlaps no wall."""
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Function of fractions (M,) of the length of a wall: positions on it and its normals there, broadcast to (M, 2)."""
+"""Function of fractions (M,) of the length of a wall that returns positions and normals there, broadcast to (M, 2)."""
 
 
 class Reach(NamedTuple):
-    """What the centres of discs of one radius can reach.
+    """Area that the centres of discs of one radius can reach, and its perimeter.
 
     Attributes:
-        area: area of all their positions, length².
-        perimeter: perimeter of this area, along which discs touch walls, length; a wall with gas on both sides counts
-            twice, with a half circle around a free end.
-        holes: part of the perimeter along walls that absorb discs, length, with half of the arcs around ends that they
-            share with other walls.
-        shared: the other half of these arcs, length; the order of the walls and rounding decide which of them a disc
-            hits there.
+        area: area of all possible positions of the centre, length².
+        perimeter: perimeter of this area, along which discs touch walls, length. A wall with gas on both sides counts
+            twice, and its free end adds a half circle.
+        holes: part of the perimeter along walls that absorb discs, length. It includes half of each arc around an end
+            at which an absorbing wall meets a wall that reflects.
+        shared: the other half of these arcs, length. On these arcs, the order of the walls and rounding decide which
+            wall a disc hits.
     """
 
     area: float
@@ -51,9 +51,9 @@ class Reach(NamedTuple):
 
 
 def reach_of(log: Log, radius: float) -> Reach:
-    """Return what the centres of discs of a radius can reach among the walls of a log.
+    """Return the area and perimeter that the centres of discs of a radius can reach among the walls of a log.
 
-    Gates and pistons are taken at rest.
+    Gates are treated as closed and pistons as being at rest.
     """
     faces = list(_faces(log, radius))
     area = log.discs.area - radius * math.fsum(half for _, (_, half) in faces)
@@ -63,12 +63,13 @@ def reach_of(log: Log, radius: float) -> Reach:
 
 
 def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
-    """Yield which fraction of each face or end of a wall is a hole, and the lengths of its line of touching centres.
+    """Yield, for each face or end of a wall, the fraction that is a hole and the lengths of the line of contact.
 
     The fraction is 1 for absorbing walls, 0 for other walls, and ½ for an end at which both kinds meet.
 
-    The lengths are those for discs of the radius and of half of it. As they are linear in the radius, the second one is
-    their mean over all smaller radii, which gives the area.
+    The line of contact consists of the positions of centres of discs that touch the face. Its two lengths are those for
+    discs of the given radius and of half this radius. As the length is linear in the radius, the second is the mean
+    over all radii from 0 to the given one, which determines the area.
     """
     scene, size = log.scene, np.array(log.box)
     near = NEAR * float(size.max())
@@ -79,7 +80,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
     fits = [(r, _fitting(log, list(walls.values()), r, near)) for r in (radius, radius / 2)] if walls else []
 
     def lengths(along: Curve, whole: float, bend: float, extra: np.ndarray = NONE) -> list[float]:
-        """Return the lengths of the line of touching centres for both radii: whole + bend · r, if all is reached."""
+        """Return the lengths of the line of contact for both radii: whole + bend · r, if discs reach all of it."""
         reached, places = [], np.unique(np.clip(np.concatenate((even, extra)), 0.0, 1.0))
         for r, fit in fits:
 
@@ -120,7 +121,7 @@ def _faces(log: Log, radius: float) -> Iterator[tuple[float, list[float]]]:
 
 
 def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> np.ndarray:
-    """Return the fractions of the length of a wall at which it is nearest to points (M, 2) within a distance of it."""
+    """Return where along a wall (fractions of its length) it is nearest to points (M, 2) within a distance of it."""
     nearest = nearest_points(points, wall.start, wall.end, wall.arc)
     from_start = nearest[np.hypot(*(points - nearest).T) <= distance] - wall.start
     if not wall.arc:
@@ -132,7 +133,7 @@ def _shares_beside(wall: NumberedWall, points: np.ndarray, distance: float) -> n
 
 
 def _share(touches: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> float:
-    """Return the fraction of a line on which a condition holds, from its values at positions from 0 to 1."""
+    """Return the fraction of a line on which a condition holds, given a function of positions from 0 to 1."""
     holds = touches(places)
     last = np.flatnonzero(holds[1:] != holds[:-1])
     low, high = places[last], places[last + 1]
@@ -145,15 +146,15 @@ def _share(touches: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> f
 
 
 def _straight(start: np.ndarray, chord: np.ndarray, side: float) -> Curve:
-    """Return the curve of one side of a straight wall, with its normal."""
+    """Return the curve of one side of a straight wall."""
     normal = side * np.array([-chord[1], chord[0]]) / np.hypot(*chord)
     return lambda share: (start + share[:, None] * chord, normal)
 
 
 def _arc(centre: np.ndarray, radius: float, begin: float, angle: float, side: float = 1.0) -> Curve:
-    """Return the curve of an arc that begins at an angle and spans another, in radians.
+    """Return the curve of an arc that starts at the angle `begin` and spans the angle `angle`, in radians.
 
-    The normals point outwards for side 1, and inwards for side -1.
+    The normals point outwards for side 1 and inwards for side -1.
     """
 
     def along(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -173,7 +174,7 @@ def _tangents(wall: NumberedWall) -> tuple[float, float]:
 
 
 def _free_angle(directions: list[float]) -> tuple[float, float]:
-    """Return the start and the size of the angle, in radians, in which discs touch an end.
+    """Return the start and the size of the range of angles, in radians, in which discs can touch an end.
 
     directions: angles at which walls leave the end.
     """

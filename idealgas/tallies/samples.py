@@ -1,4 +1,4 @@
-"""Impacts in blocks of time from the sums in the samples of a run, for logs without events."""
+"""Impacts in blocks of time, from the sums in the samples of a run, for logs without events."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from idealgas.tallies.stream import MOST_BLOCKS, span
 from idealgas.theory.conserved import centre_of_mass_velocity
 
 FEWEST_SAMPLES = 17
-"""Smallest number of samples in a window; error bars from fewer blocks are meaningless."""
+"""Smallest number of samples in a window; with fewer blocks, error bars would be meaningless."""
 
 SUMS = (
     "kinetic_flow",
@@ -29,21 +29,21 @@ class SampledImpacts:
     """Sums over the events in B blocks of time, like those of `Impacts`, for W walls and S species.
 
     The attributes pair_virial (the trace of collision_flow), inner_virial, wall_virial, collisions, impulse and hits
-    are those of `Impacts`.
+    have the same meaning as in `Impacts`.
 
     Attributes:
         kinetic_flow: (B, 3), ∫ Σ m v_a v_b dt for xx, xy and yy, energy·time.
         collision_flow: (B, 4), Σ Δp_a r_b over pair collisions for xx, xy, yy and yx, energy·time.
-        flow: (B, 2, 3), both for xx, xy and yy, in the frame of zero momentum.
-        push: (B, F), momentum given to each of F faces, into the wall, mass·length/time.
+        flow: (B, 2, 3), the kinetic and the collisional flow for xx, xy and yy, in the frame of zero total momentum.
+        push: (B, F), momentum given to each of F faces, perpendicular to the face and into the wall, mass·length/time.
         drag: (B, F), momentum given along each face, mass·length/time.
-        dragged: whether walls take momentum along themselves.
+        dragged: whether walls receive tangential momentum.
     """
 
     def __init__(self, log: Log, edges: np.ndarray) -> None:
-        """Take a log with such sums, and the times (B + 1,) between the blocks.
+        """Read the sums of a log for blocks with boundaries `edges` (B + 1,), time.
 
-        If these are not times of samples, the sums are interpolated linearly between samples.
+        At boundaries between samples, the sums are interpolated linearly.
         """
         self.edges = edges
         sums = {name: in_blocks(*log.observables[name], edges) for name in SUMS if name in log.observables}
@@ -63,26 +63,32 @@ class SampledImpacts:
 
 
 def face_directions(log: Log) -> tuple[np.ndarray, np.ndarray]:
-    """Return unit vectors (F, 2) into every face and along it, the directions of positive push and drag."""
+    """Return unit vectors (F, 2) into and along every face, which are the directions of positive push and drag."""
     ends = np.array([(wall.start, wall.end) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2, 2)
     way = ends[:, 1] - ends[:, 0]
     way[~way.any(axis=1), 0] = 1.0  # fixed discs
     tangent = way / np.hypot(*way.T)[:, None]
-    right = np.column_stack((tangent[:, 1], -tangent[:, 0]))  # points into the face on the left
+    right = np.column_stack((tangent[:, 1], -tangent[:, 0]))  # points into the left face
     into = np.concatenate((OUTWARD, np.stack((right, -right), axis=1).reshape(-1, 2)))
     along = np.concatenate((np.abs(OUTWARD)[:, ::-1], np.repeat(tangent, 2, axis=0)))
     return into, along
 
 
 def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, ...]) -> tuple[Window, SampledImpacts]:
-    """Return the window of time to use and the sums in it, from the nearest samples inside the window.
+    """Return the window of time to use, and the sums in it, for a log without events.
 
-    Without `start` the window begins where momentum flow, virial and collision rates become stationary. needs:
-    properties of a scene that the analysis relies on.
+    The window begins and ends at samples. If no start is given, it begins when the momentum flow, the virial and the
+    collision rates have become stationary.
+
+    Args:
+        log: log of the gas.
+        start: start of the window, time; None to detect it.
+        end: end of the window, time; None for the end of the log.
+        needs: properties of the scene that the analysis requires.
 
     Raises:
-        UserError: if the log has neither events nor such sums, if it does not cover the window, if there are too few
-            samples in it, or if the scene lacks one of the needed properties.
+        UserError: if the log has neither events nor such sums, if it does not cover the window, if the window contains
+            too few samples, or if the scene lacks a required property.
     """
     must_apply(log, start, needs)
     if SUMS[0] not in log.observables:
@@ -110,17 +116,17 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
 
 
 def in_blocks(time: np.ndarray, total: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the growth in blocks of time, (B, …), of a sum (P, …) that was sampled at times (P,)."""
+    """Return the increments in blocks of time, (B, …), of a running sum (P, …) that was sampled at times (P,)."""
     columns = total.reshape(len(time), -1).T
     grown = np.array([np.diff(np.interp(edges, time, column)) for column in columns])
     return grown.T.reshape(-1, *total.shape[1:])
 
 
 def _collisions(log: Log, edges: np.ndarray) -> np.ndarray:
-    """Return the collisions of each species with each group of discs, (B, S, G).
+    """Return the numbers of collisions of each species with each group of discs, (B, S, G).
 
-    The shape is (B, 0, G) if the log does not distinguish species. Samples contain the numbers of pairs of species in
-    the upper triangle.
+    The shape is (B, 0, G) if the log does not distinguish species. In samples, the matrix of collisions between species
+    is upper triangular.
     """
     species = len(log.discs.species_names)
     if species == 1:
@@ -132,6 +138,6 @@ def _collisions(log: Log, edges: np.ndarray) -> np.ndarray:
 
 
 def _by_wall(faces: np.ndarray) -> np.ndarray:
-    """Return the sums (B, W, …) by wall from those (B, F, …) by face."""
+    """Return sums (B, W, …) by wall, given sums (B, F, …) by face."""
     sides, segments = np.split(faces, [FIRST_SEGMENT], axis=1)
     return np.concatenate((sides, segments[:, ::2] + segments[:, 1::2]), axis=1)

@@ -1,7 +1,7 @@
 """One pass over the flights of a log in bounded memory, for any number of tallies.
 
-A tally adds up the contributions of flights and of the events at their ends to B blocks of time. If flights are cut at
-the edges of the blocks, time averages are exact. Shape of the sums: (B, …).
+A tally sums the contributions of flights, and of the events at their ends, in each of B blocks of time; the sums have
+shape (B, …). If flights are cut at the edges of the blocks, time averages are exact.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -17,11 +17,11 @@ from idealgas.state import Gas
 from idealgas.theory.conserved import centre_of_mass_velocity
 
 ReadProgress = Callable[[int, int], None]
-"""Function progress(done, total) that an analysis calls while it reads a log, with numbers of rows or frames."""
+"""Function that an analysis calls as progress(done, total) while it reads a log, with numbers of rows or frames."""
 
 FEWEST_BLOCKS, MANY_BLOCKS, MOST_BLOCKS = 32, 512, 8192
-PLACES_AT_ONCE = 2**18  # number of positions that are in memory at the same time
-DISC_BLOCKS = 2**17  # discs times blocks up to which a small gas gets more than MANY_BLOCKS blocks
+PLACES_AT_ONCE = 2**18  # number of positions held in memory at the same time
+DISC_BLOCKS = 2**17  # largest number of discs times blocks if there are more than MANY_BLOCKS blocks
 
 VELOCITIES = ("velocity", "end_velocity", "new_velocity")
 
@@ -35,16 +35,16 @@ class Tally(Protocol):
 
     @property
     def cut(self) -> bool:
-        """Whether it takes all flights, cut at the edges of the blocks.
+        """Whether the tally takes all flights, cut at the edges of the blocks.
 
-        Otherwise it takes the flights that events end, each as a whole and in the block of its end.
+        Otherwise it takes only flights that end in an event, each as a whole and in the block in which it ends.
         """
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
 
     def finish(self) -> None:
         """Complete the sums after the last flight."""
@@ -53,10 +53,10 @@ class Tally(Protocol):
 def stream(
     log: Log, edges: np.ndarray, tallies: Iterable[Tally], progress: Callable[[int, int], None] | None = None
 ) -> None:
-    """Pass the flights between the times edges[0] and edges[-1] to all tallies.
+    """Pass the flights between times edges[0] and edges[-1] to all tallies.
 
-    Velocities are relative to the centre of mass along axes where momentum is conserved. progress(done, total) is
-    called with the number of rows read and the number of all rows.
+    Along axes along which momentum is conserved, velocities are relative to the centre of mass. The function `progress`
+    is called as progress(done, total), with numbers of event rows.
     """
     frame = centre_of_mass_velocity(log.scene, log.discs)
     state = log.state_at(edges[0])
@@ -101,7 +101,7 @@ def stream(
 
 
 def _less(velocity: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return velocities (n, 2) relative to a velocity (2,), by component, as NumPy is slow for many short rows."""
+    """Return velocities (n, 2) relative to a velocity (2,), component by component, as NumPy is slow for short rows."""
     relative = np.empty_like(velocity)
     for axis in range(2):
         np.subtract(velocity[:, axis], frame[axis], out=relative[:, axis])
@@ -109,7 +109,7 @@ def _less(velocity: np.ndarray, frame: np.ndarray) -> np.ndarray:
 
 
 def add_to(sums: np.ndarray, index: np.ndarray, values: np.ndarray | None = None) -> None:
-    """Add values (n,), or 1 for each index, to the elements `index` (n,) of the flattened sums."""
+    """Add values (n,), by default 1 each, to the elements `index` (n,) of the flattened sums."""
     if len(index):
         low = int(index.min())
         added = np.bincount(index - low, values)
@@ -117,14 +117,14 @@ def add_to(sums: np.ndarray, index: np.ndarray, values: np.ndarray | None = None
 
 
 def began_in(edges: np.ndarray, start: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """Return the blocks in which intervals started that end in the given blocks."""
+    """Return the blocks in which intervals started, given their start times and the blocks in which they end."""
     return np.minimum(edges.searchsorted(start, "right") - 1, block)
 
 
 def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
-    """Return the times (B + 1,) between blocks of equal width between `start` and `end`.
+    """Return the boundaries (B + 1,) of blocks of equal width between `start` and `end`, time.
 
-    A block is at least as long as the mean time between two events of a disc, unless this leaves too few blocks.
+    A block is at least as long as the mean time between two events of a disc, unless this would give too few blocks.
     """
     log.require_events()
     first, last = span(log, start, end)
@@ -137,7 +137,7 @@ def block_edges(log: Log, start: float | None, end: float | None) -> np.ndarray:
 
 
 def frames(log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None) -> Iterator[LogState]:
-    """Yield the states of a log at increasing times; `progress` counts each state once it has been used."""
+    """Yield the states of a log at increasing times; `progress` counts a state after it has been used."""
     for k, state in enumerate(log.frames(times)):
         yield state
         if progress is not None:
@@ -158,7 +158,7 @@ def span(log: Log, start: float | None, end: float | None) -> tuple[float, float
 
 
 def exact(number: float) -> str:
-    """Return a number with as many digits as distinguish it from any other."""
+    """Return a number as text, with as many digits as are needed to distinguish it from any other."""
     return repr(float(number)).removesuffix(".0")
 
 
@@ -167,9 +167,9 @@ def _covered(log: Log) -> str:
 
 
 def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions (length) and velocities (length/time) of M discs at G times in order, each (G, M, 2).
+    """Return positions (length) and velocities (length/time) of M discs at G increasing times, each (G, M, 2).
 
-    Positions are unwrapped along periodic axes.
+    Positions are not wrapped into the box along periodic axes.
     """
     instants, back = np.unique(times, return_inverse=True)
     edges = np.append(instants, instants[-1]) if len(instants) == 1 else instants
@@ -194,10 +194,11 @@ def sample_trajectories(log: Log, times: np.ndarray, discs: np.ndarray) -> tuple
 def trajectories(
     log: Log, times: np.ndarray, progress: Callable[[int, int], None] | None = None
 ) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
-    """Yield positions and velocities of all discs at times (G,) in order, relative to the centre of mass.
+    """Yield positions and velocities of all discs, relative to the centre of mass, at increasing times (G,).
 
-    Memory is bounded. Each item has the next g of the times as a slice, and unwrapped positions (length) and velocities
-    (length/time), each (g, N, 2). progress(done, total) is called with numbers of times.
+    To limit memory, the times are processed in groups. Each item consists of a slice of g of the times, positions
+    (length), which are not wrapped into the box, and velocities (length/time), each (g, N, 2). The function `progress`
+    is called as progress(done, total), with numbers of times.
     """
     drift, discs = centre_of_mass_velocity(log.scene, log.discs), np.arange(len(log.discs))
     at_once = max(PLACES_AT_ONCE // len(discs), 1)

@@ -1,7 +1,8 @@
 """Collisional part of the pressure tensor in strips of the box: momentum transferred along the line of centres.
 
-Irving & Kirkwood, J. Chem. Phys. 18, 817 (1950). A collision of hard discs transfers its momentum instantaneously, so
-that a log contains all of it: each strip receives the part of the line of centres that lies in it.
+A collision of hard discs transfers momentum instantaneously and is contained in the log. It contributes to each strip
+in proportion to the part of the line of centres that lies in the strip: Irving & Kirkwood, J. Chem. Phys. 18, 817
+(1950).
 """
 
 from collections.abc import Iterator
@@ -18,8 +19,8 @@ class PassedOn:
     """Momentum that collisions transfer, in K strips along an axis.
 
     Attributes:
-        stress: (B, K, 3), Σ Δp_x x, Σ Δp_y y and Σ Δp_t n in B blocks, with n along the axis and t across it,
-            energy·time.
+        stress: (B, K, 3), Σ Δp_x x, Σ Δp_y y and Σ Δp_t n in B blocks, where n is the component of the line of centres
+            along the axis and t denotes the perpendicular direction, energy·time.
         collisions: (B,), number of collisions.
     """
 
@@ -27,17 +28,17 @@ class PassedOn:
     cut = False
 
     def __init__(self, axis: int, edges: np.ndarray, periodic: tuple[bool, ...], shear: float = 0.0) -> None:
-        """Take the edges (K + 1,) of strips along an axis, whether x and y are periodic, and the shear rate."""
+        """Set the edges (K + 1,) of the strips along an axis, whether x and y are periodic, and the shear rate."""
         self._axis, self._low, self._width, self._bins = axis, edges[0], edges[1] - edges[0], len(edges) - 1
         self._periodic, self._shear = periodic, shear
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._mass, self._box = gas.mass, gas.box
         self._sums, self.collisions = np.zeros((3, len(edges) - 1, self._bins)), np.zeros(len(edges) - 1)
 
     def add(self, flights: Flights) -> None:
-        """Add the collisions at the ends of flights."""
+        """Add the collisions at the ends of a batch of flights."""
         assert flights.end_position is not None
         second, apart = contacts(flights, self._box, self._periodic, self._shear)
         given = flights.new_velocity.take(second, axis=0) - flights.end_velocity.take(second, axis=0)
@@ -56,9 +57,9 @@ class PassedOn:
         self.stress = np.moveaxis(self._sums, 0, 2)
 
     def _shares(self, start: np.ndarray, end: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield strips and the fractions in them of lines between two ends.
+        """Yield strips, and the fractions of lines from `start` to `end` that lie in them.
 
-        The ends are in widths of a strip from the first edge.
+        The ends of the lines are measured from the first edge, in widths of a strip.
         """
         low, high = np.minimum(start, end), np.maximum(start, end)
         first, length = np.floor(low), high - low

@@ -1,4 +1,4 @@
-"""Small deviations of positions and velocities along the recorded motion, by its exact tangent map."""
+"""Small deviations of positions and velocities, propagated along the recorded motion by its exact tangent map."""
 
 from collections.abc import Iterator
 
@@ -14,25 +14,25 @@ from idealgas.tallies.stream import ReadProgress
 COLUMNS = ("disc", "end", "kind", "partner", "end_velocity", "end_position")
 
 MOST_NUMBERS = 2**26
-"""Largest number of components of all deviations: half a gigabyte."""
+"""Largest total number of components of all deviations, which take up half a gigabyte."""
 
 
 class TangentVectors:
-    """Deviations of a gas that follow its log.
+    """Deviations of a gas, propagated along its log.
 
     Attributes:
-        values: (N, 4, K), deviations δx, δy (length), δvx, δvy (length/time) of each disc, each at the time of its last
-            event; `now` brings all of them to one time.
+        values: (N, 4, K), K deviations δx, δy (length), δvx, δvy (length/time) of each disc at the time of its last
+            event; `now` propagates those of all discs to a common time.
     """
 
     def __init__(self, log: Log, start: float, values: np.ndarray) -> None:
-        """Start with deviations (N, 4, K) at a time."""
+        """Start with deviations (N, 4, K) at time `start`."""
         self.values = np.ascontiguousarray(values)
         self._log, self._start = log, start
         self._since = np.full(len(values), start)
 
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[tuple[float, int]]:
-        """Follow the log to a time; yield time and new collisions of two discs after each `every` event rows."""
+        """Follow the log to time `end`; yield the time and the number of new collisions after each `every` event rows."""
         log, rows, waiting = self._log, 0, 0
         gas = (log.discs.mass, np.array(log.box), np.array(log.periodic), log.gravity)
         for flights in log.flights([self._start, end], columns=COLUMNS):
@@ -100,10 +100,10 @@ def must_have_tangent_map(log: Log) -> None:
 
 @njit
 def _advance(deviations, since, columns, first, most, gas):
-    """Propagate deviations through events from row `first` on, up to `most` event rows or the end of the rows.
+    """Propagate deviations through at most `most` event rows, starting with row `first`.
 
-    gas: masses, box, whether it is periodic along x and y, gravity. Return the next row, the number of collisions of
-    two discs, and the time of the last event, or -1 if the rows ended.
+    The tuple `gas` consists of the masses, the box, whether x and y are periodic, and gravity. Return the next row, the
+    number of collisions between discs, and the time of the last event, or -1 if there are no more rows.
     """
     masses, box, periodic, gravity = gas
     disc, end, kind, partner, velocity, position = columns
@@ -138,7 +138,7 @@ def _advance(deviations, since, columns, first, most, gas):
 
 @njit
 def _synchronise(deviations, since, now):
-    """Propagate the deviations of all discs to one time."""
+    """Propagate the deviations of all discs to a common time."""
     for i in range(len(since)):
         fly(deviations, i, now - since[i])
         since[i] = now

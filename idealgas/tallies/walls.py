@@ -1,8 +1,8 @@
 """Pressure on every wall and face in blocks of time: the momentum that discs give to it, per time and exposed length.
 
-This is what a gauge in the wall would measure, without equilibrium or theory. Walls act on the centres of the discs one
-radius inside the box. The length is that of the wall itself; for a side of the box, that of its part beside chambers
-with discs.
+This is what a gauge in the wall would measure; neither equilibrium nor theory is required. Walls act on the centres of
+the discs, one radius inside the box. The length is that of the wall itself or, for a side of the box, that of its part
+along chambers with discs.
 """
 
 import math
@@ -26,14 +26,15 @@ from idealgas.tallies.stream import Tally, add_to
 class WallImpulses:
     """Momentum given to each of W walls in each of B blocks of time, mass·length/time.
 
-    The normal of an arc is that at the position of the hit.
+    For an arc, the normal at the position of the hit is used.
 
     Attributes:
-        normals: (W, 2), unit normals of the first face of each wall; that of a side of the box points into the box.
-        faces: (B, W, 2, 2), momentum given to the first and the second face by discs that touch the body of the wall,
-            perpendicular to it and along it. The direction along a wall is its first normal turned by -90°, for a
-            segment from its start to its end.
-        given: (B, W, 2), momentum along x and y, including that of discs that touch the ends of the wall.
+        normals: (W, 2), unit normal of the first face of each wall; the normal of a side of the box points into the
+            box.
+        faces: (B, W, 2, 2), normal and tangential momentum given to the first and the second face by discs that touch
+            the body of the wall. The tangential direction is the normal of the first face turned by -90°; for a
+            segment it points from start to end.
+        given: (B, W, 2), momentum along x and y, including that from discs that touch the ends of the wall.
         hits: (B, W), numbers of hits.
     """
 
@@ -41,7 +42,7 @@ class WallImpulses:
     cut = False
 
     def __init__(self, log: Log) -> None:
-        """Take the walls of a log."""
+        """Set up the walls of a log."""
         along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
         along[~along.any(axis=1), 0] = 1.0  # fixed discs
         along /= np.hypot(*along.T)[:, None]
@@ -54,14 +55,14 @@ class WallImpulses:
             self.columns = (*self.columns, "end_position")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start with the discs at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start with the discs at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         shape = (len(edges) - 1, len(self.normals))
         self.faces, self.given = np.zeros((*shape, 2, 2)), np.zeros((*shape, 2))
         self.hits = np.zeros(shape, np.int64)
         self._mass = gas.mass
 
     def add(self, flights: Flights) -> None:
-        """Add the hits at the ends of the next flights."""
+        """Add the hits at the ends of a batch of flights."""
         wall_hits = np.flatnonzero(is_wall_hit(flights.kind))
         wall = -1 - flights.partner[wall_hits]
         place = flights.block[wall_hits] * len(self.normals) + wall
@@ -74,12 +75,12 @@ class WallImpulses:
         body = np.flatnonzero(~np.isin(flights.kind[wall_hits], (Kind.WALL_END, Kind.FIXED_DISC)))
         (px, py), (nx, ny) = given[body].T, self._normals(flights, wall_hits[body], wall[body]).T
         across = px * nx + py * ny
-        face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against it
+        face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against the normal
         add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
         add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
 
     def _normals(self, flights: Flights, hits: np.ndarray, wall: np.ndarray) -> np.ndarray:
-        """Return unit normals (H, 2) of the first faces of walls where discs hit them."""
+        """Return the unit normals (H, 2) of the first faces of walls at the positions of hits."""
         normals = self.normals[wall]
         if (curved := np.flatnonzero(self._turn[wall])).size:
             assert flights.end_position is not None
@@ -93,13 +94,14 @@ class WallImpulses:
 
 
 class SampledWalls:
-    """Momentum given to W walls in B blocks of time, like that of `WallImpulses`, from sums in samples.
+    """Momentum given to W walls in B blocks of time, from sums in samples.
 
-    The attributes are those of `WallImpulses`, but the momentum given to the ends of a segment counts for its faces.
+    The attributes are those of `WallImpulses`, except that the momentum given to the ends of a segment is attributed to
+    its faces.
     """
 
     def __init__(self, log: Log, impacts: SampledImpacts) -> None:
-        """Take a log and the sums over its blocks."""
+        """Set the sums from those of a log in blocks of time."""
         into, along = face_directions(log)
         sides = np.arange(FIRST_SEGMENT)
         first = np.concatenate((sides, np.arange(FIRST_SEGMENT, len(into), 2)))
@@ -119,11 +121,11 @@ class Face:
     """One face of a wall that discs can hit, with the momentum given to it in each of B blocks of time.
 
     Attributes:
-        name: name of the wall; that of a wall segment is followed by the direction in which the face looks.
+        name: name of the wall; for a wall segment, followed by the direction in which the face looks.
         wall: number of the wall.
-        push: (B,), momentum pressed on the face, mass·length/time.
-        along: (B,), momentum given along the face, mass·length/time.
-        exposed: (B,), length of the face times the time for which it was present, length·time.
+        push: (B,), normal momentum given to the face, mass·length/time.
+        along: (B,), tangential momentum given to the face, mass·length/time.
+        exposed: (B,), length of the face times the time for which the wall was present, length·time.
         hits: number of hits of the wall.
     """
 
@@ -136,39 +138,39 @@ class Face:
 
 
 def wall_name(wall: int, name: str) -> str:
-    """Return the name of a wall for tables, where a side of the box is called a wall, from its number and name."""
+    """Return the name of a wall in tables, in which, for example, the left side of the box is called "left wall"."""
     return f"{name} wall" if wall < FIRST_SEGMENT else name
 
 
 class WallGauge:
-    """Pressure on all walls of a log: the tallies that `stream` has to fill, and the results.
+    """Pressure on all walls of a log: the tallies that `stream` has to fill, and their results.
 
     Attributes:
-        impulses: momentum given to walls.
-        moving: positions of the pistons in time.
+        impulses: momentum given to the walls.
+        moving: positions of the pistons as functions of time.
     """
 
     impulses: WallImpulses | SampledWalls
 
     def __init__(self, log: Log, sampled: SampledWalls | None = None) -> None:
-        """Take the walls of a log; sampled: the momentum given to them, if it does not come from events."""
+        """Set up the walls of a log; sampled: the momentum given to the walls, if the log has no events."""
         self._log = log
         self.impulses = sampled or WallImpulses(log)
         self.moving = tuple(MovingWall(log, k) for k in range(len(log.scene.piston)))
 
     @property
     def tallies(self) -> list[Tally]:
-        """Tallies to fill from the events of the log."""
+        """Tallies that have to be filled from the events of the log."""
         impulses: list[Tally] = [self.impulses] if isinstance(self.impulses, WallImpulses) else []
         return [*impulses, *self.moving]
 
     @property
     def bounded(self) -> bool:
-        """Whether a piston has gas on one side only."""
+        """Whether any piston has gas on one side only."""
         return any(piston.outward for piston in self.moving)
 
     def _depth(self) -> np.ndarray:
-        """Return the mean length of the gas between the pistons that bound it, in each block of time, (B,)."""
+        """Return the mean length of the gas along the axis of the pistons that bound it, in each block, (B,)."""
         low: Any = 0.0
         high: Any = self._log.box[self.moving[0].axis]
         for piston in self.moving:
@@ -180,7 +182,7 @@ class WallGauge:
     def area(self, edges: np.ndarray) -> np.ndarray:
         """Return the area of the gas in each block of time, (B,), length².
 
-        It is that of chambers with discs, or the area that pistons leave.
+        It is the area of the chambers with discs or, if a piston bounds the gas, the area on the gas side of pistons.
         """
         if not self.bounded:
             return np.full(len(edges) - 1, Chambers(self._log, float(edges[-1])).area)
@@ -189,7 +191,7 @@ class WallGauge:
     def faces(self, edges: np.ndarray) -> list[Face]:
         """Return the faces of sides that are not periodic and of wall segments.
 
-        edges: (B + 1,), times between the blocks.
+        edges: (B + 1,), boundaries of the blocks, time.
         """
         exposed_faces = []
         solids = any(self._log.scene.solids.walls.values())
@@ -204,7 +206,7 @@ class WallGauge:
                 names = [f"{wall.name}, {name}" for name in self._looks(k, wall)]
             for face, name in enumerate(names):
                 push, along = self.impulses.faces[:, k, face].T
-                if solids and not push.any():  # the face looks into a solid
+                if solids and not push.any():  # the face is inside a solid
                     continue
                 exposed_faces.append(Face(name, k, push, along, exposed, int(self.impulses.hits[:, k].sum())))
         return exposed_faces
@@ -220,7 +222,7 @@ class WallGauge:
     def _exposed(self, k: int, wall: NumberedWall, edges: np.ndarray) -> np.ndarray:
         """Return the length of wall k times the time for which it is present, in each block, (B,).
 
-        Of a side of the box only the part beside gas counts.
+        For a side of the box, only the part along the gas counts.
         """
         width = np.diff(edges)
         if k < len(SIDES) and self.bounded and axis_of(k) != self.moving[0].axis:
@@ -237,22 +239,22 @@ class WallGauge:
 class MovingWall:
     """Position of a piston in time, as a tally over the flights of a log.
 
-    The position of the piston is known at its samples and at every hit of a disc, and lies on a parabola in between. A
-    bounce at the end stop of the piston between two such times is not resolved.
+    The position of the piston is known at the times of its samples and of every hit by a disc; between these times the
+    piston moves along a parabola. A bounce from the end stop between two such times is not resolved.
 
     Attributes:
         wall: number of the piston among the walls.
-        axis: axis along which it moves, 0 for x, 1 for y.
+        axis: axis along which the piston moves, 0 for x, 1 for y.
         across: length of the piston, length.
-        outward: direction from the gas to it, 0 with gas on both sides.
-        place: (B,), its mean coordinate in each block of time, length.
+        outward: direction from the gas to the piston, +1 or -1; 0 if there is gas on both sides.
+        place: (B,), mean coordinate of the piston in each block of time, length.
     """
 
     columns = ("disc", "end", "kind", "partner", "end_position")
     cut = False
 
     def __init__(self, log: Log, k: int) -> None:
-        """Take a log and the number of the piston among the tables of its scene."""
+        """Set up piston k of the scene of a log."""
         table = log.scene.piston[k]
         self.wall, self.axis = [wall.name for wall in log.walls].index(table.wall), table.axis
         self.across = log.box[1 - table.axis]
@@ -267,16 +269,16 @@ class MovingWall:
         self._speeds = log.observables["piston_velocity"][1][:, k]
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
-        """Start at time edges[0]; edges: (B + 1,), times between the blocks."""
+        """Start at time edges[0]; edges: (B + 1,), boundaries of the blocks of time."""
         self._edges, self._radius = edges, gas.radius
-        self._sums = np.zeros(len(edges))  # integral of the position from the first known time to each edge
+        self._sums = np.zeros(len(edges))  # integral of the position over time, from the first known time to each edge
         time, place = self._samples
         k = max(int(time.searchsorted(edges[0], "right")) - 1, 0)
         self._known = np.array([[time[k], place[k]]])
         self._total, self._done = 0.0, 0
 
     def add(self, flights: Flights) -> None:
-        """Add the next flights."""
+        """Add a batch of flights."""
         assert flights.end_position is not None
         hits = (flights.kind == Kind.PISTON) & (flights.partner == -1 - self.wall)
         disc = flights.disc[hits]
@@ -284,12 +286,12 @@ class MovingWall:
         self._follow(np.column_stack((flights.end[hits], place)), float(flights.end[-1]))
 
     def finish(self) -> None:
-        """Continue to the last edge, and convert the integrals to mean positions."""
+        """Continue to the last edge and convert the integrals to mean positions."""
         self._follow(np.empty((0, 2)), np.inf)
         self.place = np.diff(self._sums) / np.diff(self._edges)
 
     def _follow(self, hits: np.ndarray, until: float) -> None:
-        """Integrate over the positions (K, 2) at hits and in samples up to a time; at infinity up to all edges."""
+        """Integrate the position up to a time, or at infinity up to the last edge, from samples and hits (K, 2)."""
         time, place = self._samples
         in_step = (time > self._known[-1, 0]) & (time <= until)
         known = np.concatenate((self._known, np.column_stack((time[in_step], place[in_step])), hits))
@@ -304,7 +306,7 @@ class MovingWall:
         self._known, self._total, self._done = np.array([[t[-1], x[-1]]]), total[-1], reached
 
     def _within(self, t: np.ndarray, x: np.ndarray, k: np.ndarray, edges: np.ndarray) -> np.ndarray:
-        """Return the integral of the position from the known times t[k] to edges, on the parabola that follows."""
+        """Return the integrals of the position from the known times t[k] to edges, along the parabolas that follow."""
         since = edges - t[k]
         if len(t) == 1:
             return x[k] * since
@@ -314,10 +316,10 @@ class MovingWall:
         return since * (x[k] + since * (speed / 2 + since * pull / 6))
 
     def balance(self, start: float, end: float) -> float | None:
-        """Return the pressure that holds the piston against the gas between two times, besides its inertia.
+        """Return the external pressure that holds the piston against the gas between two times, force per length.
 
-        The pressure is a force per length. It is None for an inner or a driven piston, if the pressure changes in
-        between, and if the piston came near its end stop, which would also hold it.
+        It is None for an inner or a driven piston, if the pressure changes between the two times, and if the piston
+        came near its end stop, which would also hold it.
         """
         time, place = self._samples
         inside = (time >= start) & (time <= end)
