@@ -32,7 +32,7 @@ class TangentVectors:
         self._since = np.full(len(values), start)
 
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[tuple[float, int]]:
-        """Follow the log to time `end`; yield the time and the number of new collisions after each `every` event rows."""
+        """Follow the log to time `end`; after each `every` event rows, yield time and number of new collisions."""
         log, rows, waiting = self._log, 0, 0
         gas = (log.discs.mass, np.array(log.box), np.array(log.periodic), log.gravity)
         for flights in log.flights([self._start, end], columns=COLUMNS):
