@@ -1,8 +1,8 @@
 """Base class of all analyses: a subclass declares its options and measures a log.
 
 Each module or package of `idealgas.analysis` contains one analysis, a subclass of `Analysis`. The first line of the
-module's docstring is the help of the command `idealgas NAME`. The class provides the command with its options `--json`
-and `--csv`, the sections of the report, the key in sweeps and the function `idealgas.NAME`.
+module's docstring is the help of the command `idealgas NAME`. The command with its options `--json` and `--csv`, the
+sections of the report, the key in sweeps and the function `idealgas.NAME` are generated from the class.
 
 Results are dataclasses that inherit from `Result`. They provide their own tables and figures, their fields are written
 to JSON as plain values (`fields.py`), and a result stored by a sweep can be restored. If a condition for a measurement
@@ -37,7 +37,7 @@ class Option:
     """One option of an analysis: `--name` on the command line, a keyword argument in Python.
 
     Attributes:
-        name: a Python identifier.
+        name: name of the option, a Python identifier.
         kind: type of the value: str, int or float.
         help: help text on the command line.
         default: value if the option is not given.
@@ -168,7 +168,7 @@ class Analysis:
         progress: ReadProgress | None = None,
         **options: Any,
     ) -> Any:
-        """Analyse a log, given directly or by its path, between the times `start` and `end`, and return the `Result`.
+        """Analyse a log (or the log at a path) between the times `start` and `end`, and return the `Result`.
 
         Raises:
             UserError: if an option is unknown or its value is not allowed, or if the analysis does not apply to the

@@ -34,7 +34,7 @@ UNMIXED = (
 """Caveat for discs that are deflected almost only by walls."""
 
 SPARSE = 1e-6
-"""Packing fraction below which the other discs have no visible effect on the density at the walls."""
+"""Packing fraction up to which other discs do not change any printed digit of the density at the walls."""
 
 ROW = "mean path between wall hits (length)"
 
@@ -48,7 +48,7 @@ class Billiard(Result):
         hits: number of wall hits in the window.
         path: mean path length of a disc between successive wall hits.
         reach: area that the centres of the discs can reach, and its perimeter; None without theory.
-        reason: why theory is not available; None if it is.
+        reason: why theory is not available, as part of a sentence; None if theory is available.
         time: (B,), middles of the blocks of time.
         series: (B,), mean path length up to the end of each block.
     """
@@ -114,7 +114,7 @@ class BilliardAnalysis(Analysis):
 
         A is the area that the centres of the discs can reach, and P is its perimeter. Collisions with other discs do
         not end a path. Theory is available for discs of equal radius that fly straight between walls at rest. In a gas
-        of several discs, its relative error of 2φ allows for the density at the walls.
+        of several discs, the theoretical value has a relative error of 2φ, which allows for the density at the walls.
 
         Raises:
             UserError: if no disc hits a wall in the window.

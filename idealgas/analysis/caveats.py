@@ -31,7 +31,7 @@ WIDE, WIDE_PERIODIC = 20.0, 5.0
 
 
 def log_caveats(log: Log) -> tuple[str, ...]:
-    """Return the caveats for time averages over a log that are due to its gas and its simulation method."""
+    """Return the caveats that the gas and the simulation method imply for time averages over a log."""
     return (*conserved.caveats(log.scene, log.discs), *time_steps.caveats(log.scene, log.discs))
 
 

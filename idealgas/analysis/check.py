@@ -15,7 +15,7 @@ from idealgas.presentation.tables import Cell, Number, Table
 from idealgas.statistics.estimates import Estimate
 
 FALSE_ALARM = 1e-3
-"""Probability that at least one row of a comparison differs from theory in a correct gas, however many there are."""
+"""Probability that a correct gas fails a comparison with theory, whatever the number of rows."""
 
 POWER = 0.95
 """Probability with which a comparison reveals the smallest error that it reports as detectable."""
@@ -24,10 +24,16 @@ FEWEST = 5.0
 """Smallest number of independent samples for which an estimate can be said to agree with theory."""
 
 FEWEST_OF_LAW = 30.0
-"""Smallest number of independent samples that can agree with a law; 5 % of such sets deviate by more than 0.24."""
+"""Smallest number of independent samples that can agree with a law.
+
+For 30 samples of the law itself, the Kolmogorov-Smirnov distance exceeds 0.24 with a probability of 5 %.
+"""
 
 ROUGH = 20.0
-"""Number of samples below which deviations are printed with it, as Student's t then differs from a normal law."""
+"""Number of independent samples below which a deviation is printed with this number.
+
+Student's t distribution then differs noticeably from the normal distribution.
+"""
 
 NAMED = 3
 """Largest number of rows with too few samples that are listed by name."""
@@ -138,7 +144,7 @@ class CheckResult:
 
     Attributes:
         compared: compared rows.
-        reason: why theory is not available, as part of a sentence; None if it is.
+        reason: why theory is not available, as part of a sentence; None if theory is available.
     """
 
     compared: tuple[Comparison, ...] = ()
@@ -195,7 +201,7 @@ def check_theory(rows: Iterable[tuple[str, str | None, Estimate]], reason: str |
 def agreement(
     results: Iterable[tuple[str, Estimate | PValue]], theory: str = "theory", reason: str | None = None
 ) -> str:
-    """Return whether estimates agree with theory, by the same rule as checks, as the predicate of a sentence.
+    """Return a predicate that states whether estimates agree with theory, by the same rule as checks.
 
     Args:
         results: names with estimates or tests of laws; if there are several, the one that deviates most is named.

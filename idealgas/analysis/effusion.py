@@ -1,4 +1,4 @@
-"""Measure the flow through a gate after it opens, and compare it with n⟨v⟩/π.
+"""Measure the flow through an opened gate, and compare it with n⟨v⟩/π.
 
 DIR is the folder of a sweep with the analysis "effusion". Runs that differ only in their seeds are averaged.
 """
@@ -52,7 +52,7 @@ TINY = 1e-12
 
 @dataclass(frozen=True)
 class Effusion(RunResult):
-    """Flow of discs between two chambers through a gate after it opens.
+    """Flow of discs between two chambers through an opened gate.
 
     Attributes:
         density: number density that the chamber with more discs at the start would have if it contained all discs,
@@ -243,7 +243,11 @@ def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) 
     from scipy.integrate import solve_ivp  # its import takes longer than most measurements
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Return the rates of change: from discs n and energy e, √(ne) discs and 3/2 √(e³/n) of energy are lost."""
+        """Return the rates of change of the fractions of discs and energy beyond the slit, 1/time.
+
+        A side with fractions n of the discs and e of the energy loses discs at a rate proportional to √(ne), and energy
+        at a rate proportional to 3/2 √(e³/n).
+        """
         (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
         return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])

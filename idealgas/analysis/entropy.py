@@ -34,7 +34,7 @@ MOST_DISCS = 2**13
 """Largest number of discs per species from which H is estimated; larger species are thinned evenly."""
 
 NEIGHBOUR = 4
-"""Rank of the neighbour to which distances are measured; lower ranks scatter more, higher ranks blur more."""
+"""Rank of the neighbour to which distances are measured; a low rank gives more scatter, a high rank more bias."""
 
 FEWEST_DISCS = 2 * NEIGHBOUR
 """Smallest number of discs in a species for which the entropy is estimated."""

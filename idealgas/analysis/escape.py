@@ -1,4 +1,4 @@
-"""Measure how discs leave the gas through holes: the number left against time, and escapes per path length.
+"""Measure how discs leave the gas through holes: the number of remaining discs, and escapes per path length.
 
 In the limit of small holes in an ergodic box, theory predicts that a disc of speed v leaves at a rate of v ℓ/(π A)
 through holes of total length ℓ in the walls around an area A.
@@ -31,7 +31,7 @@ INSTANTS = 257
 """Number of times in the time series."""
 
 RARE, OFTEN = 0.1, 10.0
-"""Collisions per escape of a disc: up to RARE, discs keep their speeds; from OFTEN, the gas stays in equilibrium."""
+"""Collisions of a disc per escape up to which discs keep their speeds, and above which the gas stays in equilibrium."""
 
 BILLIARD = (
     "Discs hardly ever collide. Theory then requires walls that lead every path to the hole, such as walls that bulge "
@@ -121,7 +121,7 @@ class EscapeAnalysis(Analysis):
 
         The standard errors assume that the number of escapes follows a Poisson distribution. Theory is available for
         discs of equal radius in a box without gravity and with walls at rest. The length of the holes and the area are
-        those that the centres of the discs can reach.
+        those accessible to the centres of the discs.
 
         Raises:
             UserError: if no wall absorbs discs, if the log has no events, or if no disc escapes in the window.
@@ -141,7 +141,7 @@ class EscapeAnalysis(Analysis):
             theory = _theory(log, spent / (last - first))
             expected, spread = _expected(log, speed, theory, time - first, collisions / escaped)
         except NoTheoryError as error:
-            what = "Theory" if theory is None else "Theory for the number of discs left"
+            what = "Theory" if theory is None else "Theory for the number of remaining discs"
             caveats = (f"{what} is not available: {error}.",)
         if theory is not None and collisions < escaped:
             caveats = (BILLIARD, *caveats)
@@ -216,7 +216,7 @@ def _theory(log: Log, number: float) -> Theory:
 def _expected(
     log: Log, speed: np.ndarray, rate: Theory, time: np.ndarray, collisions: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the theoretical mean and standard deviation of the number of discs left, (INSTANTS,).
+    """Return the theoretical mean and standard deviation of the number of remaining discs, (INSTANTS,).
 
     Discs that hardly ever collide keep their speeds. In equilibrium, every disc leaves at the rate that follows from
     the mean speed. If no heat is supplied, the gas cools because each disc that leaves carries an energy of 3T/2 on
@@ -227,7 +227,7 @@ def _expected(
         speed: (N,), speeds of the discs at the start of the window, length/time.
         rate: escapes per path length, 1/length.
         time: (INSTANTS,), times since the start of the window.
-        collisions: number of disc collisions per escape, each counted for both discs.
+        collisions: number of collisions between discs per escape, where each collision counts for both discs.
 
     Raises:
         NoTheoryError: if theory does not apply.

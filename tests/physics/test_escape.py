@@ -98,7 +98,7 @@ def test_speeds_that_walls_or_a_heat_bath_change():
     assert result.expected is None
     assert result.mean_time.theory is None
     reason = "walls or a heat bath change the speeds of discs that hardly ever collide"
-    assert f"Theory for the number of discs left is not available: {reason}." in result.caveats
+    assert f"Theory for the number of remaining discs is not available: {reason}." in result.caveats
 
 
 @pytest.mark.usefixtures("uncompiled")

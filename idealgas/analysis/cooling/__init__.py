@@ -44,7 +44,7 @@ SETTLED, FOLDS = 20.0, 5.0
 SPREAD = 1.0
 """Upper bound on √N times the relative standard deviation of the temperature among runs, for N discs.
 
-In 24 runs each, the product is 0.50 for e = 0.95 (300 discs, cooled to exp(−3.4) T₀), 0.53 for 100 discs, and 0.86 for
+In 24 runs each, the product is 0.50 for e = 0.95 (300 discs, cooled to exp(-3.4) T₀), 0.53 for 100 discs, and 0.86 for
 e = 0.8.
 """
 
@@ -57,7 +57,7 @@ class Cooling(Result):
         time: (F,), times.
         collisions: (F,), mean number of collisions per disc up to each time.
         temperature: (F,), translational temperature in the frame of the centre of mass, energy.
-        spin: (F,), rotational temperature, the mean of I ω², energy; None without spin.
+        spin: (F,), rotational temperature (the mean of I ω²), energy; None without spin.
         cumulant: (F,), fourth cumulant a₂ of the velocities.
         scatter: (F,), variance over mean of the numbers of discs in equal cells; 1 for points at random positions.
         flow: (F,), mean square momentum of a cell, relative to that of discs that move independently.
@@ -68,7 +68,7 @@ class Cooling(Result):
         end: end of the averaging window, time.
         last_temperature: translational temperature at the end, energy; theory predicts it for a uniform gas.
         loss: fraction of the temperature that is lost per collision of a disc.
-        haff: Haff's time τ in T = T₀/(1 + t/τ)², where T₀ is the temperature at time 0, time.
+        haff: Haff's time τ in T = T₀/(1 + t/τ)², where T₀ is the temperature at time 0.
         fourth: mean of a₂.
         temperature_ratio: mean of `spin` over `temperature`; None unless discs are rough.
         first_scatter: mean of `scatter` over the first tenth of the collisions.

@@ -33,7 +33,7 @@ class CoolingTheory:
         spin_law: (F,), rotational temperature, energy.
         last_temperature: translational temperature at the last time, energy.
         loss: fraction of the temperature that is lost per collision of a disc.
-        haff: Haff's time, time.
+        haff: Haff's time τ.
         fourth: fourth cumulant a₂ of the velocities of smooth discs.
         temperature_ratio: ratio of the rotational to the translational temperature.
     """

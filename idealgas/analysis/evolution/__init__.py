@@ -58,7 +58,7 @@ class Evolution(Result):
         beyond: (F,), fraction of the discs beyond the first gate or permeable wall along an axis, by species.
         spread: these fractions in equilibrium with free passage between both sides, by species; their error is the
             standard deviation of a binomial distribution.
-        law: theoretical temperature at these times; None without theory.
+        law: theoretical prediction at these times; None without theory.
         samples: (P,), times of the samples, thinned evenly to at most MOST_SAMPLES.
         parts: (P,), terms of the energy, by name.
         given: (P,), energy received since the start from each wall, each piston (its work) and a heat bath, by name.

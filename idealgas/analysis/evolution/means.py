@@ -35,7 +35,7 @@ ROUNDING = 1e-9
 def mean_position(
     log: Log, series: PressureSeries | None, law: EvolutionLaw | None
 ) -> tuple[Estimate | None, float | None]:
-    """Return the mean position of a single piston of finite mass once it is steady, and the time when this begins.
+    """Return the mean position of a single piston of finite mass once it is steady, and the time from which it is.
 
     The estimate includes the theoretical position. Both results are None without such a piston, or if its position does
     not become steady.
@@ -96,8 +96,8 @@ def isothermal_work(log: Log, pistons: Series, given: Series) -> Estimate | None
     """Return the work of a single piston on a gas at the temperature of a heat bath, energy.
 
     Theory predicts -N T ∫ Z dA/A for a slow piston, which is N T ln(A₁/A₂) for an ideal gas. The standard error follows
-    from the deviations from theory in sections of the stroke. The result is None unless a driven piston has gas
-    on one side only, the gas has the temperature of a heat bath, and its area changes noticeably.
+    from the deviations from theory in sections of the stroke. The result is None unless a driven piston has gas on one
+    side only, the gas has the temperature of a heat bath, and its area changes noticeably.
 
     Args:
         log: log with the piston.

@@ -131,7 +131,7 @@ def _scatter(values: np.ndarray, errors: np.ndarray) -> float:
 
     The error bars follow from the scatter of time blocks. As sound and pistons make the pressure oscillate within a
     bin, the mean over a bin varies less than the scatter of the blocks suggests. Groups whose scatter is far above the
-    median are excluded, because a gate opens or a heat bath starts in them.
+    median are excluded, as a gate may open or a heat bath may start in them.
     """
     if len(values) < GROUP:
         return 1.0

@@ -42,7 +42,7 @@ states of 2 to 20 point particles.
 """
 
 SOURCE = "degrees of freedom"
-"""Name of the theory."""
+"""Name of the theory of the heat capacity."""
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,11 @@ class EnergySeries:
     Along axes with conserved momentum, the motion of the gas as a whole is excluded from the energies.
 
     Attributes:
-        kinetic: (n,), translational kinetic energy of the discs.
+        kinetic: (n,), translational kinetic energy of the discs, energy.
         energy: (n,), translational, rotational and potential energy of the discs, plus the energy of a piston of finite
-            mass.
+            mass, energy.
         position: (n,), coordinate of the piston, length; None without such a piston.
-        start: first of the times.
+        start: first of these times.
     """
 
     kinetic: np.ndarray

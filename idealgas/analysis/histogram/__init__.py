@@ -54,7 +54,7 @@ QUANTITIES: dict[Quantity, str] = {
 """Quantities whose distribution can be measured, with their units."""
 
 INVERSE = {"length/time": "time/length", "no unit": "no unit"}
-"""Units of the densities of quantities for which it is not written as 1/unit, by unit of the quantity."""
+"""Units of densities that are not written as 1/unit, by unit of the quantity."""
 
 OTHERS = {"waiting-time": waiting_times, "impact-parameter": impact_parameters, "collisions": collision_counts}
 """Functions that measure the distribution of a quantity, by quantity."""
@@ -239,7 +239,7 @@ def _in_words(quantity: str) -> str:
 
 
 def _follows(result: Histogram, distribution: Distribution) -> str:
-    """Return a sentence on the mean of a distribution and its agreement with each law."""
+    """Return a sentence on the mean of a distribution and on its agreement with the laws."""
     whose = "All discs" if distribution.name == ALL_DISCS else f"Species '{distribution.name}'"
     mean = f"{whose}: mean {_in_words(result.quantity)} {format_estimate(distribution.mean)}"
     words = {

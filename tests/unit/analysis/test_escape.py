@@ -72,8 +72,8 @@ def test_discs_that_meet_are_no_billiard():
     result = measured(text.replace("until = 12", "until = 7.5"))
     assert result.escaped == 1
     assert result.caveats == (
-        "Theory for the number of discs left is not available: discs neither keep their speeds nor reach equilibrium "
-        "before they leave.",
+        "Theory for the number of remaining discs is not available: discs neither keep their speeds nor reach "
+        "equilibrium before they leave.",
     )
 
 
