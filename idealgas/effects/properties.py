@@ -41,6 +41,7 @@ class Properties:
         fixed_walls: all walls remain at their positions.
         allows_monte_carlo: the effect has a meaning for discs without positions.
         allows_time_steps: the time-driven method can simulate the effect.
+        constant_restitution: discs collide with constant coefficients of restitution and roughness.
         is_scalable: the box may grow or shrink around the gas, because nothing in it has a fixed position.
 
     Attributes that are False by default, and true for a scene if true for any of its effects:
@@ -74,6 +75,7 @@ class Properties:
     fixed_walls: bool = _property(True, operator.and_)
     allows_monte_carlo: bool = _property(True, operator.and_)
     allows_time_steps: bool = _property(True, operator.and_)
+    constant_restitution: bool = _property(True, operator.and_)
     is_scalable: bool = _property(True, operator.and_)
     driven: bool = _property(False, operator.or_)
     dissipative: bool = _property(False, operator.or_)

@@ -115,9 +115,7 @@ def pair_event(record, i, j, effects, best):
     for image_x in range(*sheared_range(effects.shear, 3, image_range(effects.periodic, False))):
         for image_y in range(*sheared_range(effects.shear, 1, image_range(effects.periodic, True))):
             images = images_between(effects.periodic, record[i], record[j], (image_x, image_y))
-            time = contact_time(
-                record[i], record[j], i, j, effects.gravity, effects.restitution, effects.periodic, images
-            )
+            time = contact_time(record[i], record[j], i, j, images, effects.gravity, effects.periodic, effects)
             if time < best[0]:
                 best = (time, DISC, i, j, image_x, image_y)
     return best

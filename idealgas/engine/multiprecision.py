@@ -26,6 +26,7 @@ from idealgas.state import Gas
 
 NO_PARTNER = -5  # the sides are -1 to -4
 ELASTIC = 2.0  # 1 + the coefficient of restitution
+PLAIN = Effects()
 
 
 Disc = namedtuple("Disc", "x y vx vy t r m")
@@ -84,7 +85,7 @@ def disc_at(c, i):
 @inline
 def pair_time(c, i, j):
     """Local time of the next collision of discs i and j; NEVER if there is none."""
-    return contact_time(disc_at(c, i), disc_at(c, j), i, j, None, None, None, NO_IMAGES)
+    return contact_time(disc_at(c, i), disc_at(c, j), i, j, NO_IMAGES, None, None, PLAIN)
 
 
 @inline

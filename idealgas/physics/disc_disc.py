@@ -89,23 +89,23 @@ def collision_time(a, b, gravity, periodic, images):
 
 
 @inline
-def contact_time(a, b, a_id, b_id, gravity, restitution, periodic, images):
+def contact_time(a, b, a_id, b_id, images, gravity, periodic, effects):
     """Local time of the next collision of discs a and b; NEVER if there is none.
 
     Touching discs whose collision would not change a digit of any velocity count as having collided. The result can
     differ from `collision_time` only if that is the time of a record.
     """
     touched = collision_time(a, b, gravity, periodic, images)
-    if (touched == max(a.t, b.t)) and changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
+    if (touched == max(a.t, b.t)) and changes_nothing(a, b, a_id, b_id, images, gravity, periodic, effects):
         return number(NEVER, touched)
     return touched
 
 
 @noinline
-def changes_nothing(a, b, a_id, b_id, gravity, restitution, periodic, images):
+def changes_nothing(a, b, a_id, b_id, images, gravity, periodic, effects):
     """Whether a collision at the later time of two records would leave every digit of the velocities unchanged."""
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
-    factor = restitution_factor(restitution, a_id, b_id, time)
+    factor = restitution_factor(effects.restitution, a_id, b_id, time)
     before = a.vx, b.vx
     if periodic is not None:
         enter_common_frame(a, b, periodic.shear, images)

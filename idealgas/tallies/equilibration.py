@@ -105,6 +105,11 @@ class Window:
         """Return the sums (B, …) of a tally in the blocks of the window, divided by the width of a block."""
         return sums[self.first :] / self.width
 
+    def __str__(self) -> str:
+        """Return a line with start and end, and how the start was chosen."""
+        how = f"from detected {self.state}" if self.detected else "as asked"
+        return f"window: t = {self.start:.6g} to {self.end:.6g} ({how})"
+
     def as_dict(self) -> dict[str, Any]:
         """Return the window as plain values by name, ready for JSON."""
         return as_dict(self)

@@ -229,7 +229,7 @@ DELTA_EFFECT = '''
         samples = (BenchmarkSample(tables=lambda side: "[delta]\\nspeed = 0.001\\n"),)
 
         def properties(self, tables):
-            return Properties(elastic=False, collisions_give_energy=True)
+            return Properties(elastic=False, constant_restitution=False, collisions_give_energy=True)
 
         def make(self, tables, start):
             return tables.table.speed

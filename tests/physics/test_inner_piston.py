@@ -60,7 +60,7 @@ def test_what_an_analysis_tells():
     result, mechanical = evolution(log, 20.0), pressure(log, 20.0).mechanical
     assert {"piston, left", "piston, right"} <= {wall.name for wall in mechanical.walls}
     assert result.pressure.shown == ("piston, left", "piston, right")
-    assert (mechanical.area, result.pressure.area[0]) == (200, 200)
+    assert result.pressure.area[0] == 200
     left, right = (wall.pressure for wall in mechanical.walls if wall.name.startswith("piston"))
     assert left.value - right.value == pytest.approx(0, abs=4 * math.hypot(left.standard_error, right.standard_error))
     assert result.chambers.keys() == {"left", "right"}

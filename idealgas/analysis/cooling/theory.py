@@ -101,7 +101,9 @@ def parameters_of(log: Log) -> GranularParameters:
     effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
     elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
     why = ""
-    if parameters.normal == 1 and abs(parameters.roughness) == 1:
+    if laws := scene.lacking("constant_restitution"):
+        why = f"collisions with constant coefficients of restitution (got {', '.join(laws)}); use `idealgas evolution`"
+    elif parameters.normal == 1 and abs(parameters.roughness) == 1:
         why = "collisions that lose energy, and collisions in this gas conserve it"
     elif effects or not (all(log.periodic) or elastic_walls):
         others = ", ".join(effects) or "walls"

@@ -145,7 +145,9 @@ def _haff(log: Log, time: np.ndarray) -> EvolutionLaw | None:
     the temperature.
     """
     gas, table, kinetic = log.discs, log.scene.restitution, _kinetic(log)
-    if table is None or table.wall < 1 or table.normal < granular.TESTED_FROM or not gas.kinetic_energy > 0:
+    if table is None or not log.scene.properties.constant_restitution or not gas.kinetic_energy > 0:
+        return None
+    if table.wall < 1 or table.normal < granular.TESTED_FROM:
         return None
     n, share = len(gas), degrees_of_freedom(log.scene, log.discs) / (2 * len(gas))
     contacts = hard_discs.box_contacts(gas.radius[:1], [n], gas.box, log.periodic)[0, 0]

@@ -95,9 +95,7 @@ def predict_tied_contact(record, ids, state, count, has_images, i, effects):
         j = state.candidates[U(k)]
         b_id = np.int64(ids[U(j)])
         images = images_to(state, k, has_images, record, i, j, effects.periodic)
-        time = contact_time(
-            record[U(i)], record[U(j)], a_id, b_id, effects.gravity, effects.restitution, effects.periodic, images
-        )
+        time = contact_time(record[U(i)], record[U(j)], a_id, b_id, images, effects.gravity, effects.periodic, effects)
         if comes_earlier(prediction, ids, a_id, b_id, j, time, images):
             store_contact(state, record, i, j, k, has_images, time, effects.periodic)
 

@@ -19,13 +19,16 @@ pytestmark = pytest.mark.interpreted
 
 
 @njit
+def contact_with(discs, gravity, effects):
+    return contact_time(discs[0], discs[1], 0, 1, NO_IMAGES, gravity, None, effects)
+
+
 def contact_of(discs):
-    return contact_time(discs[0], discs[1], 0, 1, None, None, None, (0, 0))
+    return contact_with(discs, None, Effects())
 
 
-@njit
 def contact_under_gravity(discs):
-    return contact_time(discs[0], discs[1], 0, 1, Gravity(0.0, -1.0), None, None, (0, 0))
+    return contact_with(discs, Gravity(0.0, -1.0), Effects())
 
 
 @njit
