@@ -127,7 +127,7 @@ class EscapeAnalysis(Analysis):
             UserError: if no wall absorbs discs, if the log has no events, or if no disc escapes in the window.
         """
         if not log.escapes:
-            raise NotApplicableError(f"{log.path}: escape requires a wall that absorbs discs, and this gas has none")
+            raise NotApplicableError(f"{log.path}: escape requires a wall that absorbs discs, but there is none")
         log.require_events()
         first, last = span(log, start, end)
         at, spent, path, collisions = _flights(log, first, last, progress)

@@ -101,12 +101,12 @@ class Cooling(Result):
         """Return the table of averages and that of the time series."""
         rows = [
             ("T at the end (energy)", self.last_temperature),
-            ("T lost per collision of a disc (share)", self.loss),
+            ("fraction of T lost per collision of a disc", self.loss),
             ("Haff's time τ, T = T₀/(1 + t/τ)² (time)", self.haff),
             ("a₂ = ⟨v⁴⟩/2⟨v²⟩² - 1", self.fourth),
         ]
         if self.temperature_ratio is not None:
-            rows.append(("temperature of spin over that of motion", self.temperature_ratio))
+            rows.append(("rotational over translational temperature", self.temperature_ratio))
         rows += [
             ("scatter of numbers in cells, first tenth", self.first_scatter),
             ("scatter of numbers in cells, last tenth", self.last_scatter),
@@ -132,11 +132,11 @@ class Cooling(Result):
         """Return how far and how fast the gas cools, and whether both agree with the theory of a uniform gas."""
         last = self.last_temperature
         rows = [("T at the end", last), ("loss per collision", self.loss), ("Haff's time", self.haff)]
-        law = "" if last.theory is None else f" (by Haff's law {last.theory:.4g})"
+        law = "" if last.theory is None else f" (Haff's law: {last.theory:.4g})"
         return (
             f"The temperature falls from {self.temperature[0]:.4g} to {last.value:.4g}{law} in "
-            f"{self.collisions[-1]:.4g} collisions per disc, a fraction of {format_estimate(self.loss)} per collision. "
-            f"T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
+            f"{self.collisions[-1]:.4g} collisions per disc, losing a fraction of {format_estimate(self.loss)} "
+            f"per collision. T at the end, loss and Haff's time: {agreement(rows, 'the theory of a uniform gas')}."
         )
 
     def figure(self) -> "Figure":
@@ -245,7 +245,7 @@ class CoolingAnalysis(Analysis):
             last_scatter=late,
             last_flow=together,
             caveats=(
-                *([] if number >= FEW else [f"Theory assumes many discs, and this gas has {number}."]),
+                *([] if number >= FEW else [f"Theory assumes many discs, but this gas has only {number}."]),
                 *([] if parameters.normal >= granular.TESTED_FROM else [UNTESTED]),
                 *narrow(log),
                 *nonuniform(early.value, late.value, together.value, int(shape.prod())),

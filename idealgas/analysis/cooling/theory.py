@@ -104,16 +104,16 @@ def parameters_of(log: Log) -> GranularParameters:
     if laws := scene.lacking("constant_restitution"):
         why = f"collisions with constant coefficients of restitution (got {', '.join(laws)}); use `idealgas evolution`"
     elif parameters.normal == 1 and abs(parameters.roughness) == 1:
-        why = "collisions that lose energy, and collisions in this gas conserve it"
+        why = "collisions that lose energy, but collisions in this gas conserve it"
     elif effects or not (all(log.periodic) or elastic_walls):
         others = ", ".join(effects) or "walls"
         why = f"that only collisions between discs change the energy (got {others}); use `idealgas evolution`"
     elif not log.has_positions or not log.has_events:
         why = "events with positions"
     elif len(log.discs.species_names) > 1:
-        why = "equal discs, and this gas has several species"
+        why = "equal discs, but this gas has several species"
     elif not log.discs.radius[0] > 0 or not log.discs.kinetic_energy > 0:
-        why = "discs that collide, and these have no radius or do not move"
+        why = "discs that collide, but these discs have no radius or do not move"
     if why:
         raise NotApplicableError(f"{log.path}: cooling requires {why}")
     return parameters

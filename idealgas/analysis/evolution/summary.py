@@ -32,13 +32,14 @@ def _temperatures(result: "Evolution") -> Iterator[str]:
     if law is None:
         yield f"{change}; theory is not available."
     elif mean := result.mean_temperature:
-        yield f"{change}; its mean once steady, {format_estimate(mean)}: {agreement([('', mean)], 'equilibrium')}."
+        yield f"{change}; its mean once steady is {format_estimate(mean)}; {agreement([('', mean)], 'equilibrium')}."
     elif law.steady:
         yield f"{change}; equilibrium theory predicts {law.temperature[-1]:.4g}."
     else:
         yield f"{change}; theory predicts {law.temperature[-1]:.4g} at the end."
     for name, values in result.chambers.items() if len(result.chambers) == 2 else ():
-        yield f"{name.capitalize()}{'' if name.startswith('between') else ' of the piston'} it {_change(values)}."
+        where = f"{name.capitalize()}{'' if name.startswith('between') else ' of the piston'}"
+        yield f"{where}, the energy per disc {_change(values)}."
 
 
 def _pistons(result: "Evolution") -> Iterator[str]:
@@ -49,7 +50,7 @@ def _pistons(result: "Evolution") -> Iterator[str]:
             yield f"The {name} {_change(places)}."
     if exponent := result.adiabatic_exponent:
         verdict = agreement([("γ", exponent)], "the adiabat of these discs")
-        yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {verdict}, 2 for an ideal gas."
+        yield f"γ = 1 + ln(T₂/T₁)/ln(A₁/A₂) = {format_estimate(exponent)}; {verdict}. An ideal gas has γ = 2."
     if work := result.isothermal_work:
         verdict = agreement([("work", work)], "a slow piston at constant T")
         yield f"The work of the piston on the discs is {format_estimate(work)}; {verdict}."

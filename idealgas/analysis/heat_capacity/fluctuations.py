@@ -121,8 +121,10 @@ def _in_samples(log: Log, start: float | None, end: float) -> EnergySeries:
     if start is None:
         first = equilibrated_from(log, time[at], (Observable(kinetic), Observable(energy)))
     if len(at) - first < FEWEST:
-        few = f"{len(at) - first} samples of the energy in equilibrium are too few"
-        raise UserError(f"{log.path}: {few} ({FEWEST} needed; log.snapshot_every stores more)")
+        few = "too few samples of the energy in equilibrium"
+        raise UserError(
+            f"{log.path}: {few} (got {len(at) - first}; {FEWEST} needed); store more with log.snapshot_every"
+        )
     position = None if position is None else position[first:]
     return EnergySeries(kinetic[first:], energy[first:], position, float(time[at[first]]))
 
@@ -182,7 +184,7 @@ def too_few(capacity: Estimate, series: np.ndarray) -> str:
     elif 0 < error <= LARGEST_ERROR * capacity.value:
         return ""
     else:
-        why = f"its error is too large ({capacity.value:.2g} ± {error:.2g})"
+        why = f"the error is too large ({capacity.value:.2g} ± {error:.2g})"
     return f"{why}; use a longer run or, without events, more frequent samples"
 
 

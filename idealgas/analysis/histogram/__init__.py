@@ -104,7 +104,7 @@ class Histogram(Result):
         notes = (
             str(self.window),
             *(f"{each.name}: in t = {each.counted_in:.4g}" for each in self.distributions if each.counted_in),
-            *([f"Theory gives no distribution: {self.no_law}."] if self.no_law else []),
+            *([f"Theory is not available: {self.no_law}."] if self.no_law else []),
         )
         tables = [estimates(f"Mean {_in_words(self.quantity)} ({self.unit})", means, notes)]
         cumulants = [
@@ -121,7 +121,7 @@ class Histogram(Result):
     def summary(self) -> str:
         """Return the mean for each species, and whether its distribution agrees with the laws."""
         sentences = [_follows(self, distribution) for distribution in self.distributions]
-        return " ".join([*sentences, *([f"Theory gives no distribution: {self.no_law}."] if self.no_law else [])])
+        return " ".join([*sentences, *([f"Theory is not available: {self.no_law}."] if self.no_law else [])])
 
     def text(self) -> str:
         """Return a text histogram for each species, with the first of its laws."""

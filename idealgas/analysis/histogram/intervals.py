@@ -79,7 +79,7 @@ def waiting_times(log: Log, start: float | None, end: float | None, progress: Re
     blocks = slice(window.first, len(tally.counts))
     reason = nonstationary_reason(log)
     if log.has_positions and len(log.discs) < FEW:
-        reason = reason or f"theory assumes many discs, and this gas has {len(log.discs)}"
+        reason = reason or f"theory assumes many discs, but this gas has only {len(log.discs)}"
     with np.errstate(divide="ignore", invalid="ignore"):
         law = distributions.WaitingTimeLaw(tally.counts[blocks].sum() / tally.sums[blocks].sum())
     possible, error = {} if reason else {"exponential": law}, FINITE_NUMBER / len(log.discs)

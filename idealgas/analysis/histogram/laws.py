@@ -154,7 +154,7 @@ def free_flight_rates(
     if log.scene.properties.thermostat_rate:
         reason = reason or "a heat bath changes velocities during flights"
     if known.ensemble and known.ensemble.dof < 2 * FEW:
-        reason = reason or f"theory assumes many discs, and this gas has {len(log.discs)}"
+        reason = reason or f"theory assumes many discs, but this gas has only {len(log.discs)}"
     if known.ensemble and not reason:
         gas = known.ensemble
         theory = theory_of(log) if log.has_positions else None

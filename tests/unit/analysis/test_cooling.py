@@ -74,7 +74,7 @@ def test_a_gas_that_cools_more_slowly_than_by_theory_differs_from_it(make):
     )
     assert "1 of 3 differs from the theory of a uniform gas (largest deviation +" in hot.summary()
     assert hot.summary().endswith("σ, T at the end).")
-    assert f"to {last.value:.4g} (by Haff's law {last.value / 10:.4g}) in" in hot.summary()
+    assert f"to {last.value:.4g} (Haff's law: {last.value / 10:.4g}) in" in hot.summary()
 
 
 def test_moments_of_few_discs():

@@ -30,7 +30,7 @@ def test_no_law_and_why(override, make):
     assert (gas.density * np.diff(gas.edges)).sum() == pytest.approx(1, abs=0.02)  # nothing to speak of is beyond
     assert json.loads(json.dumps(result.as_dict(), allow_nan=False))["no_law"] == result.no_law
     (table,) = result.plain_tables()
-    assert f"Theory gives no distribution: {result.no_law}." in table.notes
+    assert f"Theory is not available: {result.no_law}." in table.notes
     assert result.plot().axes[0].get_legend().get_texts()[0].get_text() == "gas (no law)"
 
 

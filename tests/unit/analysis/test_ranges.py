@@ -148,7 +148,7 @@ def test_fourier_s_law_takes_many_mean_free_paths():
 def test_laws_of_many_discs_take_many():
     few = ("species.gas.count=10", PERIODIC)
     path = analysed("histogram", *few, quantity="free-path")
-    assert path.no_law == "theory assumes many discs, and this gas has 10"
+    assert path.no_law == "theory assumes many discs, but this gas has only 10"
     many = analysed("histogram", PERIODIC, quantity="free-path")
     assert many.no_law is None
     assert many.distributions[0].mean.theory == pytest.approx(analysed("transport", PERIODIC).free_paths[0].path.theory)

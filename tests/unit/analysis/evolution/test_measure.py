@@ -124,7 +124,7 @@ def test_the_mean_of_a_steady_temperature_is_compared_with_theory(make):
     assert (mean.theory, result.law.temperature[-1]) == (3.0, 3.0)
     assert abs(mean.deviation) < 4
     assert mean.value == pytest.approx(result.temperature[-200:].mean(), rel=0.1)
-    assert "; its mean once steady, " in result.summary()
+    assert "; its mean once steady is " in result.summary()
     assert "equilibrium (3, " in result.summary()
     closed = evolution(make())
     assert closed.mean_temperature is None  # its energy is conserved
