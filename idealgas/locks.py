@@ -121,7 +121,7 @@ def open_regular(path: Path, mode: str = "rb") -> IO[bytes]:
 
 
 def regular(path: str | Path, flags: int) -> int:
-    """Open a regular file, as the `opener` of `open`.
+    """Open a regular file; for use as the `opener` of `open`.
 
     Other files are rejected before they are opened, because opening a device may change its state, and opening a FIFO
     waits.

@@ -1,4 +1,4 @@
-"""Bias a dt + b dt² of a quantity that is caused by time steps.
+"""Bias of a quantity due to time steps, a dt + b dt².
 
 The first term arises because contacts are detected half a step late on average. The second term includes the pairs that
 pass through each other because no step ends while they overlap and still approach.
@@ -78,7 +78,7 @@ def rate_biases(dt: np.ndarray, rates: Sequence[Estimate]) -> tuple[list[Estimat
 
 
 def _fit(dt: np.ndarray, error: np.ndarray, powers: tuple[int, ...]) -> np.ndarray:
-    """Return weights (powers, n) whose product with values (n,) of given errors is the coefficients of powers of dt."""
+    """Return weights (powers, n); times values (n,) with these errors, they give the coefficients of powers of dt."""
     columns = np.stack([dt**power for power in powers], axis=1)
     scale = np.linalg.norm(columns, axis=0)
     return np.linalg.pinv(columns / scale / error[:, None]) / scale[:, None] / error

@@ -25,7 +25,7 @@ DIGITS = {"float32": 24 * math.log10(2), "float64": 53 * math.log10(2), "double-
 PLACEMENTS = 25
 SPREAD = 0.25  # relative variation of the sides of the box and of the radius
 LEAST_ROOM = 0.1  # smallest length of a flight between collisions or to a wall, radii
-MOST_PERIODS = 200  # length of a run; an orbit that lasts so long never breaks
+MOST_PERIODS = 200  # length of a run in periods; an orbit that lasts so long never breaks
 AGREEMENT = 1e-9  # largest deviation of an initial state from the orbit, relative to the box
 
 LEFT, RIGHT, BOTTOM, TOP = -1, -2, -3, -4

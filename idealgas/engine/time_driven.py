@@ -1,10 +1,10 @@
 """The time-driven method: all discs move by a time step, then those that overlap or are outside the box collide.
 
-It serves for comparison with the event-driven method; its errors grow with the step. A contact is found late, by half a
-step on average, and with a rotated line of centres; a contact that begins and ends between two steps is missed. The
-method is implemented as fast as possible: near pairs are listed with the help of cells, and the list is used until two
-discs may have approached by `skin` (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley, Computer Simulation of
-Liquids, 2nd ed. (2017), ch. 5.3).
+It serves for comparison with the event-driven method; its errors grow with the step. A contact is detected late, by
+half a step on average, and with a rotated line of centres. It is missed if no step ends while the discs overlap and
+still approach. The method is implemented as fast as possible: near pairs are listed with the help of cells, and the
+list is used until two discs may have approached by `skin` (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley,
+Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
 """
 
 import math

@@ -1,4 +1,4 @@
-"""GIF writer that works frame by frame in bounded memory; the writer of Pillow would keep all frames until the end."""
+"""GIF writer that works frame by frame in bounded memory; Pillow's own writer would keep all frames until the end."""
 
 from typing import IO
 

@@ -8,7 +8,7 @@ from idealgas.movie.piston_track import PistonTrack
 BEYOND = 1.25
 """Length of the displayed range along the axis of a piston, relative to the largest length of the gas."""
 
-LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins, and width of a letter, in pixels of the usual size
+LEFT, RIGHT, BOTTOM, TOP, LETTER = 64, 22, 58, 48, 10  # margins and width of a letter, pixels at the usual frame size
 PANEL = 0.3
 """Smallest fraction of a frame that is used for the panel beside or below the box."""
 

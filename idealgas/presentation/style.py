@@ -214,7 +214,7 @@ def panels(rows: int, columns: int = 1) -> tuple[Figure, list[Panel]]:
         ax.set_axisbelow(True)
         ax.spines[["top", "right"]].set_visible(False)
         ax.spines[["bottom", "left"]].set_in_layout(False)  # tick labels extend beyond them
-        ax.yaxis.set_label_coords(0, 0)  # or its position would be computed repeatedly, without a label
+        ax.yaxis.set_label_coords(0, 0)  # so that the position of an absent label is not computed repeatedly
     return figure, axes
 
 

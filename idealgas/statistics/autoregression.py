@@ -30,7 +30,7 @@ BLOCKS = 256
 """Number of blocks into which a long series is divided; the actual number may be up to twice as large."""
 
 FEWEST = 8
-"""Smallest number of blocks that are formed with a known correlation time; the error is then known to 27 %."""
+"""Smallest number of blocks into which a series of known correlation time is divided, for an error known to 27 %."""
 
 NOISE = 1e-12
 """Fraction of the variance below which the residual of a model is attributed to rounding."""
@@ -61,7 +61,7 @@ class Model(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """Standard error of the mean of a series, and the number of independent samples that would give it as precisely."""
+    """Standard error of the mean of a series, and the number of independent samples with an equally precise error."""
 
     error: float
     samples: float
@@ -144,7 +144,7 @@ def error_of_mean(series: np.ndarray, number: int | None = None, memory: float =
 
 
 def inefficiency(series: np.ndarray) -> float:
-    """Return the statistical inefficiency g ≥ 1 of a stationary process: samples per independent sample.
+    """Return the statistical inefficiency g ≥ 1 of a stationary process, the number of samples per independent sample.
 
     g = 1 + 2 Σ (1 - k/n) ρ(k) over the lags k before the first lag at which the autocorrelation ρ of the models is not
     positive (Chodera et al., J. Chem. Theory Comput. 3, 26 (2007), who estimate ρ without a model). Later negative
@@ -236,11 +236,11 @@ def _fit(forward, backward, coefficients, noise, covariance, doubt):
            ↑       └─ known samples ─┘     ↑
         b_{t-1}                           f_t
 
-    The two samples at the ends are new for a model of order p, and what either error tells about the other is the only
-    additional information. Order p follows from order p - 1 in three steps:
+    The two samples at the ends are new to a model of order p, and the only additional information is in the correlation
+    of their errors. Order p follows from order p - 1 in three steps:
 
     1. κ = 2 Σ f_t b_{t-1}/Σ (f_t² + b_{t-1}²) minimises the sum of the squares of both new errors. Because |2 f b| is
-       at most f² + b², |κ| is at most 1: no model grows with time.
+       at most f² + b², |κ| is at most 1, so that no model grows with time.
     2. a_k ← a_k - κ a_{p-k} for k < p, and a_p = κ; the covariance at lag p is κ s + Σ a_k c_{p-k} with the old a_k and
        the old noise s, which becomes s (1 - κ²).
     3. f_t ← f_t - κ b_{t-1} and b_t ← b_{t-1} - κ f_t.

@@ -53,7 +53,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep.
+    """A sweep: its runs and the analyses of each run.
 
     Attributes:
         analyses: names of the analyses that are applied to each point.

@@ -14,8 +14,9 @@ def conductance(
 ) -> np.ndarray:
     """Return the energy that each gas gives to a piston per unit time and temperature difference, 1/time.
 
-    If the velocities of discs and piston are Maxwellian and hits are uncorrelated, it is 4 m M/(m + M)² F σ/(T √(2π)),
-    where F is the force of a gas of temperature T on the piston of temperature T_P, and σ² = T/m + T_P/M.
+    If the velocities of discs and piston are Maxwellian and hits are uncorrelated, this conductance is
+    4 m M/(m + M)² F σ/(T √(2π)), where F is the force of a gas of temperature T on the piston of temperature T_P, and
+    σ² = T/m + T_P/M.
 
     Args:
         temperature: temperature T of each gas, energy.

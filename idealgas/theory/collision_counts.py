@@ -16,11 +16,11 @@ BASIS = 10
 
 @cache
 def _operators() -> tuple[np.ndarray, np.ndarray]:
-    """Return the matrices (BASIS, BASIS) of the collision gain K and of the collision rate ν, over the mean rate.
+    """Return the matrices (BASIS, BASIS) of the collision gain K and the collision rate ν, divided by the mean rate.
 
-    Let s and w be the energies of the centre of mass and of the relative motion over T, and θ the angle between the two
-    velocities. Then m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns the relative velocity by χ, where |b|/σ =
-    |cos(χ/2)| is distributed uniformly from 0 to 1, so that the mean of cos kχ is -1/(4k² - 1).
+    Let s and w be the energies of the centre of mass and of the relative motion of two discs, divided by T, and θ the
+    angle between the two velocities. Then m v²/2T is (s + w)/2 + √(sw) cos θ. A collision turns the relative velocity
+    by χ, where |b|/σ = |cos(χ/2)| is distributed uniformly from 0 to 1, so that the mean of cos kχ is -1/(4k² - 1).
     """
     from scipy import special
 

@@ -10,16 +10,17 @@ from idealgas.scene import Scene
 from idealgas.state import Gas
 
 CHANCE = 12.0
-"""Largest fraction of the kinetic energy, times the number N of discs, that the centre of mass has by chance.
+"""Largest share of the kinetic energy, times the number N of discs, that the centre of mass may have by chance.
 
 The kinetic energy of the centre of mass along one axis is T/2 on average; its share of the energy exceeds s with a
 probability of about exp(-s N).
 """
 
 FIXED = 1e12
-"""Ratio of masses, to that of the lightest disc, above which a disc counts as fixed.
+"""Mass, relative to that of the lightest disc, above which a disc counts as fixed.
 
-Such a disc would need about as many collisions as this ratio to acquire its share of the energy, more than in any run.
+To acquire its share of the energy, such a disc would need about as many collisions as this ratio, more than occur in
+any run.
 """
 
 SAID_FROM = 0.01
@@ -100,7 +101,7 @@ def lost_motion(scene: Scene, gas: Gas) -> tuple[str, ...]:
 
 
 def share_of_motion(gas: Gas, velocity: np.ndarray) -> float:
-    """Return the fraction of the kinetic energy in a common velocity (2,) of all discs; 0 for a gas at rest."""
+    """Return the fraction of the kinetic energy that is due to a common velocity (2,); 0 for a gas at rest."""
     energy = gas.kinetic_energy
     return float(gas.mass.sum() * (velocity @ velocity) / 2 / energy) if energy > 0 else 0.0
 

@@ -89,9 +89,9 @@ def composition(gas: Gas) -> Composition:
 def classes(gas: Gas) -> Composition:
     """Return the composition of a gas, with species of unlike discs divided by radius into classes of equal size.
 
-    It preserves the packing fraction and the total mass. With K classes, the mean of a function of the radius over the
-    classes differs from that over the discs by about 1/K² of the term due to the variance of the radii, for any number
-    of discs.
+    The division preserves the packing fraction and the total mass. The mean of a function of the radius over K classes
+    differs from its mean over the discs by about 1/K² of the second-order term in the spread of the radii, whatever the
+    number of discs.
     """
     return _kinds(gas, CLASSES, 2.0)
 
@@ -208,8 +208,8 @@ class Ensemble:
 def equilibrium(scene: Scene, gas: Gas, spin_energy: float) -> Ensemble | None:
     """Return the ensemble of a gas; None if its energy is neither conserved nor set by a single temperature.
 
-    The result is also None for a single disc whose momentum is conserved, because none of its energy is heat, or whose
-    spin has some of the energy.
+    The result is also None for a single disc with conserved momentum, because none of its energy is heat, and for a
+    single disc whose spin contains some of the energy.
 
     Args:
         scene: scene of the gas.

@@ -270,7 +270,8 @@ def _why_rough(
         return theory.reason
     expected = theory.contacts * hard_discs.mean_relative_speeds(temperature, discs.mass)
     known = expected.sum(axis=1)
-    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)  # and 1/N
+    # the last term allows for corrections of order 1/N
+    off = np.abs(per_disc - known) + (theory.rate_error * expected).sum(axis=1) + known / len(gas)
     relative = float((off[known > 0] / known[known > 0]).max(initial=0.0))
     return f"Enskog's theory is off by up to {relative:.0%} for this gas and box" if relative > ROUGH else ""
 

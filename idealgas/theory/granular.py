@@ -80,7 +80,7 @@ def temperature_ratio(parameters: GranularParameters) -> float | None:
 
 
 def relaxation(parameters: GranularParameters) -> float:
-    """Return the number of collisions of a disc in which x approaches `temperature_ratio` by a factor e.
+    """Return the number of collisions of a disc in which x - `temperature_ratio` decreases by a factor e.
 
     The result is 0 for smooth discs.
     """
@@ -93,9 +93,9 @@ def relaxation(parameters: GranularParameters) -> float:
 def cooling_per_collision(parameters: GranularParameters) -> float:
     """Return the fraction of T that a disc loses per collision in homogeneous cooling.
 
-    For smooth discs, with the first Sonine polynomial, it is (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16): a₂ changes the
-    energy loss per time by a relative 3a₂/16 and the collision rate by -a₂/16. The velocities of rough discs are taken
-    to be Maxwellian.
+    For smooth discs, with the first Sonine polynomial, it is (1 - e²)/2 · (1 + 3a₂/16)/(1 - a₂/16): a₂ multiplies the
+    energy loss per time by 1 + 3a₂/16 and the collision rate by 1 - a₂/16. The velocities of rough discs are taken to
+    be Maxwellian.
     """
     if (ratio := temperature_ratio(parameters)) is not None:
         return loss_of_motion(parameters, ratio)

@@ -67,7 +67,7 @@ def henderson_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
 def free_volume_compressibility_factor(packing_fraction: ArrayLike) -> np.ndarray:
     """Return Z = 1/(1 - √(φ/φcp)) of a crystal of hard discs, each in the cage of its neighbours.
 
-    This is free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950). It is exact near close packing, φcp.
+    This is free-volume theory: Kirkwood, J. Chem. Phys. 18, 380 (1950). It becomes exact at close packing, φcp.
     """
     return np.asarray(1 / (1 - np.sqrt(np.asarray(packing_fraction, float) / CLOSE_PACKING)))
 
@@ -127,12 +127,12 @@ def confinement(
 ) -> np.ndarray:
     """Return the factor (S, S) by which walls change the number of contacts of species i and j.
 
-    Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts; and a disc near a
-    wall has neighbours on one side only, which decreases it. The factor is the average fraction of the contact circle
-    that lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas it is of first
-    order in density; its errors, from simulations, are in `values.ERRORS`. Periodic axes have no walls and contribute a
-    factor 1. With an `axis`, contacts are weighted by the term of the pair virial along it, which is balanced by the
-    walls across this axis.
+    Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts. On the other hand,
+    a disc near a wall has neighbours on one side only, which decreases it. The factor is the average fraction of the
+    contact circle that lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas
+    it is of first order in density; its errors, from simulations, are in `values.ERRORS`. Periodic axes have no walls
+    and contribute a factor 1. With an `axis`, each contact is weighted by its contribution to the pair virial along
+    this axis, which is balanced by the walls across it.
     """
     radius = np.asarray(radius, float)
     along_x, along_y = (_room_along(radius, *side) for side in zip(box, periodic, strict=True))
@@ -296,7 +296,7 @@ def mean_free_path(diameter: float, number_density: float, packing_fraction: flo
 
 
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
-    """Return the flux n⟨v⟩/π through a slit in one direction, 1/(length time); also the hit rate of a wall."""
+    """Return the flux n⟨v⟩/π through a slit in one direction, 1/(length time); also the hits on a wall per length."""
     return number_density * mean_speed(temperature, mass) / math.pi
 
 
