@@ -119,7 +119,7 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
     if analysis.is_checked():
         words = (
             "Exit with code 1 if measurement and theory differ by more than chance allows, with 2 if there are too few "
-            "samples to decide, and with 0 if there is no theory."
+            "samples to decide, and with 0 if they agree or theory is not available."
         )
         yield click.option("--check", is_flag=True, help=words)
 

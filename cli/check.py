@@ -85,7 +85,7 @@ def _rest_lines(resting: "RestingDisc", number: int) -> Iterator[str]:
     """Yield lines about how discs at rest keep bouncing, with a warning if their hits dominate the run."""
     least, most = resting.hits
     if most is None or resting.per_free_time is None:
-        yield "warning: With a coefficient of restitution of 0, a resting disc collides endlessly at one instant."
+        yield "warning: With a coefficient of restitution of 0, a resting disc collides infinitely often at one instant."
         return
     yield (
         f"at rest: a disc keeps bouncing, with {least:.4g} to {most:.4g} hits per unit time, up to a height of "
@@ -94,8 +94,8 @@ def _rest_lines(resting: "RestingDisc", number: int) -> Iterator[str]:
     if resting.per_free_time > MANY_HITS:
         yield (
             f"warning: A disc at rest has up to {resting.per_free_time:.3g} times as many events as a disc of the "
-            f"initial gas, all {number} together {number * most:.3g} per unit time; a longer contact duration reduces "
-            "them."
+            f"initial gas, and all {number} discs together have {number * most:.3g} per unit time; a longer contact "
+            "duration reduces them."
         )
 
 
