@@ -85,7 +85,7 @@ def _rest_lines(resting: "RestingDisc", number: int) -> Iterator[str]:
     """Yield lines about how discs at rest keep bouncing, with a warning if their hits dominate the run."""
     least, most = resting.hits
     if most is None or resting.per_free_time is None:
-        yield "warning: If the coefficient of restitution is 0, a resting disc collides infinitely often at one instant."
+        yield "warning: With a restitution of 0, a resting disc collides infinitely often at one instant."
         return
     yield (
         f"at rest: a disc keeps bouncing, with {least:.4g} to {most:.4g} hits per unit time, up to a height of "

@@ -110,7 +110,7 @@ species = [{ name = "gas", count = 5, radius = 0.5, temperature = 1 }]
     [
         ("restitution.wall=0.9", "at rest: a disc keeps bouncing, with 13.72 to 15.25 hits per unit time, up to", ""),
         ("restitution.contact_duration=1e-6", "1e+06 to 1.111e+06 hits per unit time", "warning: A disc at rest has"),
-        ("restitution.wall=0", "", "warning: With a coefficient of restitution of 0, a resting disc collides end"),
+        ("restitution.wall=0", "", "warning: With a restitution of 0, a resting disc collides infinitely often"),
         ("gravity=", "", ""),
     ],
 )
