@@ -160,13 +160,6 @@ class LyapunovAnalysis(Analysis):
         orthogonalised once per event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth during the first 20
         events per disc is discarded. The standard errors are those of the mean growth rates.
 
-        Args:
-            log: the log.
-            start: start of the window, time; None to detect it.
-            end: end of the window, time; None for the end of the log.
-            progress: called as progress(done, total) while the log is read.
-            exponents: number of exponents to measure, from the largest down; at most 4N.
-
         Raises:
             UserError: if the log does not contain events of smooth elastic discs from an exact method, if a side of
                 the box is neither periodic nor a plain wall at rest, if more than 4N exponents are requested, or if

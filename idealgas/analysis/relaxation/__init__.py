@@ -206,14 +206,6 @@ class RelaxationAnalysis(Analysis):
     ) -> Relaxation:
         """Follow the relaxation of the speeds to the Maxwell-Boltzmann distribution, and fit the relaxation time.
 
-        Args:
-            log: the log.
-            start: start of the window, time; None for the start of the log.
-            end: end of the window, time; None for the time after 40 collisions per disc.
-            progress: called as progress(done, total) while the log is read.
-            every: interval at which speed distributions are counted, in trials (Monte Carlo) or units of time (other
-                methods); None to omit them.
-
         Raises:
             UserError: if no two discs collide in the window, or if the kinetic energy of the discs is not constant, so
                 that they do not approach a stationary distribution.
