@@ -128,7 +128,7 @@ def test_discs_that_may_come_to_rest(override, said, warned, tmp_path):
 
 def test_rough_discs_that_come_to_rest(tmp_path):
     (tmp_path / "scene.toml").write_text(RESTING.replace("restitution.wall = 0.9", "rotation.wall_roughness = 0.5"))
-    warned = "warning: Rough collisions dissipate the kinetic energy"
+    warned = "warning: Rough collisions dissipate kinetic energy"
     for override in ("run.until=20", "restitution.normal=0.95", "box.top={ thermal = 1 }", "rotation.roughness=0.5"):
         assert warned in called("check", "scene.toml", "--set", override, folder=tmp_path).stdout
     assert json.loads(called("check", "scene.toml", "--json", folder=tmp_path).stdout)["warning"]
