@@ -77,27 +77,27 @@ class Lyapunov(Result):
     def plain_tables(self) -> list[Table]:
         """Return the tables of the exponents (cut short if there are many), of chaos, and of the loss of digits."""
         exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(self.exponents, 1)]
-        notes = [str(self.window), "theory is not available at any density; the largest exponent grows with N"]
+        notes = [str(self.window), "theory is not available; the largest exponent grows with N"]
         chaos = [
             ("digits lost per collision of a disc (no unit)", self.digits),
             ("fraction of the discs in the leading deviation (no unit)", self.localisation),
         ]
         if self.entropy is not None:
             chaos.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", self.entropy))
-            notes.append(f"λ and -λ in pairs: within {self.pairing:.1g}")
-            notes.append(f"{self.zeros} exponents are 0 by conservation laws: within {self.largest_zero:.1g}")
+            notes.append(f"exponents form pairs λ and −λ to within {self.pairing:.1g}")
+            notes.append(f"{self.zeros} exponents vanish by conservation laws, to within {self.largest_zero:.1g}")
         rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g")) for digits in PRECISIONS]
         return [
             replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
             estimates(f"Chaos; mean free time {self.mean_free_time:.4g}", chaos),
-            Table("Time after which all digits are lost", ("numbers of", "time"), rows),
+            Table("Time after which all digits are lost", ("precision", "time"), rows),
         ]
 
     def summary(self) -> str:
         """Return the headline: the growth rate of deviations and the loss of digits; neither has a theory."""
         return (
-            f"Small deviations grow at the rate λ = {format_estimate(self.exponents[0])}: a collision of a disc "
-            f"takes {format_estimate(self.digits)} digits, and float64 has lost its 16 digits after t = "
+            f"Small deviations grow at a rate of λ = {format_estimate(self.exponents[0])}: each collision of a disc "
+            f"costs {format_estimate(self.digits)} digits, and float64 has lost its 16 digits after t = "
             f"{self.lifetime(16):.3g}; theory is not available."
         )
 
@@ -124,7 +124,7 @@ class Lyapunov(Result):
                 color=COLOURS[0],
             )
             ax.axhline(0, color=GREY, linewidth=0.8)
-            ax.set(xlabel="number of the exponent", ylabel="exponent (1/time)")
+            ax.set(xlabel="index of the exponent", ylabel="exponent (1/time)")
         return figure
 
 
@@ -138,7 +138,7 @@ class LyapunovAnalysis(Analysis):
         Option(
             "exponents",
             int,
-            "Number of exponents, the largest ones; 4N are the whole spectrum.",
+            "Number of exponents to measure, from the largest down; 4N is the whole spectrum.",
             default=1,
             least=1,
             metavar="K",

@@ -107,24 +107,24 @@ class Order(Result):
             ("|ψ₆| of a disc, mean", self.local),
             ("|Ψ₆|, of all discs together", self.whole),
             ("N |Ψ₆|²", self.square),
-            ("share of discs with six neighbours", self.hexagons),
+            ("fraction of discs with six neighbours", self.hexagons),
         ]
         notes = [f"{self.window}, {self.frames} frames"]
         correlation = self.distance, self.correlation, self.correlation_error
         functions = [_function("Correlation g₆ of ψ₆ (no unit)", "r (length)", *correlation)]
         if (structure := self.structure) is None:
-            notes.append("S(k) and positional order: in a periodic box only")
+            notes.append("S(k) and positional order are measured in periodic boxes only")
         else:
             rows.append(("S/N at the highest peak (positional order, squared)", structure.positional))
             notes.append(f"highest peak of S at k = ({structure.peak[0]:.5g}, {structure.peak[1]:.5g})")
-            title = "Structure factor, all directions (no unit)"
+            title = "Structure factor, averaged over directions (no unit)"
             functions.append(_function(title, "k (1/length)", structure.k, structure.value, structure.error))
         if self.compressibility is not None:
-            notes.append(f"S(k) at small k by theory: {self.compressibility:.4g} (nT times the compressibility)")
+            notes.append(f"theory for S(k) at small k: {self.compressibility:.4g} (nT times the compressibility)")
         return [estimates("Order (no unit)", rows, notes), *functions]
 
     def summary(self) -> str:
-        """Return the headline: |Ψ₆|, from 0 to 1, and the share of discs with six neighbours; neither has a theory."""
+        """Return the headline: |Ψ₆|, from 0 to 1, and the fraction of discs with six neighbours; there is no theory."""
         return (
             f"|Ψ₆| of all discs is {format_estimate(self.whole)} (0 without order, 1 in a perfect crystal), and "
             f"{100 * self.hexagons.value:.0f} % have six neighbours; theory is not available for either."
@@ -137,7 +137,7 @@ class Order(Result):
         figure, axes = panels(1 if self.structure is None else 2, 2)
         series, correlation = axes[:2]
         series.plot(self.time, self.series, color=COLOURS[0], label="measured")
-        series.axvspan(self.window.start, self.window.end, color=GREY, alpha=0.12, label="window of the averages")
+        series.axvspan(self.window.start, self.window.end, color=GREY, alpha=0.12, label="averaged window")
         series.time_axis()
         series.set(ylim=(0, 1), ylabel="|Ψ₆| of all discs (no unit)")
         x, y, error = self.distance, self.correlation, self.correlation_error

@@ -81,7 +81,7 @@ class ShearFlow(Result):
         """Return the table of temperature, viscosity, pressure, normal stress and slope of the flow."""
         notes = (
             f"{self.window}; shear rate {self.rate:.6g}, {self.reduced_rate:.3g} of the collision rate",
-            "theory: viscosity by Enskog, pressure by the virial series, both of a slow flow of elastic discs",
+            "theory: viscosity from Enskog theory, pressure from the virial series, for a slow flow of elastic discs",
         )
         return [estimates("Shear flow, velocities relative to the flow", self._rows(), notes)]
 

@@ -124,7 +124,7 @@ class Sound(Result):
         ]
         notes = (
             f"{self.window}, {self.frames} instants",
-            "theory: speed by the virial series; damping and diffusivity by Enskog's viscosities and thermal "
+            "theory: speed from the virial series; damping and diffusivity from Enskog's viscosities and thermal "
             "conductivity",
         )
         return [replace(tables[0], notes=notes), *tables[1:]]
@@ -154,7 +154,7 @@ class Sound(Result):
             fine = np.linspace(0, wave.lag[-1], 500)
             ax.plot(fine, wave.fitted.at(fine), color=COLOURS[1], linewidth=1.2, label="fit: heat and sound")
             if wave.theory is not None:
-                ax.theory(fine, wave.theory.at(fine), _doubt(fine, wave), "hydrodynamics by theory", GREY)
+                ax.theory(fine, wave.theory.at(fine), _doubt(fine, wave), "theory (hydrodynamics)", GREY)
             ax.axhline(0, color="#bbbbbb", linewidth=0.8, zorder=1)
             ax.set_xlabel("t (time)")
             wave_in_words = f"waves along {wave.axes}, {wave.wavelength:.4g} long: c = {wave.speed.value:.4g}"
@@ -238,9 +238,7 @@ def _steps(log: Log, window: Window, expected: Decay) -> tuple[float, int]:
     step = max(min(period, decay_time) / STEPS, window.duration / MOST_FRAMES)
     lags = int(longest / step) + 1
     if lags < STEPS:
-        raise UserError(
-            f"{log.path}: a window of {8 * STEPS * step:.3g} is the shortest in which waves can be followed"
-        )
+        raise UserError(f"{log.path}: window too short for waves to be followed (allowed >= {8 * STEPS * step:.3g})")
     return step, lags
 
 
@@ -312,11 +310,11 @@ def _caveats(log: Log, window: Window, wave: SoundWave) -> Iterator[str]:
         yield f"The waves along {wave.axes} decay within a period and are hardly sound waves."
     if (part := wave.speed.standard_error / wave.speed.value) > ROUGH:
         yield (
-            f"The speed of sound along {wave.axes} is known to {100 * part:.2g} %; above {100 * ROUGH:g} % error bars "
-            "of it and of γ are up to a fifth too small."
+            f"The speed of sound along {wave.axes} is known to within {100 * part:.2g} %; above {100 * ROUGH:g} % the "
+            "error bars of the speed and of γ are up to a fifth too small."
         )
     if (number := window.duration * fluid.damping * k**2) < FEWEST_DECAYS:
         yield (
-            f"The window has {number:.2g} decay times of the waves along {wave.axes}; error bars require "
+            f"The window is {number:.2g} decay times of the waves along {wave.axes} long; error bars require "
             f"{FEWEST_DECAYS}."
         )

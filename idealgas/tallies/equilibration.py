@@ -248,13 +248,13 @@ def unsteady(name: str, series: np.ndarray, time: np.ndarray) -> tuple[str, ...]
     first, samples = detect_equilibration([Observable(series)]), error_of_mean(series).samples
     if first is not None and first > len(series) // 10:
         return (
-            f"{name} is not steady in the window: only from t = {time[first]:.4g} on do the means of its parts agree. "
+            f"{name} is not steady in the window: the means of its parts agree only after t = {time[first]:.4g}. "
             "Use a later start or a longer run.",
         )
     if first is None or samples < FEWEST_SAMPLES:
         return (
             f"{name} changes too slowly for this window: its mean and error may describe a single fluctuation, or "
-            "a change that is not over. Use a longer run.",
+            "a change that has not ended. Use a longer run.",
         )
     return ()
 

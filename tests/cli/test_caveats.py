@@ -94,7 +94,7 @@ def test_a_sweep_of_few_states_gives_its_table(tmp_path):
     (tmp_path / "sweep.toml").write_text(SWEEP)
     shown("sweep", "sweep.toml", "-o", "out", "--workers", 1, folder=tmp_path)
     said = shown("pressure", "out", "--check", folder=tmp_path).stdout
-    assert "No virial coefficients: a fit takes 4 packing fractions or more" in said
+    assert "No virial coefficients: a fit requires 4 packing fractions or more" in said
     assert sum(f", N = {number} " in line for line in said.splitlines() for number in (100, 400)) == 4
     twice = error_of("pressure", "out", "out", folder=tmp_path)
     assert twice == "out, point 0: given twice\n"

@@ -41,7 +41,7 @@ def test_a_closed_gate_leaves_the_gas_its_half(log):
     for name in ("left wall", "bottom wall", "top wall", "gate, left"):
         assert abs(walls[name].value - 10.6) < 4 * walls[name].standard_error, name
     assert walls["right wall"].value == walls["gate, right"].value == 0.0
-    assert result.caveats == ("Lengths of sides and A = 100 are those of the chambers with gas, until they open.",)
+    assert result.caveats == ("The lengths of sides and A = 100 are those of the chambers with gas, until these open.",)
 
 
 def test_half_of_the_discs_end_beyond_the_gate(log):

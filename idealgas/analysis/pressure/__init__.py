@@ -22,9 +22,7 @@ class PressureAnalysis(Analysis):
     headline = "routes.pairs_virial*.compressibility_factor"
     results = (Pressure, EquationOfState)
     sections = (
-        Section(
-            "Pressure", "Z by every route with standard errors, theory as lines; without one the pressure of walls"
-        ),
+        Section("Pressure", "Z by every route with standard errors and theory, or else the pressure on every wall"),
     )
     averages = True
 

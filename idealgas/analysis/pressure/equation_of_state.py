@@ -123,10 +123,10 @@ class EquationOfState(Result):
             )
             for state in self.states
         ]
-        states = Table("Z = PA/NT: for N → ∞ up to φ = 0.62, of this N above; deviations are from theory", heads, rows)
+        states = Table("Z = PA/NT: for N → ∞ up to φ = 0.62, for this N above; deviations are from theory", heads, rows)
         if self.b2 is None or self.b3 is None:
             notes = (
-                f"No virial coefficients: a fit takes {FREE_TERMS + 1} packing fractions or more, up to {FITTED:g}.",
+                f"No virial coefficients: a fit requires {FREE_TERMS + 1} packing fractions or more, up to {FITTED:g}.",
             )
             return [states, estimates("Virial coefficients, fitted", [], notes)]
         fitted = [("B2 in units of the disc's area", self.b2), ("B3/B2²", self.b3)]
@@ -138,7 +138,7 @@ class EquationOfState(Result):
         name, z = rows[-1]
         sentence = f"P A = {format_estimate(z)} N T at {name} (1 for the ideal gas); {agreement(rows, 'hard discs')}."
         if self.b2 is not None:
-            sentence += f" B2 = {format_estimate(self.b2)} areas of a disc; {agreement([('B2', self.b2)])}."
+            sentence += f" B2 = {format_estimate(self.b2)} disc areas; {agreement([('B2', self.b2)])}."
         return sentence
 
     def figure(self) -> "Figure":
@@ -192,7 +192,7 @@ def equation_of_state(results: Sequence[Pressure]) -> EquationOfState:
     result = EquationOfState(states, b2, b3)
     if len(result.kinds) == 1:
         return result
-    sentence = f"The states are of different gases, each in a separate row: {'; '.join(result.kinds)}."
+    sentence = f"The states belong to different gases, each in a separate row: {'; '.join(result.kinds)}."
     return replace(result, caveats=(sentence,))
 
 
@@ -258,6 +258,6 @@ def _draw_dense(ax: "Axes", most: float) -> None:
             hard_discs.free_volume_compressibility_factor(x),
             "-.",
             color=COLOURS[5],
-            label="free volume, of a crystal",
+            label="free-volume theory of a crystal",
         )
         ax.set_yscale("log")

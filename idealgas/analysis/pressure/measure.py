@@ -106,7 +106,7 @@ def _slow(gas: Gas, window: Window, impacts: Impacts | SampledImpacts) -> tuple[
     """Return caveats for a dense gas, which changes slowly or may be ordered."""
     if gas.packing_fraction <= hard_discs.HIGHEST:
         return ()
-    ordered = "At this density discs order, and a run may keep a single arrangement: the errors are those of it alone."
+    ordered = "At this density discs may order and keep a single arrangement, to which the standard errors then apply."
     drifting = unsteady("The virial of the pairs", window.of(impacts.pair_virial), window.edges[window.first : -1])
     return (ordered,) * (gas.packing_fraction >= FREEZING) + drifting
 
@@ -168,11 +168,12 @@ def _chambers(log: Log, window: Window) -> tuple[str, ...]:
         absent = any(opens <= window.start < window.end <= closes for opens, closes in wall.absences)
         if met and not absent and not wall.radius:
             sentences.append(
-                f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over both its sides."
+                f"{wall.name} meets the {' and the '.join(met)} wall: the pressure there is a mean over the gas on "
+                f"both sides of {wall.name}."
             )
     if chambers.area < log.discs.area:
         sentences.append(
-            f"Lengths of sides and A = {chambers.area:g} are those of the chambers with gas, until they open."
+            f"The lengths of sides and A = {chambers.area:g} are those of the chambers with gas, until these open."
         )
     return tuple(sentences)
 

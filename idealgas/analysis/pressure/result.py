@@ -30,8 +30,8 @@ MOST_WALLS = 4
 """Largest number of pressures in the headline; if there are more, it quotes only the lowest and the highest."""
 
 WALLS_AND_VIRIAL = (
-    "Walls act on the centres of discs, which reach less far than the box: the force per length of a wall is larger "
-    "than the pressure by the virial, and each has its own theory."
+    "Walls act on the centres of discs, which cannot reach the sides of the box: the force per length on a wall is "
+    "larger than the pressure from the virial, and theory predicts a value for each."
 )
 
 
@@ -127,7 +127,7 @@ class Pressure(Result):
             f"Theory is not available: {self.no_theory}.",
         ]
         if mechanical.unsteady:
-            notes.append(f"Never stationary, as {mechanical.unsteady}: means over the window; `evolution` shows P(t).")
+            notes.append(f"Never stationary, as {mechanical.unsteady}: values are means; `evolution` shows P(t).")
         forces = [
             (f"{force.name}, {axis}", value) for force in mechanical.forces for axis, value in force.large.items()
         ]

@@ -164,7 +164,7 @@ class Profile(Result):
         rows += [(f"{name} in all strips", PValue(test.p_value, math.inf)) for name, test in _tests(self)]
         if flow := self.heat_flow:
             verdict = agreement([("heat", flow)], "Fourier's law with Enskog's conductivity")
-            sentences.append(f"Heat flows along {self.axis} at the rate {format_estimate(flow)}; {verdict}.")
+            sentences.append(f"Heat flows along {self.axis} at a rate of {format_estimate(flow)}; {verdict}.")
         return f"{' '.join(sentences) or same} In strips: {agreement(rows, law)}."
 
     def figure(self) -> "Figure":
@@ -218,7 +218,7 @@ class ProfileAnalysis(Analysis):
         Option(
             "along",
             str,
-            "Axis of the profile. By default across a flow, along gravity, or between two thermal sides; otherwise x.",
+            "Axis of the profile; by default across a flow, along gravity, or between two thermal sides, otherwise x.",
             choices=("x", "y"),
         ),
         Option("bins", int, "Number of strips.", default=BINS, least=1, most=1000),
@@ -298,7 +298,7 @@ def _limits(
     densest = max(composition(log.discs).packing_fraction(strip) for strip in density.T)
     if not expected.dilute:
         if expected.layers.max() > LAYERED:
-            yield "Discs of a dense gas lie in layers at walls; the density is uniform only in strips away from walls."
+            yield "Discs of a dense gas form layers at walls; the density is uniform only in strips away from walls."
     elif densest > DILUTE:
         yield f"The theory assumes a dilute gas; the packing fraction of a strip reaches {densest:.2g}."
 

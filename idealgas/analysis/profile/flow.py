@@ -58,8 +58,9 @@ class Flow(NamedTuple):
         """Yield a caveat if the flow is still developing in the window, or if the window is too short for errors."""
         if window.start < STEADY * self.relaxation or window.duration < LEAST_WINDOW * self.relaxation:
             yield (
-                f"The flow relaxes in t = {self.relaxation:.3g}: it is steady from {STEADY * self.relaxation:.3g} on, "
-                f"and its errors are right in a window of {LEAST_WINDOW * self.relaxation:.3g}."
+                f"The flow relaxes in a time of {self.relaxation:.3g}: it is steady after "
+                f"{STEADY * self.relaxation:.3g}, and its standard errors require a window of "
+                f"{LEAST_WINDOW * self.relaxation:.3g}."
             )
 
 

@@ -62,10 +62,10 @@ FEW = 100
 HEADS = ("", "N", "relaxation time", "± s.e.", "settled", "indistinguishable")
 
 NOTES = (
-    "Relaxation time: of the kurtosis; after three of them 5 % of the distance is left, and the gas has settled.",
-    "Indistinguishable: from the first time on at which the speeds pass a Kolmogorov-Smirnov test at 5 %.",
-    "A collision counts for both discs. Near equilibrium theory expects a relaxation time of "
-    f"{LINEAR:g} collisions per disc, farther away more.",
+    "The relaxation time is that of the kurtosis. After three relaxation times 5 % of the deviation is left: settled.",
+    "Indistinguishable: first time at which the speeds pass a Kolmogorov-Smirnov test at the 5 % level.",
+    "A collision counts for both discs. Near equilibrium theory predicts a relaxation time of "
+    f"{LINEAR:g} collisions per disc; far from equilibrium it is longer.",
 )
 
 DISTANCES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -263,13 +263,13 @@ def _caveats(
         )
     if kurtosis[0] > MAXWELLIAN:
         yield (
-            f"The error of the relaxation time is that of a start with equal speeds; here a few discs are faster than "
+            f"The error of the relaxation time assumes equal initial speeds; here a few discs are faster than "
             f"most (kurtosis {kurtosis[0]:.3g}, in equilibrium 2), and chance decides how soon they meet others."
         )
     if number < FEW:
         yield f"The error of the relaxation time was calibrated with 200 and 500 discs; this gas has {number}."
     if late:
-        yield "The error of the relaxation time is that of a start with equal speeds; later curves scatter more."
+        yield "The error of the relaxation time assumes a start with equal speeds; later curves scatter more."
 
 
 def _row(result: Relaxation, fit: Estimate | None, unit: str, start: float = 0.0) -> tuple[Cell, ...]:

@@ -235,7 +235,7 @@ def _check_number(instants: float) -> None:
 
 def speed_table(path: str, speeds: SpeedDistributions) -> Table:
     """Return the table of the numbers of discs by speed, with a row for each instant and a last row for theory."""
-    title = f"{path}: discs by speed, in classes from multiples of {speeds.rms:.4g} (rms)"
+    title = f"{path}: discs by speed, in classes that start at multiples of {speeds.rms:.4g} (rms)"
     classes = (f"{edge / speeds.rms:.1f}" for edge in speeds.edges)
     clock = [Number(t, ".4g") for t in speeds.time.tolist()]
     if speeds.trials is not None:

@@ -74,7 +74,7 @@ class ScatteringWave:
     early: Estimate
 
 
-SMALL_ERRORS = "Standard errors of some curves may be up to 1.3 times too small, those of the longest wave above all."
+SMALL_ERRORS = "Standard errors of some curves may be up to 1.3 times too small, especially for the longest wave."
 """Caveat of all results; in the calibration, the rms deviation over the standard error reached 1.26."""
 
 
@@ -116,9 +116,9 @@ class Scattering(Result):
         notes = [
             str(self.window),
             "theory: (1 − S/N) T/m; free flight and the first collision",
-            "errors by 32 segments; too small, by the rms of deviation over error in 150 runs, are those of the "
-            "current along k of the longest wave (1.23), S(k, ω) of the shortest wave (1.23) and the current across k "
-            "of the third wave (1.19)",
+            "errors from 32 segments; in 150 runs, the rms deviation exceeded the error for the current along k of the "
+            "longest wave (by a factor of 1.23), S(k, ω) of the shortest wave (1.23) and the current across k of the "
+            "third wave (1.19)",
         ]
         tables = [estimates("Waves of density and current", rows, notes)]
         for wave in self.waves:
@@ -339,4 +339,4 @@ def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[s
     shear = hard_discs.enskog_viscosity(diameter, density, temperature, mass, chi) / (mass * density)
     rate = min(min(fluid.damping, fluid.spreading, shear) * k**2, k * math.sqrt(temperature / mass))
     if (number := window.duration * rate) < FEWEST_DECAYS:
-        yield f"The window has {number:.2g} decay times of the longest wave; its error bars require {FEWEST_DECAYS:g}."
+        yield f"The window is {number:.2g} decay times of the longest wave long; error bars require {FEWEST_DECAYS:g}."

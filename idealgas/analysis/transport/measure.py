@@ -163,7 +163,7 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
     if whole and free_times < LEAST_LAG:
         yield (
             f"The window is short: currents are followed for {free_times:.2g} mean free times at most; viscosities and "
-            f"thermal conductivity take {LEAST_LAG:g}."
+            f"thermal conductivity require {LEAST_LAG:g}."
         )
     elif whole and lags < LEAST_WINDOW:
         yield (
@@ -173,7 +173,7 @@ def _short_currents(whole: Collective | None, free_times: float, lags: float) ->
     elif whole and lags < SURE_WINDOW:
         yield (
             f"Standard errors of viscosities and thermal conductivity may be up to 1.3 times too small: the window is "
-            f"{lags:.3g} times as long as currents are followed; from {SURE_WINDOW:g} times on they are right."
+            f"{lags:.3g} times as long as currents are followed, and correct errors require {SURE_WINDOW:g}."
         )
 
 

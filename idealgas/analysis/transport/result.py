@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WALLS = (
-    "No viscosities and thermal conductivity: they need periodic sides and nothing else in the box, as walls change "
+    "No viscosities or thermal conductivity: they require periodic sides and nothing else in the box, as walls change "
     "the currents of the gas."
 )
 

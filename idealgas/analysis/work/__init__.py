@@ -155,7 +155,7 @@ class WorkAnalysis(Analysis):
         must_apply(log, 0.0, ("elastic", "collisions_conserve_energy"))
         temperatures = log.scene.properties.temperatures
         if [piston.mass for piston in log.scene.piston] != [None] or len(temperatures) != 1:
-            needs = "one piston, of given velocities, and a heat bath or thermal walls of one temperature"
+            needs = "one piston with prescribed velocities, and a heat bath or thermal walls at one temperature"
             raise NotApplicableError(f"{log.path}: work requires {needs}")
         (piston,) = log.scene.piston
         first, last = span(log, start, end)
@@ -215,9 +215,9 @@ def _mark(ax: Any, free_energy: Estimate) -> None:
     """Draw a line at the free energy in a panel with the distributions of the work."""
     from idealgas.presentation.style import BAND, BLACK
 
-    where, error, label = free_energy.value, free_energy.standard_error, "free energy by the work"
+    where, error, label = free_energy.value, free_energy.standard_error, "free energy from the work"
     if free_energy.theory is not None:
-        where, error, label = free_energy.theory, free_energy.theory_error, "free energy by theory"
+        where, error, label = free_energy.theory, free_energy.theory_error, "theoretical free energy"
     ax.axvline(where, linestyle="--", color=BLACK, label=label)
     ax.axvspan(where - error, where + error, color=BLACK, alpha=BAND, linewidth=0)
     ax.set(xlabel="W (energy)", ylabel="distribution of the work (1/energy)")

@@ -123,8 +123,8 @@ def poorly_sampled(process: WorkProcess, temperature: float) -> Iterator[str]:
     weight = np.exp(-(process.work - process.work.min()) / temperature)
     if (effective := float(weight.sum() ** 2 / (weight**2).sum())) < FEWEST_EFFECTIVE:
         yield (
-            f"⟨exp(−W/T)⟩ {process.name} has an effective number of only {effective:.3g} strokes; below "
-            f"{FEWEST_EFFECTIVE:g} its error may be too small."
+            f"The effective number of strokes in ⟨exp(−W/T)⟩ {process.name} is only {effective:.3g}; below "
+            f"{FEWEST_EFFECTIVE:g} the standard error may be too small."
         )
 
 

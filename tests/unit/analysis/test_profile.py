@@ -192,7 +192,7 @@ def test_between_two_thermal_sides(make):
     fall = 12 * 2 / 3 * (low - high) / 8
     assert 1.0 < flow.theory / (dilute * fall) < 1.3  # Enskog's factor at φ = 0.098
     assert 0.02 < flow.theory_error / flow.theory < 0.2
-    assert "Heat flows along y at the rate " in result.summary()
+    assert "Heat flows along y at a rate of " in result.summary()
     assert profile(log, bins=3, start=0.0, along="x").heat_flow is None
 
 

@@ -36,8 +36,8 @@ def pushed(speed):
 
 
 SAID = [
-    ("lie in layers at walls", "profile", {"start": 0.0}, ("species.gas.radius=0.4", "run.collisions_per_disc=20"), ()),
-    ("lie in layers at walls", "profile", {"start": 0.0, "bins": 40}, ("species.gas.count=120",), None),
+    ("form layers at walls", "profile", {"start": 0.0}, ("species.gas.radius=0.4", "run.collisions_per_disc=20"), ()),
+    ("form layers at walls", "profile", {"start": 0.0, "bins": 40}, ("species.gas.count=120",), None),
     ("strips hold a disc of gas in fewer than 32 frames", "profile", {"start": 0.0}, STEEP, ()),
     ("The theory assumes a dilute gas; the packing fraction of a strip reaches 0.", "profile",
      {"start": 0.0, "bins": 4}, (*COLUMN, "species.gas.radius=0.2"),

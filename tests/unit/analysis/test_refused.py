@@ -39,7 +39,7 @@ NOT_APPLICABLE = [
         ("wall=[{from=[4, 3], to=[4, 5], absorbing=true}]",),
     ),
     ("transport", "thermostat", (BATH,)),
-    ("work", "requires one piston, of given velocities", STROKE),
+    ("work", "requires one piston with prescribed velocities", STROKE),
     ("work", "requires a gas without restitution; use", (*STROKE, BATH, "restitution.normal=0.9")),
 ]
 """Analysis, words of the line, and overrides of the gas."""

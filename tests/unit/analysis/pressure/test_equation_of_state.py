@@ -104,7 +104,7 @@ def test_few_packing_fractions_give_states_however_many_they_are(phis, numbers):
     states, coefficients = result.plain_tables()
     assert len(states.rows) == len(phis) * len(numbers)
     assert states.heads[:2] == ("φ", "N")
-    assert coefficients.notes == ("No virial coefficients: a fit takes 4 packing fractions or more, up to 0.25.",)
+    assert coefficients.notes == ("No virial coefficients: a fit requires 4 packing fractions or more, up to 0.25.",)
     assert result.check().agrees is True
     enough = equation_of_state(list(samples((0.05, 0.1, 0.15, 0.2), 1e-3, runs=1)))
     assert enough.b2 is not None
