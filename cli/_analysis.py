@@ -48,7 +48,7 @@ def print_json(result: dict[str, Any]) -> None:
 
 
 class AnalysisCommand(click.Command):
-    """Command of an analysis, with the logs, its own options, and the options common to all analyses.
+    """Command of an analysis: it takes logs, the options of the analysis, and options common to all analyses.
 
     The help text is the docstring of the analysis module, which is imported only when its options are needed.
     """

@@ -146,7 +146,7 @@ class _Drawing(NamedTuple):
         yield Segment(f"{frame.get_bottom(padded)}\n")
 
     def _lines(self, console: "Console", row: Sequence[str], at_bottom: bool = False) -> "Iterator[tuple[str, ...]]":
-        """Yield each line of a row as a tuple of padded pieces of cells; cells are aligned to the top or the bottom."""
+        """Yield each line of a row as padded pieces of its cells; cells are aligned to the top or bottom of the row."""
         from rich.cells import cell_len
         from rich.text import Text
 
