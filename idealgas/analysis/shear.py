@@ -33,7 +33,7 @@ STRIPS, INSTANTS = 20, 200
 """Number of strips of the flow profile, and number of instants at which it is sampled."""
 
 FAST = 0.1
-"""Largest shear rate without a caveat and largest rate of a heat bath for which the viscosity has a theory.
+"""Largest shear rate without a caveat, and largest rate of a heat bath for which theory predicts the viscosity.
 
 Both are in units of the collision rate of a disc. At this shear rate the viscosity of a dilute gas is lower by 2 %.
 """
@@ -119,7 +119,7 @@ class ShearFlow(Result):
         return figure
 
     def _rows(self) -> list[tuple[str, Estimate]]:
-        """Return the name and the estimate of each quantity."""
+        """Return the names and estimates of all quantities."""
         return [
             ("temperature T (energy)", self.temperature),
             ("viscosity η (mass/time)", self.viscosity),

@@ -24,7 +24,7 @@ class Chambers:
     """
 
     def __init__(self, log: Log, until: float) -> None:
-        """Find the chambers of a log up to a time."""
+        """Find the chambers in a log while it is earlier than time `until`."""
         self.cuts = [_cuts(log, axis, until) for axis in range(2)]
         x, y = log.discs.position.T
         self.occupied = np.histogram2d(x, y, self.cuts)[0] > 0

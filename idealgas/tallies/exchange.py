@@ -34,7 +34,7 @@ class Exchange(NamedTuple):
 
 
 NOTHING = Exchange(0.0, "")
-"""No slow exchange."""
+"""Value that stands for no slow exchange."""
 
 
 def across(log: Log, axis: int) -> Exchange:

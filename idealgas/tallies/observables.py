@@ -79,7 +79,7 @@ class TimeSeries:
 
     @property
     def rates(self) -> np.ndarray:
-        """Sums of |v|, m vx² and m vy² over the discs of each species, (B, S, 3)."""
+        """Time averages of Σ |v|, Σ m vx² and Σ m vy² over the discs of each species in each block, (B, S, 3)."""
         return self.moments.flights / self.width
 
     def observables(self) -> Iterator[Observable]:

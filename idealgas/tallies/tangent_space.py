@@ -58,20 +58,22 @@ def sensitivity(
 ) -> np.ndarray:
     """Return the derivatives of the state of all discs with respect to the state of some discs at an earlier time.
 
-    They are exact for the recorded motion. As the motion is chaotic, they are large after some collisions per disc.
+    The derivatives are exact for the recorded motion. As the motion is chaotic, they become large within a few
+    collisions per disc.
 
     Args:
         log: log with events, as for the analysis `lyapunov`.
         start: the earlier time; by default the start of the log.
         end: the later time; by default the end of the log.
-        discs: ids of the discs whose initial state is varied; by default all.
+        discs: ids of the discs whose initial states are varied; by default all discs.
 
     Returns:
-        (N, 4, D, 4): derivative of each component (x, y, vx, vy) of each disc with respect to each component of each of
-            the D varied discs.
+        Array (N, 4, D, 4) with the derivative of each component (x, y, vx, vy) of each disc with respect to each
+            component of each of the D varied discs.
 
     Raises:
-        UserError: for other effects and methods, unknown discs, times outside the log, or more than 2²⁶ numbers.
+        UserError: if the effects or the method have no known tangent map, if a disc does not exist, if a time lies
+            outside the log, or if the array would have more than 2²⁶ elements.
     """
     must_have_tangent_map(log)
     number = len(log.discs)
@@ -90,7 +92,7 @@ def sensitivity(
 
 
 def must_have_tangent_map(log: Log) -> None:
-    """Raise NotApplicableError unless the tangent map of all events of a log is known."""
+    """Raise NotApplicableError unless the tangent map is known for all events in a log."""
     gas = log.scene.properties
     plain = gas.collisions_conserve_energy and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty
     if not plain or gas.spins or gas.varies or log.scene.run.method not in ("event_driven", "brute_force"):

@@ -44,7 +44,7 @@ DILUTE = 0.02
 """Largest packing fraction in a strip for theories of a dilute gas; the errors of n and T are then about 4 %."""
 
 LAYERED = 0.02
-"""Largest fraction by which layering at the walls may raise the density of the strips there without a caveat."""
+"""Largest fraction by which layering may raise the density in strips at walls before a caveat is printed."""
 
 CLEAR = 5.0
 """Difference between two strips, in standard errors, above which the summary reports it."""
@@ -83,7 +83,7 @@ class Profile(Result):
     Attributes:
         window: window of time that was used.
         axis: "x" or "y".
-        flow: axis along which gravity drives a flow, "x" or "y"; None without one.
+        flow: axis along which gravity drives a flow, "x" or "y"; None if there is no flow.
         edges: (K + 1,), edges of the strips, length.
         strip: area of one strip, length².
         frames: number of averaged frames.

@@ -14,7 +14,7 @@ from idealgas.theory import hard_discs
 from idealgas.theory.values import Theory, enskog_error
 
 LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
-"""Name of the law."""
+"""Name of the law of the flow."""
 
 SLIP, SLIP_ERROR = 1.016, 0.031
 """Slip length in units of ℓ, and its error.

@@ -14,7 +14,7 @@ from idealgas.theory.ensemble import Composition, classes, ensemble_at
 from idealgas.theory.values import Theory
 
 UNIFORM = "uniform"
-"""Name of the law of a uniform gas."""
+"""Name of the law for a uniform gas."""
 
 LEAST = 1e-100
 """Density and temperature, relative to the bottom, at heights that no disc has enough energy to reach: nearly 0."""

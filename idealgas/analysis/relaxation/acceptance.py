@@ -139,7 +139,7 @@ def _start_acceptance(log: Log, v_ref: float) -> float:
 
 
 def _is_published(scene: Scene) -> bool:
-    """Return whether a scene is that of the published run of Novak & Bortz (1970)."""
+    """Return whether a scene describes the published run of Novak & Bortz (1970)."""
     run = scene.run
     if (
         len(scene.species) != 1
