@@ -37,7 +37,7 @@ class Properties:
     Attributes that are True by default, and true for a scene if true for each of its effects:
         uniform: in equilibrium the gas is the same everywhere in the box.
         straight_flight: discs move on straight lines between events.
-        elastic: the motion along the line of centres, or normal to a wall, does not lose energy.
+        elastic: the motion along the line of centres, or normal to a wall, neither loses nor gains energy.
         fixed_walls: all walls remain at their positions.
         allows_monte_carlo: the effect has a meaning for discs without positions.
         allows_time_steps: the time-driven method can simulate the effect.
