@@ -206,7 +206,7 @@ class Evolution(Result):
                 colour, line, _ = curve_style(k)
                 ax.plot(self.track[0], places, line, color=colour, label=name)
             if law is not None and law.piston is not None:
-                ax.theory(None, law.piston, law.piston_error, f"theory: at rest at {law.piston:.4g}")
+                ax.theory(None, law.piston, law.piston_error, f"theory: mean position {law.piston:.4g}")
             ax.set_ylabel("piston position (length)")
         if self.given:
             ax = next(rest)
