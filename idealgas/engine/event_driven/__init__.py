@@ -1,1 +1,1 @@
-"""The event-driven method: cells find the neighbours, and a tournament tree finds the next event."""
+"""The event-driven method: neighbours are found with cells, and the next event with a tournament tree."""

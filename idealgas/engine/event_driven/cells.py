@@ -1,4 +1,4 @@
-"""Cells of the neighbour search: nearly square, at least one diameter wide, and surrounded by a ring of empty cells.
+"""Cells for the neighbour search: nearly square, at least one diameter wide, and surrounded by a ring of empty cells.
 
 Each cell has a doubly linked list of the discs whose centres it contains. Discs that are far larger than the rest have
 separate, coarse cells: Ogarko & Luding, Comput. Phys. Commun. 183, 931 (2012).
@@ -18,7 +18,7 @@ LINK = np.dtype(
     ],
     align=True,
 )  # fmt: skip
-MARGIN = 1e-9  # relative excess of a cell's width over a diameter
+MARGIN = 1e-9  # smallest relative excess of a cell's width over the largest diameter
 MOST_A_SIDE = 30_000  # largest number of columns or rows: a disc's column and row are stored in 16 bits
 OTHER_WORK = 20.0  # number of discs that could be searched in the time that the rest of an event takes
 WORTH_SPLITTING = 0.5  # coarse cells are used if they reduce the time per event below this fraction
@@ -27,11 +27,11 @@ U = np.uintp
 
 
 class Cells(NamedTuple):
-    """Cells of the neighbour search.
+    """Cells for the neighbour search.
 
     Attributes:
         head: (rows * columns,) i4, index of the first disc of each cell, or -1.
-        link: (N,) LINK, cell of each disc, and the next and the previous disc in it.
+        link: (N,) LINK, the cell of each disc, and the next and the previous disc in this cell.
         width: width of a cell, length.
         height: height of a cell, length.
         columns: number of cells along x, ring included.
@@ -51,15 +51,16 @@ class Cells(NamedTuple):
 
 
 class CoarseCells(NamedTuple):
-    """Cells of discs that are far larger than the rest; each covers ratio × ratio fine cells.
+    """Cells for discs that are far larger than the rest; each covers ratio × ratio fine cells.
 
-    A coarse cell is as wide as the sum of the largest radii of large and of small discs. Large discs therefore meet
-    small ones in adjacent coarse cells, and each other up to two cells apart.
+    A coarse cell is at least as wide as the sum of the largest radius of the large discs and that of the small discs.
+    Large discs therefore meet small discs in the same or adjacent coarse cells, and other large discs at most two
+    coarse cells away.
 
     Attributes:
         cells: the coarse cells; they share the array `link` with the fine cells.
         ratio: number of fine columns, and of fine rows, in a coarse cell.
-        limit: radius beyond which a disc is in the coarse cells, length.
+        limit: radius above which a disc is in the coarse cells, length.
     """
 
     cells: Cells
@@ -68,12 +69,12 @@ class CoarseCells(NamedTuple):
 
 
 def discs_per_cell(packing_fraction: float) -> float:
-    """Mean number of discs per cell at which the search is fastest: 0.4 at packing fractions >= 0.1, 0.8 at 0.01."""
+    """Return the optimal mean number of discs per cell: 0.4 at packing fractions of 0.1 and above, 0.8 at 0.01."""
     return min(max(0.4 * (0.1 / max(packing_fraction, 1e-9)) ** 0.3, 0.4), 4.0)
 
 
 def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling: float) -> Cells:
-    """Empty cells for n discs, never smaller than the largest diameter.
+    """Make empty cells for n discs, never smaller than the largest diameter.
 
     box: width and height, length. largest_radius: length. filling: mean number of discs per cell.
     """
@@ -86,9 +87,9 @@ def make_cells(n: int, box: tuple[float, float], largest_radius: float, filling:
 
 
 def make_levels(radius: np.ndarray, box: tuple[float, float], filling: float) -> tuple[Cells, CoarseCells | None]:
-    """Empty cells for discs with radii (N,), length, and coarse cells for the largest if these speed up the search.
+    """Make empty cells for the discs, and coarse cells for the largest discs if these speed up the search.
 
-    box: width and height, length. filling: mean number of discs per cell.
+    radius: (N,), length. box: width and height, length. filling: mean number of discs per cell.
     """
     n, limit = len(radius), split_radius(radius, box[0] * box[1], filling)
     small = radius[radius <= limit]
@@ -105,15 +106,15 @@ def make_levels(radius: np.ndarray, box: tuple[float, float], filling: float) ->
 
 
 def split_radius(radius: np.ndarray, area: float, filling: float) -> float:
-    """Radius beyond which discs have coarse cells, length; infinite if equal cells are nearly as fast.
+    """Return the radius (length) above which discs belong in coarse cells; infinite if these are not worthwhile.
 
-    The time for an event of a disc is assumed proportional to the number of discs in the cells that are searched, and
-    the rate of its events to the sum of its radius and the mean radius.
+    The time per event is assumed to be a constant plus a term proportional to the number of discs in the cells that are
+    searched, and the event rate of a disc to be proportional to the sum of its radius and the mean radius.
     """
     density, largest, reach = len(radius) / area, float(radius.max()), radius + radius.mean()
 
     def searched(limit: float) -> float:
-        """Time per event, in units of the time for a disc in the cells."""
+        """Time per event if larger discs are in coarse cells, in units of the time for searching one disc."""
         large = radius > limit
         small = radius[~large].max()
         fine, coarse = (max(filling / density, (small + r) ** 2) for r in (small, largest))
@@ -126,7 +127,7 @@ def split_radius(radius: np.ndarray, area: float, filling: float) -> float:
 
 
 def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
-    """Column and row (N,) of the cells of positions (N, 2), length.
+    """Return the columns and rows (N,) of the cells that contain positions (N, 2), length.
 
     A disc that is outside the box because of rounding belongs to the nearest cell.
     """
@@ -135,14 +136,14 @@ def cell_of(position: np.ndarray, cells: Cells) -> tuple[np.ndarray, np.ndarray]
 
 
 def order_by_cell(position: np.ndarray, cells: Cells) -> np.ndarray:
-    """Order (N,) of the discs at positions (N, 2), length, by their cells, row by row."""
+    """Return the indices (N,) that sort discs at positions (N, 2), length, by cell, row by row."""
     column, row = cell_of(position, cells)
     return np.argsort(row * cells.columns + column, kind="stable")
 
 
 @inline
 def own_cells(cells, coarse, disc):
-    """Return the cells that a disc is in, coarse or fine."""
+    """Return the coarse or the fine cells, whichever a disc belongs in."""
     if coarse is not None:
         return coarse.cells if disc.r > coarse.limit else cells
     return cells
@@ -150,7 +151,7 @@ def own_cells(cells, coarse, disc):
 
 @inline
 def find_cell(cells, i, disc):
-    """Store the column and row of the cell at disc i's position in its link, see `cell_of`."""
+    """Store in disc i's link the column and row of the cell that contains its centre; see `cell_of`."""
     link = cells.link[U(i)]
     link.column = min(max(np.int64(disc.x / cells.width) + 1, 1), cells.columns - 2)
     link.row = min(max(np.int64(disc.y / cells.height) + 1, 1), cells.rows - 2)
@@ -158,7 +159,7 @@ def find_cell(cells, i, disc):
 
 @inline
 def enter(cells, i):
-    """Insert disc i at the head of its cell's list; to avoid branches, i stands in for a neighbour that is missing."""
+    """Insert disc i at the head of its cell's list. To avoid branches, i stands in for a missing neighbour."""
     link = cells.link[U(i)]
     cell = np.int64(link.row) * cells.columns + np.int64(link.column)
     head = cells.head[U(cell)]

@@ -1,4 +1,4 @@
-"""Next contact of a disc, with the discs in the cells around it or with the wall segments of its cell."""
+"""Prediction of a disc's next contact, with a disc in the cells around it or with a wall segment of its cell."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ U = np.uintp
 
 @inline
 def images_to(state, k, has_images, record, i, j, periodic):
-    """Numbers of box lengths (x, y) between the records of disc i and disc j, which is candidate k."""
+    """Shift (x, y), in box lengths, from the recorded position of disc j to its image near disc i, candidate k."""
     if periodic is not None:
         seen = state.images[U(k)]
         image = (np.int64(seen.x), np.int64(seen.y)) if has_images else NO_IMAGES
@@ -35,7 +35,7 @@ def images_to(state, k, has_images, record, i, j, periodic):
 
 @inline
 def store_contact(state, record, i, j, k, has_images, time, periodic):
-    """Store the contact of disc i with disc j, candidate k, at a local time as disc i's next contact."""
+    """Store a contact with disc j, candidate k, at a local time as the next contact of disc i."""
     prediction = state.prediction[U(i)]
     prediction.contact = time
     prediction.partner = j
@@ -46,9 +46,10 @@ def store_contact(state, record, i, j, k, has_images, time, periodic):
 
 @inline
 def filter_colliding(record, state, count, has_images, i, gravity, periodic):
-    """Extend the candidates by the other discs of their cells, and keep those that disc i will touch.
+    """Extend the candidates by the other discs in their cells, and keep those that disc i will touch.
 
-    Returns the number kept. It is small, so few roots and quotients have to be computed; the loop has no branches.
+    Returns the number of discs kept. Because this number is small, few square roots and quotients have to be computed
+    later. The loop contains no branches.
     """
     candidates = state.candidates
     disc = record[U(i)]
@@ -74,7 +75,7 @@ def filter_colliding(record, state, count, has_images, i, gravity, periodic):
 def comes_earlier(prediction, ids, disc_id, rank, partner, time, images):
     """Whether a contact of disc `disc_id` precedes its predicted contact; `precedes` orders simultaneous contacts.
 
-    rank: id or wall rank of the partner. partner: the partner as it is stored in a prediction.
+    rank: id or wall rank of the partner. partner: number of the partner in the form in which a prediction stores it.
     """
     if time != prediction.contact:
         return time < prediction.contact
@@ -87,7 +88,7 @@ def comes_earlier(prediction, ids, disc_id, rank, partner, time, images):
 def predict_tied_contact(record, ids, state, count, has_images, i, effects):
     """Store disc i's earliest contact with the candidates, applying the rule for simultaneous events.
 
-    Collisions that would not change a digit of a velocity are left out.
+    Collisions that would not change any digit of a velocity are left out.
     """
     prediction = state.prediction[U(i)]
     a_id = np.int64(ids[U(i)])
@@ -102,7 +103,7 @@ def predict_tied_contact(record, ids, state, count, has_images, i, effects):
 
 @inline
 def own_walls(walls, coarse_walls, coarse, disc):
-    """Return the wall segments by cell, of the cells that a disc is in, coarse or fine."""
+    """Return the wall segments of the coarse or of the fine cells, whichever a disc belongs in."""
     if coarse is not None:
         return coarse_walls if disc.r > coarse.limit else walls
     return walls
@@ -116,7 +117,7 @@ def predict_segment_contact(record, ids, state, i, effects):
     walls = own_walls(state.walls, state.coarse_walls, state.coarse, disc)
     link = cells.link[U(i)]
     cell = U(np.int64(link.row) * cells.columns + np.int64(link.column))
-    if walls.start[cell] < walls.start[cell + U(1)]:  # rare; calling the function always would take a third of the time
+    if walls.start[cell] < walls.start[cell + U(1)]:  # rare; an unconditional call would take a third of the time
         disc_id, prediction = np.int64(ids[U(i)]), state.prediction[U(i)]
         predict_entry_contacts(disc, ids, prediction, disc_id, walls, cell, effects.periodic, effects)
 
@@ -143,9 +144,10 @@ def predict_entry_contacts(disc, ids, prediction, disc_id, walls, cell, periodic
 def predict_contact(record, ids, state, i, crossing_code, now, segments, effects):
     """Find disc i's earliest contact with a disc in its cell or the eight cells around it, or with a wall segment.
 
-    If the disc has just crossed into its cell, crossing_code is the direction, see PREDICTION: its predicted contact
-    remains valid and can only be preceded by a contact in the cells that came within reach. Otherwise it is SIDE_OF_BOX
-    or more. Simultaneous contacts and contacts at the current time are rare and left to `predict_tied_contact`.
+    If the disc has just crossed into its cell, `crossing_code` is the direction of the crossing (see PREDICTION). The
+    predicted contact then remains valid, and only a contact in the cells that have just come within reach can precede
+    it. In all other cases `crossing_code` is SIDE_OF_BOX or larger. Simultaneous contacts and contacts at the current
+    time are rare and are left to `predict_tied_contact`.
     """
     disc, prediction = record[U(i)], state.prediction[U(i)]
     if crossing_code < SIDE_OF_BOX:

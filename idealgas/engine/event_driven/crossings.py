@@ -1,4 +1,4 @@
-"""Next time at which a disc enters another cell, or meets a side of the box or the heat bath; and cell crossings."""
+"""Prediction of a disc's next cell crossing or contact with a side or the heat bath, and moves between cells."""
 
 import numpy as np
 
@@ -18,11 +18,11 @@ U = np.uintp
 
 @inline
 def straight_crossing(disc, along_y, axis):
-    """Next cell crossing or side contact along one axis in straight flight.
+    """Find the next cell crossing or side contact along one axis in straight flight.
 
     Returns its local time, whether it is in the positive direction, and whether it is a contact with a side of the box.
-    axis: column or row of the disc; size of a cell, length; number of columns or rows; length of the box; number of
-    boundary crossings of the disc; whether the axis is periodic.
+    axis: the column or row of the disc; the size of a cell, length; the number of columns or rows; the length of the
+    box; the number of boundary crossings of the disc; whether the axis is periodic.
     """
     cell, size, cells_across, length, boundary_crossings, is_periodic = axis
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
@@ -41,11 +41,11 @@ def straight_crossing(disc, along_y, axis):
 
 @inline
 def accelerated_crossing(disc, along_y, axis, now, pull):
-    """Next cell crossing or side contact along one axis under gravity.
+    """Find the next cell crossing or side contact along one axis under gravity.
 
     Arguments and results are as in `straight_crossing`; pull: acceleration along the axis, length/time². Cell crossings
-    are computed from the disc's state at the local time `now`, when it is in its cell, and side contacts from its
-    record.
+    are computed from the disc's position at local time `now`, which is in its cell, and side contacts from its stored
+    position.
     """
     cell, size, cells_across, length, boundary_crossings, is_periodic = axis
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
@@ -68,10 +68,10 @@ def accelerated_crossing(disc, along_y, axis, now, pull):
 
 @inline
 def axis_crossing(disc, link, along_y, cells, now, gravity, periodic, effects):
-    """Next cell crossing or side contact of a disc along one axis: local time, whether forward, whether at a side.
+    """Find the next cell crossing or side contact of a disc along one axis; the results are as in `straight_crossing`.
 
-    The time is NEVER at a side with a piston, which predicts these contacts itself, and at a vibrating side. A disc
-    reaches a sheared side when its centre does.
+    The time is NEVER at a side with a piston and at a vibrating side, whose contacts are predicted separately. A disc
+    meets a sheared side when its centre reaches the side.
     """
     cell = np.int64(link.row) if along_y else np.int64(link.column)
     size = cells.height if along_y else cells.width
@@ -102,7 +102,7 @@ def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects)
     link = cells.link[U(i)]
     x_time, right, x_side = axis_crossing(disc, link, False, cells, now, effects.gravity, effects.periodic, effects)
     y_time, up, y_side = axis_crossing(disc, link, True, cells, now, effects.gravity, effects.periodic, effects)
-    along_y = y_time < x_time  # both are equally likely: a branch would take 7 % of the total time
+    along_y = y_time < x_time  # both axes are equally likely, so a branch would take 7 % of the total time
     x_code = (1 if right else 0) + (SIDE_OF_BOX if x_side else 0)
     y_code = (3 if up else 2) + (SIDE_OF_BOX if y_side else 0)
     prediction = state.prediction[U(i)]
@@ -117,7 +117,7 @@ def predict_crossing(record, ids, state, i, now, thermostat, vibration, effects)
 
 @inline
 def keep_vibrating_contact_if_earlier(prediction, disc, cells, vibration, effects):
-    """Store a disc's next contact with a vibrating side in its prediction if it precedes its crossing."""
+    """Store a disc's next contact with a vibrating side in its prediction if this contact precedes the crossing."""
     for side in range(4):
         if is_vibrating(vibration, side) and not is_periodic(effects.periodic, side >= 2):
             length = cells.Ly if side >= 2 else cells.Lx
@@ -132,7 +132,7 @@ def keep_vibrating_contact_if_earlier(prediction, disc, cells, vibration, effect
 
 @inline
 def move_to_cell(record, state, i, shear):
-    """Move disc i to the list of the cell at its position after an event at a sheared side."""
+    """Move disc i, after an event at a sheared side, to the list of the cell in which its centre is now."""
     if shear is not None:
         leave(state.cells, i)
         find_cell(state.cells, i, record[U(i)])
@@ -141,7 +141,7 @@ def move_to_cell(record, state, i, shear):
 
 @inline
 def cross_cell(record, state, i, crossing_code, periodic):
-    """Move disc i from its cell's list to the list of the next cell; crossing_code: direction, see PREDICTION.
+    """Move disc i from its cell's list to the list of the next cell; crossing_code: direction (see PREDICTION).
 
     A disc that crosses a periodic side enters the cell at the opposite side, and the crossing is counted.
     """

@@ -1,8 +1,8 @@
 """The loop over the events of the event-driven method.
 
-A contact belongs to the disc of the pair that predicted it last. If the partner has had an event since then, the
-contact is stale and is predicted again. Either one thread owns all discs, or each of several threads owns a slab of the
-box, see `synchronization`.
+A predicted contact belongs to the disc whose events were predicted more recently. If its partner has had an event since
+then, the contact is stale and is predicted again. One thread owns all discs, or each of several threads owns the discs
+in a slab of the box; see `synchronization`.
 """
 
 from enum import IntEnum
@@ -44,19 +44,22 @@ U = np.uintp
 
 
 class Repredict(IntEnum):
-    """Why a disc's events are predicted again; smaller numbers are codes of cell crossings, see PREDICTION."""
+    """Reason why a disc's events are predicted again. Smaller numbers are codes of cell crossings; see PREDICTION."""
 
     STALE = SIDE_OF_BOX
     """The contact is stale, and only the contact is predicted again."""
     EVENT = SIDE_OF_BOX + 1
-    """The record has changed in an event."""
+    """An event has changed the stored state of the disc."""
     START = SIDE_OF_BOX + 2
     """An epoch begins."""
 
 
 @njit
 def place(record, ids, position, velocity, state, coarse, absorbing):
-    """Begin an epoch: fill records and cells from positions and velocities (N, 2) by id, and clear the scheduler."""
+    """Begin an epoch: set the records and cells of the discs, and clear the scheduler.
+
+    position: (N, 2) by id, length. velocity: (N, 2) by id, length/time.
+    """
     state.cells.head[:] = -1
     if coarse is not None:
         coarse.cells.head[:] = -1
@@ -80,7 +83,7 @@ def place(record, ids, position, velocity, state, coarse, absorbing):
 def predict(record, ids, state, i, change, now, effects, subdomain):
     """Predict those of disc i's next events that may have changed, and schedule the earliest.
 
-    change: a `Repredict`, or the code of the crossing by which the disc entered its cell.
+    change: a `Repredict`, or the code of the crossing with which the disc has just entered its cell.
     """
     if has_left(record[U(i)], effects.absorbing):
         prediction = state.prediction[U(i)]
@@ -100,7 +103,7 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
 
 @inline
 def take_out(record, ids, state, i, kind, absorbing, rotation):
-    """Take disc i out of its cell and of the gas if an event of this kind was its last."""
+    """Remove disc i from its cell and from the gas if it has escaped; kind: kind of its last event."""
     if absorbing is not None and kind == ESCAPED:
         leave(own_cells(state.cells, state.coarse, record[U(i)]), i)
         leave_gas(record[U(i)], ids[U(i)], rotation)
@@ -108,11 +111,10 @@ def take_out(record, ids, state, i, kind, absorbing, rotation):
 
 @inline
 def resolve_event(record, ids, state, i, partner, at_contact, time, batch, rows, clock, effects):
-    """Resolve the next event of disc i and write its rows.
+    """Resolve the next event of disc i and write its rows; return the number of rows, and the kind of the event.
 
-    partner: index of the disc with which it collides, or -1. at_contact: whether the event is its predicted contact.
-    time: local time of the event. clock: the same time since the start of the run. Returns the number of rows, and the
-    kind of the event.
+    partner: index of the disc with which disc i collides, or -1. at_contact: whether the event is the predicted contact
+    of disc i. time: local time of the event. clock: time of the event since the start of the run.
     """
     prediction, disc, disc_id = state.prediction[U(i)], record[U(i)], np.int64(ids[U(i)])
     if partner >= 0:
@@ -138,8 +140,8 @@ def resolve_event(record, ids, state, i, partner, at_contact, time, batch, rows,
 def resolve_event_of_piston(record, ids, state, leaf, at_contact, time, batch, rows, clock, piston, effects):
     """Resolve the next event of the piston at a leaf of the schedule; the other arguments are as in `resolve_event`.
 
-    Returns the number of rows, and the index of the disc that the piston hits; -1 if it has met a side of the box or
-    its contact is stale.
+    Returns the number of rows written, and the index of the disc that the piston hits; -1 if the piston has reached a
+    side of the box or its predicted contact is stale.
     """
     prediction, k = state.prediction[U(leaf)], leaf - record.shape[0]
     i = np.int64(-1)
@@ -164,9 +166,9 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
     Returns the number of rows written, and whether all events up to the time limit have happened. subdomain: the slab
     whose events are processed; None for all discs.
 
-    A round of the loop takes the next event of the schedule and ends in one of four ways:
+    Each round of the loop takes the next event from the schedule and ends in one of four ways:
 
-        1. predict again the discs that the last round changed  ←───────────────────────────────┐
+        1. predict events of discs that the last round changed  ←───────────────────────────────┐
         2. count its event, and stop at a limit                                                 │
         3. take the next event from the schedule                                                │
         4. crossing into a cell: the disc changes its cell ────→ contacts in the new cells ─────┤
@@ -174,7 +176,7 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
         6. other events at this time: order them by ids ───────→ nothing, take the first ───────┤
         7. resolve the event and write its rows ───────────────→ all events of its discs ───────┘
 
-    The discs to be predicted again are i and, unless it is -1, `partner`; `change` is the reason.
+    Events are predicted again for disc i and, unless it is -1, for disc `partner`; `change` is the reason.
     """
     record, ids, _ = discs
     rows = events = collisions = thermostat_collisions = 0
@@ -193,7 +195,7 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
     change = np.int64(Repredict.START)
     i = partner = np.int64(-1)
     while True:
-        # 1. In a single call for all changes: a second call would double the machine code.
+        # 1. A single call serves all changes, because a second call would double the machine code.
         while i >= 0:
             predict(record, ids, state, i, change, time, effects, subdomain)
             i, partner = partner, np.int64(-1)
@@ -208,7 +210,7 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
                     now = time
             if (events >= limits.events) | (collisions >= limits.collisions) | (rows >= capacity):
                 break
-        # 3. Of several threads, each waits until its next event may happen.
+        # 3. With several threads, each thread waits until its next event may happen.
         if subdomain is not None:
             i = wait_for_event(record, ids, state, limits.until, subdomain)
         else:
@@ -223,12 +225,12 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
         time = prediction.contact if at_contact else prediction.crossing
         remove(state.tree, state.prediction, ids, i)
         prefetch_next(state.pipeline, record, state, i)
-        # 4. A crossing changes no record.
+        # 4. A crossing into another cell does not change the position, velocity and time of a record.
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             change = np.int64(prediction.crossing_code)
             cross_cell(record, state, i, change, effects.periodic)
             continue
-        # 5. The event of a pair is also taken out of its partner's place. A piston checks its contact itself.
+        # 5. The event of a pair is also removed from the partner's leaf. For pistons this is checked in step 7.
         of_piston = i >= record.shape[0]
         tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:
@@ -247,7 +249,7 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
             change = np.int64(Repredict.STALE)
             i = partner = np.int64(-1)
             continue
-        # 7. A collision, a hit or a thermostat collision; i becomes the disc that a piston hits.
+        # 7. A collision, a hit or a thermostat collision; if a piston hits a disc, i becomes the index of this disc.
         clock = epoch_start + time
         if of_piston:
             written, i = resolve_event_of_piston(

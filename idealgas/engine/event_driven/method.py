@@ -1,7 +1,7 @@
-"""The event-driven method: cells find the neighbours, and a tournament tree finds the next event.
+"""The event-driven method: neighbours are found with cells, and the next event with a tournament tree.
 
-Every prediction is a pure function of the records involved, so the trajectory does not depend on the cells, the
-scheduler or the batches.
+Every prediction is a pure function of the stored states of the discs involved, so the trajectory does not depend on the
+cells, the scheduler or the size of the batches.
 """
 
 import numpy as np
@@ -27,17 +27,24 @@ from idealgas.engine.records import make_discs
 from idealgas.state import Gas
 
 MAX_UNSORTED = 4096
-"""Number of discs that fit into the processor's caches; up to this number discs are sorted in memory only once."""
+"""Number of discs that fit into the processor's caches; up to this number, discs are sorted in memory once per run."""
 
 
 def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool) -> Threads:
-    """Return how the work will be shared; threads: as in `EventDriven`. piston, shear: whether the gas has them."""
+    """Return how the work will be shared among threads.
+
+    Args:
+        gas: the gas at time 0.
+        threads: requested number of threads, as in `EventDriven`.
+        piston: whether the gas has a piston.
+        shear: whether the box has sheared sides.
+    """
     cells, coarse = make_levels(gas.radius, gas.box, discs_per_cell(gas.packing_fraction))
     return _share(cells, coarse, threads, len(gas), _far(piston, shear))
 
 
 def _far(piston: bool, shear: bool) -> str:
-    """Reason why discs may collide with distant partners; empty if they cannot."""
+    """Return the reason why discs may collide with distant partners; an empty string if they cannot."""
     if piston:
         return "any disc may meet the piston"
     return "any disc may meet others through sheared sides" if shear else ""
@@ -46,23 +53,25 @@ def _far(piston: bool, shear: bool) -> str:
 def _share(
     cells: Cells, coarse: CoarseCells | None, threads: int | None, n: int, far: str, tuning: Tuning = DEFAULT_TUNING
 ) -> Threads:
-    """Choose the number of threads for n discs in cells, see `choose_threads`; one if large discs span many rows."""
+    """Choose the number of threads for n discs (see `choose_threads`); one thread if large discs span many rows."""
     if coarse is not None and not far:
         return Threads(1, "the largest discs reach over many rows of cells")
     return choose_threads(threads, cells.rows - 2, n, far, tuning)
 
 
 class EventDriven(Method):
-    """The event-driven method, with the records, effects and predictions of the current epoch."""
+    """The event-driven method, with the discs, effects and predictions of the current epoch."""
 
     _state: EventDrivenState
     _shared: Threads
 
     def __init__(self, filling: float | None = None, threads: int | None = 1, tuning: Tuning = DEFAULT_TUNING) -> None:
-        """Set parameters that only change the speed.
+        """Set the parameters, which affect only the speed.
 
-        filling: mean number of discs per cell; None to derive it from the packing fraction. threads: number of threads;
-        None for as many as are worthwhile. tuning: parameters of the threads.
+        Args:
+            filling: mean number of discs per cell; None to derive it from the packing fraction.
+            threads: number of threads; None for as many as are worthwhile.
+            tuning: parameters of the threads.
         """
         self._filling = filling
         self._threads = threads
@@ -72,7 +81,7 @@ class EventDriven(Method):
         self._radius: np.ndarray | None = None  # radii of the discs for which memory is allocated
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch: put all discs in their cells. The discs and the set of effects do not change during a run."""
+        """Begin an epoch: put all discs into their cells. The discs and the set of effects do not change in a run."""
         is_new_run = self._radius is not gas.radius
         if is_new_run:
             self._allocate(gas, effects)
@@ -91,11 +100,11 @@ class EventDriven(Method):
         )
 
     def _allocate(self, gas: Gas, effects: Effects) -> None:
-        """Allocate cells and memory for the discs of a run, during which only positions and velocities change."""
+        """Allocate cells and memory for a run, during which only positions and velocities change."""
         self._radius = gas.radius
         filling = self._filling or discs_per_cell(gas.packing_fraction)
         cells, coarse = make_levels(gas.radius, gas.box, filling)
-        if effects.shear is not None:  # coarse cells have no neighbours through sheared sides
+        if effects.shear is not None:  # coarse cells do not support neighbours across sheared sides
             cells, coarse = make_cells(len(gas), gas.box, float(gas.radius.max()), filling), None
         self._state = make_state(len(gas), cells, coarse, effects)
         far = _far(effects.piston is not None, effects.shear is not None)
@@ -110,7 +119,7 @@ class EventDriven(Method):
 
     @property
     def threads(self) -> Threads:
-        """How the work is shared, with the numbers of shared and aborted slices in the run so far."""
+        """How the work is shared among threads, and the numbers of shared and aborted slices in the run so far."""
         return self._shared._replace(slices=self.workers.counts["slices"], aborted=self.workers.aborted)
 
     @property
@@ -119,7 +128,7 @@ class EventDriven(Method):
         return self._decomposition is not None and self._decomposition.pending
 
     def _wall_cells(self, effects: Effects) -> tuple[WallCells | None, WallCells | None]:
-        """Wall segments of each cell and coarse cell, reused from the previous epoch unless a gate opened or closed."""
+        """Return the wall segments of each cell and each coarse cell; they are reused until a gate opens or closes."""
         segments, coarse, radius = effects.segments, self._state.coarse, self._radius
         if segments is None or radius is None:
             return None, None
@@ -136,7 +145,7 @@ class EventDriven(Method):
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Process events, see `advance_events`."""
+        """Process events; see `advance_events`."""
         if self._decomposition is not None:
             return self._decomposition.advance(limits, epoch_start, batch, counters)
         return advance_events(self.discs, self._state, self._effects, limits, epoch_start, batch, counters, None)

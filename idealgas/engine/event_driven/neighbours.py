@@ -1,4 +1,4 @@
-"""Discs that a disc may meet: those in the cells around it and, if either disc is far larger, in coarse cells."""
+"""Search for the discs that a disc may meet, in the cells around it and, if discs differ greatly, in coarse cells."""
 
 import math
 
@@ -13,9 +13,9 @@ U = np.uintp
 
 @inline
 def wrapped_index(index, count, is_periodic):
-    """Column or row of a cell, wrapped along a periodic axis, and the image of the cell: -1, 0 or 1.
+    """Return the column or row of a cell, wrapped along a periodic axis, and the image of the cell: -1, 0 or 1.
 
-    count: number of columns or rows, including the ring.
+    count: number of columns or rows, including the ring around the box.
     """
     if is_periodic:
         if index < 1:
@@ -27,7 +27,7 @@ def wrapped_index(index, count, is_periodic):
 
 @noinline
 def append_wrapped_line(cells, candidates, images, count, column, row, along_y, periodic):
-    """Do the work of `append_line` if some of the cells lie beyond a side of the box, and may be wrapped."""
+    """Do the work of `append_line` for cells that may lie beyond a side of the box; wrap them if it is periodic."""
     for step in range(3):
         c, image_x = wrapped_index(column + (0 if along_y else step), cells.columns, periodic.x)
         r, image_y = wrapped_index(row + (step if along_y else 0), cells.rows, periodic.y)
@@ -40,9 +40,9 @@ def append_wrapped_line(cells, candidates, images, count, column, row, along_y, 
 
 @inline
 def append_sheared_rows(cells, candidates, images, count, column, row, along_y, shear):
-    """Append the discs that come within reach through sheared sides, if cells of `append_line` lie beyond them.
+    """Append the discs that may come within reach through a sheared side, if the line of cells extends beyond it.
 
-    The disc may be in a cell of this column or of the columns to either side.
+    column, row, along_y: as in `append_line`.
     """
     if shear is not None:
         if row < 1:
@@ -54,11 +54,11 @@ def append_sheared_rows(cells, candidates, images, count, column, row, along_y, 
 
 @noinline
 def append_sheared_row(cells, candidates, images, count, column, along_y, image_y, shear):
-    """Append the first discs of those cells of the opposite row that a disc in its cell may touch during the epoch.
+    """Append the first discs of the cells at the opposite side that may come within a disc's reach during the epoch.
 
-    column: as in `append_line`; the column of the disc is the next column or, along y, one of the two beside it.
-    image_y: 1 or -1, image of the row. During the epoch the image above moves from the first offset to the second, and
-    discs can touch if their columns are adjacent.
+    During the epoch, the periodic image above the box moves from shear.offset[0] to shear.offset[1]. Discs can touch
+    while their columns are the same or adjacent. column: as in `append_line`; the disc is in column + 1 or, if the line
+    is along y, in column - 1 or column + 1. image_y: image of the row, 1 above the box and -1 below it.
     """
     across = cells.columns - 2
     first, last = (column - 1, column + 1) if along_y else (column + 1, column + 1)
@@ -76,15 +76,16 @@ def append_sheared_row(cells, candidates, images, count, column, along_y, image_
 
 @inline
 def is_inside(cells, column, row, columns, rows):
-    """Whether a block of cells, from (column, row) on, lies entirely in the box; columns, rows: size of the block."""
+    """Whether a block of columns × rows cells, of which (column, row) is the first, lies entirely in the box."""
     return (column >= 1) & (row >= 1) & (column + columns < cells.columns) & (row + rows < cells.rows)
 
 
 @inline
 def append_line(state, count, column, row, along_y):
-    """Append the first discs of three cells in a row or column, from (column, row) on, to the `count` candidates.
+    """Append the first disc of each of three cells in a line to the `count` candidates; return the new number.
 
-    Returns the new number of candidates. The cells are in the box or its ring; images are not recorded.
+    The line begins at (column, row) and runs along y or along x. Its cells are in the box or in the ring around it.
+    Images are not recorded.
     """
     cells = state.cells
     stride = cells.columns if along_y else 1
@@ -99,11 +100,12 @@ def append_line(state, count, column, row, along_y):
 
 @noinline
 def append_coarse_cells(state, i, disc, crossing_code, periodic):
-    """Make the first discs near a large disc, or the first large discs near a small disc, the candidates.
+    """Set the candidates: for a large disc all discs near it, for a small disc the large discs near it.
 
-    A small and a large disc are near each other in adjacent coarse cells, two large discs up to two coarse cells apart.
-    crossing_code: direction in which the disc has just crossed into its cell, to append only the discs that came within
-    reach; SIDE_OF_BOX to append all. Returns the number of candidates.
+    A small and a large disc can touch if their coarse cells are the same or adjacent, and two large discs if they are
+    at most two coarse cells apart. As in all these functions, only the first disc of each cell is appended. Returns the
+    number of candidates. crossing_code: direction in which the disc has just crossed into its cell, to append only the
+    discs that have come within reach; SIDE_OF_BOX to append all.
     """
     coarse, link = state.coarse, state.cells.link[U(i)]
     column, row = np.int64(link.column), np.int64(link.row)
@@ -113,16 +115,16 @@ def append_coarse_cells(state, i, disc, crossing_code, periodic):
     if crossing_code < SIDE_OF_BOX:
         edge = (row if crossing_code >= 2 else column) - (crossing_code & 1)
         if edge % coarse.ratio != 0:
-            return 0  # it has crossed within a coarse cell
+            return 0  # the disc is still in the same coarse cell
     column, row = (column - 1) // coarse.ratio + 1, (row - 1) // coarse.ratio + 1
     return append_coarse_block(state, 0, False, column, row, 1, crossing_code, periodic)
 
 
 @noinline
 def append_coarse_block(state, count, of_small, column, row, reach, crossing_code, periodic):
-    """Append the first small, or large, discs in the coarse cells up to `reach` away from (column, row).
+    """Append the first small or large discs of the coarse cells that are at most `reach` cells from (column, row).
 
-    After a crossing, only the cells in the direction of the crossing are searched.
+    After a crossing, only the outermost cells in the direction of the crossing are searched.
     """
     low_x, high_x, low_y, high_y = column - reach, column + reach, row - reach, row + reach
     forward = reach if crossing_code & 1 else -reach
@@ -138,7 +140,7 @@ def append_coarse_block(state, count, of_small, column, row, reach, crossing_cod
 
 @inline
 def append_coarse_cell(state, count, of_small, x, y, periodic):
-    """Append the first small, or large, discs in a coarse cell, which may lie beyond a side of the box."""
+    """Append the first small or large discs of a coarse cell, which may lie beyond a side of the box."""
     coarse = state.coarse
     image_x = image_y = 0
     if periodic is not None:
@@ -160,9 +162,9 @@ def append_coarse_cell(state, count, of_small, x, y, periodic):
 
 @inline
 def neighbours(state, coarse, i, disc, periodic):
-    """Make the first discs of disc i's cell and of the eight cells around it the candidates.
+    """Set the candidates to the first discs of disc i's cell and of the eight cells around it.
 
-    Returns their number, and whether their images are recorded; if not, all are in the image (0, 0).
+    Returns the number of candidates, and whether their images are recorded; if not, all images are (0, 0).
     """
     count = 0
     if coarse is not None:
@@ -185,9 +187,9 @@ def neighbours(state, coarse, i, disc, periodic):
 
 @inline
 def new_neighbours(state, coarse, i, disc, crossing_code, periodic):
-    """Make the first discs of the three cells that came within reach of disc i the candidates.
+    """Set the candidates to the first discs of the three cells that have come within reach of disc i.
 
-    crossing_code: direction in which the disc crossed into its cell, see PREDICTION. Returns the same as `neighbours`.
+    crossing_code: direction in which the disc crossed into its cell; see PREDICTION. Returns the same as `neighbours`.
     """
     count = 0
     if coarse is not None:

@@ -1,4 +1,4 @@
-"""Pistons in the schedule: each has a leaf of the tree, to which the contacts of all discs with the piston belong."""
+"""Pistons in the schedule. The leaf of a piston in the tree holds its earliest contact with any of the discs."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ U = np.uintp
 
 @inline
 def keep_if_earlier(record, ids, prediction, j, piston, effects):
-    """Store disc j's contact with a piston if it is the piston's earliest contact; return whether it is."""
+    """Store disc j's contact with a piston and return True if it is the piston's earliest contact so far."""
     if has_left(record[U(j)], effects.absorbing):
         return False
     if misses_piston_until(record[U(j)], piston, effects.gravity, prediction.contact):
@@ -58,7 +58,7 @@ def predict_pistons(record, ids, state, piston, effects):
 
 @inline
 def offer_to_pistons(record, ids, state, i, piston, effects):
-    """Update the next contact of each piston after disc i's record has changed."""
+    """Update the next contact of each piston after the velocity or position of disc i has changed."""
     if piston is not None:
         for k in range(piston.shape[0]):
             leaf = ids.shape[0] + k

@@ -1,9 +1,10 @@
-"""Predictions for each disc, of its next contact and its next crossing, and the order of simultaneous events.
+"""The predicted next contact and next crossing of each disc, and the order of simultaneous events.
 
-Simultaneous events are ordered by the pair (smaller id, other id), in which walls precede the heat bath, and the heat
-bath precedes all discs. Of simultaneous contacts with the same partner in two images, the image with the smaller number
-of box lengths, counted from the disc with the smaller id along x and then along y, comes first. The rule uses ids only,
-never indices in memory, so the order is the same for every method and every renumbering.
+Simultaneous events are ordered by the pair (smaller id, other id), where walls precede the heat bath and the heat bath
+precedes all discs. If a disc touches two images of the same partner simultaneously, the images are ordered by their
+shifts in box lengths, as seen from the disc with the smaller id: the smaller shift along x comes first and, if these
+are equal, the smaller shift along y. The rule uses only ids, never indices in memory, so the order is the same for all
+methods and does not depend on how the discs are sorted in memory.
 """
 
 import numpy as np
@@ -17,8 +18,8 @@ PREDICTION = np.dtype(
         ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
         ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or the heat bath
         ("partner", "i4"),  # index of the partner, -1 for none, -2 - k for wall segment k
-        ("partner_count", "u4"),  # the partner's count at the prediction: once it differs, the contact is stale
-        ("image_x", "i2"),  # box lengths to the partner's record or the segment, if sides are periodic
+        ("partner_count", "u4"),  # the partner's count at the time of prediction; if it has changed, the contact is stale
+        ("image_x", "i2"),  # box lengths by which the partner or the segment is shifted, if sides are periodic
         ("image_y", "i2"),
         ("crossing_code", "i4"),  # 0-3: enters the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT
     ],
@@ -28,15 +29,15 @@ SIDE_OF_BOX = 4
 THERMOSTAT = SIDE_OF_BOX + HEAT_BATH
 """Codes of events other than cell crossings: SIDE_OF_BOX plus the number of the side or the heat bath."""
 
-NO_CONTACT = 0.5 * NEVER  # less than NEVER, so that a pair that never meets does not seem simultaneous with it
+NO_CONTACT = 0.5 * NEVER  # less than NEVER, so that a pair that never meets does not tie with it
 
 U = np.uintp  # unsigned, so that the compiler need not check for negative indices
 
 FIRST_WALL = -(1 << 31)
-"""Rank of wall 0 among the partners of a disc. Wall k has the rank FIRST_WALL + k, so walls come before discs."""
+"""Rank of wall 0 among the partners of a disc. Wall k has rank FIRST_WALL + k, so walls come before discs."""
 
 FIRST_WALL_SEGMENT = -2
-"""Number of wall segment 0 as the partner in a prediction; segment k has the number FIRST_WALL_SEGMENT - k."""
+"""Number that stands for wall segment 0 as the partner in a prediction; segment k is FIRST_WALL_SEGMENT - k."""
 
 
 @inline
@@ -49,9 +50,9 @@ def precedes(a, b, c, d):
 
 @inline
 def image_precedes(disc_id, rank, images, other_images):
-    """Whether a disc's contact with an image of a partner precedes its simultaneous contact with another image of it.
+    """Whether a disc's contact with one image of a partner precedes its simultaneous contact with another image.
 
-    rank: id or wall rank of the partner. images, other_images: numbers of box lengths (x, y) to the two images.
+    rank: id or wall rank of the partner. images, other_images: shifts (x, y) of the two images in box lengths.
     """
     ahead = images[0] < other_images[0] or (images[0] == other_images[0] and images[1] < other_images[1])
     return ahead if rank < 0 or disc_id < rank else images != other_images and not ahead
@@ -59,7 +60,7 @@ def image_precedes(disc_id, rank, images, other_images):
 
 @inline
 def images_of(prediction):
-    """Numbers of box lengths (x, y) between a disc's record and its partner."""
+    """Shift (x, y), in box lengths, from the recorded position of a disc's predicted partner to its image."""
     return np.int64(prediction.image_x), np.int64(prediction.image_y)
 
 
@@ -73,9 +74,9 @@ def partner_rank(ids, partner):
 
 @inline
 def contact_is_next(prediction, ids, i):
-    """Whether a disc's next event is its contact, not its crossing.
+    """Whether a disc's next event is its contact rather than its crossing.
 
-    A crossing into a cell precedes all simultaneous events.
+    A crossing into another cell precedes all events at the same time.
     """
     if prediction.contact != prediction.crossing:
         return prediction.contact < prediction.crossing
@@ -88,9 +89,10 @@ def contact_is_next(prediction, ids, i):
 
 @inline
 def event_ids(prediction, ids, i):
-    """The two ids by which a disc's next event is ordered among simultaneous events.
+    """Return the two ids by which a disc's next event is ordered among simultaneous events.
 
-    Leaves beyond the discs belong to pistons: their contact is with a disc, their crossing with a side of the box.
+    Leaves after those of the discs belong to pistons. The contact of a piston is with a disc, and its crossing is a
+    contact with a side of the box.
     """
     contact = contact_is_next(prediction, ids, i)
     side = np.int64(FIRST_WALL + (prediction.crossing_code - SIDE_OF_BOX))

@@ -1,10 +1,10 @@
 """Prefetching the memory of discs that will soon have events, for a gas that does not fit into the caches.
 
-A disc that becomes first in its part of the schedule will soon have an event: with 8 to 64 parts, two levels below the
-root, about ten events later. (Directly below the root there may be only two parts, whose first disc is often the next.)
-The memory is fetched in three steps, each an event after the step on whose data it depends: first the disc's record,
-prediction and node of the schedule; then the cells around it, and its partner; then the discs in the cells that its
-event will search.
+When a disc becomes the first in its branch of the schedule, it will soon have an event. Two levels below the root there
+are 8 to 64 branches, and the event is about ten events away. (Directly below the root there may be only two branches,
+so that the first disc of a branch often has the very next event.) The memory is fetched in three steps, one event apart
+because each step needs the data of the previous step: first the disc's record, prediction and nodes of the schedule;
+then the cells around the disc, and its partner; then the discs in the cells that its event will search.
 """
 
 import numpy as np
@@ -13,18 +13,18 @@ from idealgas.engine.event_driven.prediction import SIDE_OF_BOX
 from idealgas.jit import aligned, inline, prefetch
 
 FROM = 6_000
-"""Number of discs from which on prefetching is faster."""
+"""Smallest number of discs for which prefetching is faster."""
 
 NEAR = 32_768
-"""Largest number of discs for which the parts directly below the root suffice, if there are at least three."""
+"""Largest number of discs for which the branches directly below the root suffice, if there are at least three."""
 
 U = np.uintp
 
 
 def make_pipeline(n: int, levels: int) -> np.ndarray | None:
-    """Indices of two discs whose memory is being fetched, and the level of the parts; None for a gas of few discs.
+    """Make (3,) i8: the indices of two discs whose memory is being fetched, and the level of the branches.
 
-    levels: number of levels of the schedule, of which the last is the root.
+    Returns None for a gas of few discs. levels: number of levels of the schedule, of which the last is the root.
     """
     if n < FROM:
         return None
@@ -37,7 +37,7 @@ def make_pipeline(n: int, levels: int) -> np.ndarray | None:
 
 @inline
 def first_of_part(tree, level, i):
-    """Index of the disc with the next event in disc i's part of the tree, a node of this level."""
+    """Index of the disc with the next event in disc i's branch of the tree; level: level of the branch's node."""
     return np.int64(tree.winner[U(tree.start[U(level)] + (i >> (3 * level)))])
 
 
@@ -64,7 +64,7 @@ def cell_around(cells, i):
 
 @inline
 def fetch_cells(cells, i):
-    """Fetch the cells around disc i, including those that may come within its reach."""
+    """Fetch the cells around disc i, including those that come within its reach if it crosses into another cell."""
     cell = cell_around(cells, i)
     for row in range(-2, 3):
         prefetch(cells.head, U(cell + row * cells.columns))
@@ -106,7 +106,7 @@ def fetch_candidates(cells, record, i, prediction):
 
 @inline
 def prefetch_next(pipeline, record, state, i):
-    """Fetch memory for the new first disc of the part from which disc i was removed, and for the previous two discs."""
+    """Fetch memory for the new first disc of the branch from which disc i was removed, and for the two discs before."""
     if pipeline is not None:
         third, second = pipeline[0], pipeline[1]
         first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # it may be a piston's leaf

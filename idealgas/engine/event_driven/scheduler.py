@@ -1,11 +1,13 @@
-"""The scheduler: an implicit 8-ary tournament tree with one leaf per disc, whose root is the next event.
+"""The scheduler: an implicit 8-ary tournament tree. It has a leaf for each disc, and its root is the next event.
 
 The keys of a level are contiguous in memory, padded with times after NEVER; the index of the winning disc is stored for
 each key. An event is removed before the next events of its discs are predicted, so that the processor can do both in
-parallel. Pushing an event takes one or two comparisons, because most events are not the earliest of their group.
+parallel. Pushing an event usually takes one or two comparisons, because most events are not the earliest of their
+group.
 
-Simultaneous events are rare, except for a contact that both discs of the pair have predicted. The tree therefore finds
-any of the earliest events, and ties are resolved by the order of ids only if the next event has the same time.
+Simultaneous events are rare, except for a contact that both discs of the pair have predicted. The tree therefore
+returns any one of the earliest events. Only if the event after it has the same time are ties resolved, by the order of
+ids.
 """
 
 from typing import NamedTuple
@@ -17,7 +19,7 @@ from idealgas.jit import aligned, inline, njit, noinline
 from idealgas.physics.motion import NEVER
 
 NEVER_KEY = int(np.float64(NEVER).view(np.int64))
-NO_TIE = -1.0  # before all times
+NO_TIE = -1.0  # earlier than any time
 
 U = np.uintp
 
@@ -42,7 +44,7 @@ class Tree(NamedTuple):
 
 
 def make_tree(n: int) -> Tree:
-    """Tournament tree of n leaves, to be cleared before use."""
+    """Make a tournament tree of n leaves, which must be cleared before use."""
     start = [0]
     nodes = n
     total = -(-n // 8) * 8
@@ -58,7 +60,7 @@ def make_tree(n: int) -> Tree:
 
 @inline
 def clear(tree):
-    """Remove all events; all keys then differ, so that none ties with the padding."""
+    """Remove all events. All keys then differ, so that no leaf ties with the padding."""
     for node in range(tree.key.shape[0]):
         tree.key[node] = NEVER_KEY + node
     tree.tie_time[0] = NO_TIE
@@ -66,7 +68,7 @@ def clear(tree):
 
 @inline
 def first_of_four(key, first):
-    """Earliest key of four consecutive nodes, and a node with this key."""
+    """Return the earliest key of four consecutive nodes, and a node with this key."""
     k0 = key[U(first)]
     k1 = key[U(first + 1)]
     k2 = key[U(first + 2)]
@@ -80,7 +82,7 @@ def first_of_four(key, first):
 
 @inline
 def first_of_group(key, group, width):
-    """Earliest key of a group of eight nodes, or of four on a level of width 4, and a node with this key."""
+    """Return the earliest key of a group of eight nodes (four on a level of width 4), and a node with this key."""
     k0, n0 = first_of_four(key, group)
     if width == 4:
         return k0, n0
@@ -98,9 +100,10 @@ def comes_first(predictions, ids, i, j):
 
 @noinline
 def resolve_path(tree, predictions, ids, i, time):
-    """Resolve ties in those groups of disc i, on all levels, whose earliest event is at a given time.
+    """Resolve the ties at a given time in the groups on the path from disc i's leaf to the root.
 
-    Of the discs of a group with this time, the first by the order of ids becomes the winner.
+    In each group whose earliest event has this time, the first of the tied events in the order of ids becomes the
+    winner.
     """
     group = np.int64(i)
     base = 0
@@ -122,7 +125,7 @@ def resolve_path(tree, predictions, ids, i, time):
 
 @inline
 def push(tree, predictions, ids, i):
-    """Insert the next event of disc i, whose leaf is empty, and climb the tree while the event is the earliest."""
+    """Insert the next event of disc i into its empty leaf, and into all higher nodes at which it is the earliest."""
     _, key, winner, start, tie_time = tree
     prediction = predictions[U(i)]
     time = min(prediction.contact, prediction.crossing)
@@ -144,7 +147,7 @@ def push(tree, predictions, ids, i):
 
 @inline
 def remove(tree, predictions, ids, i):
-    """Remove disc i's event from the tree, and climb the tree while it was the earliest."""
+    """Remove disc i's event from its leaf, and from all higher nodes at which it was the earliest."""
     times, key, winner, start, tie_time = tree
     removed = times[U(i)]
     key[U(i)] = NEVER_KEY + i
@@ -168,14 +171,14 @@ def remove(tree, predictions, ids, i):
 
 @inline
 def update(tree, predictions, ids, i):
-    """Replace the event of disc i in the tree by its newly predicted next event."""
+    """Replace disc i's event in the tree with its newly predicted next event."""
     remove(tree, predictions, ids, i)
     push(tree, predictions, ids, i)
 
 
 @inline
 def next_event(tree):
-    """Local time of the next event, and index of its disc; of several simultaneous events, any may be returned."""
+    """Return the local time of the next event, and the index of its disc; of simultaneous events, any is returned."""
     root = tree.start[U(tree.start.shape[0] - 1)]
     return tree.time[U(root)], np.int64(tree.winner[U(root)])
 
@@ -209,7 +212,7 @@ def resolve_ties(tree, predictions, ids, i, j):
 
 @njit
 def build(tree, predictions, link, low, high):
-    """Build the tree of only those discs that are in the rows of cells from `low` to before `high`."""
+    """Build the tree from the events of those discs that are in the rows `low` to `high` - 1 of cells."""
     clear(tree)
     for i in range(link.shape[0]):
         if low <= link[U(i)].row < high:

@@ -1,4 +1,4 @@
-"""State of the event-driven method in addition to the discs' records; it is rebuilt at the start of each epoch."""
+"""State of the event-driven method apart from the discs themselves; it is rebuilt at the start of each epoch."""
 
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from idealgas.engine.event_driven.scheduler import Tree, make_tree
 from idealgas.engine.event_driven.wall_cells import WallCells
 from idealgas.jit import aligned, inline
 
-IMAGE = np.dtype([("x", "i4"), ("y", "i4")], align=True)  # box lengths, along x and along y
+IMAGE = np.dtype([("x", "i4"), ("y", "i4")], align=True)  # numbers of box lengths along x and y
 
 
 class EventDrivenState(NamedTuple):
@@ -22,14 +22,14 @@ class EventDrivenState(NamedTuple):
         cells: cells of the neighbour search.
         coarse: coarse cells of the largest discs; None if all discs are in the same cells.
         tree: schedule of the discs' next events.
-        prediction: (N,) PREDICTION by index, next events of each disc; with K pistons (N + K,), of which the last K
-            are predictions for the pistons.
+        prediction: (N,) PREDICTION by index, next contact and crossing of each disc. With K pistons the shape is
+            (N + K,), and the last K predictions are those of the pistons.
         candidates: i4 scratch memory for indices of discs that may be in contact.
-        images: (…) IMAGE scratch memory for the images of the candidates; None without periodic sides.
+        images: IMAGE scratch memory for the images of the candidates; None without periodic sides.
         walls: wall segments of each cell; None without segments.
         coarse_walls: wall segments of each coarse cell; None without segments or without coarse cells.
         pipeline: (3,) i8, see `make_pipeline`; None for a gas that fits into the caches.
-        unpredicted: (1,) bool, whether an epoch begins whose events have not been predicted yet.
+        unpredicted: (1,) bool, whether an epoch has begun whose events have not been predicted yet.
     """
 
     cells: Cells
@@ -45,9 +45,9 @@ class EventDrivenState(NamedTuple):
 
 
 def make_state(n: int, cells: Cells, coarse: CoarseCells | None, effects: Effects) -> EventDrivenState:
-    """Event-driven state of n discs, without predictions and without walls."""
+    """Make the event-driven state of n discs, without predictions and walls."""
     leaves = n if effects.piston is None else n + len(effects.piston)
-    most = 9 if effects.shear is None else 25  # number of images of each disc among the candidates in a one-cell box
+    most = 9 if effects.shear is None else 25  # most images of one disc among the candidates, in a box of one cell
     room = most * n + 16
     tree = make_tree(leaves)
     return EventDrivenState(

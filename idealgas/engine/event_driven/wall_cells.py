@@ -11,12 +11,12 @@ from idealgas.physics.periodic import NO_IMAGES, Periodic, images_to_wall, perio
 
 
 class WallCells(NamedTuple):
-    """Wall segments of each cell; the entries of cell c are those from start[c] to before start[c + 1].
+    """Wall segments of each cell; cell c has the entries start[c] to start[c + 1] - 1.
 
     Attributes:
         start: (cells + 1,) i4, first entry of each cell.
         item: (entries,) i4, number of the wall segment.
-        image: (entries, 2) i4, box lengths (x, y) from the segment to its image near the cell.
+        image: (entries, 2) i4, numbers of box lengths (x, y) from the segment to its image near the cell.
     """
 
     start: np.ndarray
@@ -27,9 +27,9 @@ class WallCells(NamedTuple):
 def make_wall_cells(
     segments: np.recarray, arcs: np.recarray | None, periodic: Periodic | None, cells: Cells, largest_radius: float
 ) -> WallCells:
-    """Enter every active segment in all cells that have a point within the largest radius (length) of it.
+    """List every active segment in all cells that have a point within the largest radius (length) of the segment.
 
-    A small margin ensures that no cell is left out because of rounding.
+    A small margin ensures that rounding does not exclude a cell.
     """
     reach = largest_radius * (1 + 1e-9) + 1e-9 * max(cells.width, cells.height)
     across, along = (range(-1, 2) if is_periodic else (0,) for is_periodic in periodic_axes(periodic))
@@ -50,7 +50,7 @@ def make_wall_cells(
 
 @inline
 def images_to_item(walls, entry, disc, periodic):
-    """Numbers of box lengths (x, y) between a disc's record and the wall segment of an entry."""
+    """Shift (x, y), in box lengths, from the wall segment of an entry to its image near a disc."""
     if periodic is not None:
         return images_to_wall(periodic, disc, (walls.image[entry, 0], walls.image[entry, 1]))
     return NO_IMAGES
@@ -74,7 +74,7 @@ def _cells_near(
     centre = (np.stack((column, row), axis=-1) - 0.5) * size - start
     if arc is None:
         normal = np.array([-tangent[1], tangent[0]])
-        near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no parallel line separates them
+        near = np.abs(centre @ normal) <= 0.5 * size @ np.abs(normal) + reach  # no line parallel to it separates them
     else:
         centre = centre.reshape(-1, 2)
         away = np.hypot(*(centre - nearest_on_arc(centre, length * tangent, arc)).T)
