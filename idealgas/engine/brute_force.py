@@ -1,7 +1,7 @@
 """The brute-force method: before every event, all pairs, walls and images are searched for the next event, O(N²).
 
-It is the reference for the event-driven method: it has the same laws and the same rule for simultaneous events, but no
-stored predictions.
+It is the reference for the event-driven method: it uses the same laws and the same rule for simultaneous events, but
+stores no predictions.
 """
 
 import numpy as np
@@ -41,7 +41,7 @@ from idealgas.physics.shear import crossing_time
 from idealgas.physics.vibration import contact_with_side
 
 SEGMENT, STOP, BOUNDARY_CROSSING = range(16, 19)  # in addition to the kinds of events
-INNER = -1  # side of inner pistons
+INNER = -1  # stands for inner pistons in place of the number of a side
 
 
 @inline
@@ -131,7 +131,8 @@ def image_range(periodic, along_y):
 def sheared_range(shear, most, unsheared):
     """Range of the images along an axis: -most to most if sides are sheared, otherwise `unsheared`.
 
-    An image starts up to one box ahead and moves by up to one box in an epoch, and discs are up to one box apart.
+    At the start of an epoch the image above is shifted by up to one box length; during the epoch it moves by up to one
+    box length; and discs are up to one box length apart.
     """
     if shear is not None:
         return (-most, most + 1)
@@ -142,7 +143,7 @@ def sheared_range(shear, most, unsheared):
 def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
     """Local time of a disc's next crossing of a periodic side along an axis, and whether its direction is positive.
 
-    Under gravity the time is computed from the disc's state at the local time `now`, up to which crossings are counted.
+    Under gravity the time is computed from the disc's state at local time `now`, up to which crossings are counted.
     """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     if gravity is not None:
@@ -187,11 +188,11 @@ def stop_event(piston, best):
 
 @inline
 def next_event(record, box, effects, now):
-    """Earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
+    """Return the earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
 
     now: local time up to which all events have happened. For a BOUNDARY_CROSSING the partner is the axis, and image_x
-    the direction. Events are compared in the order of simultaneous events: the smaller id first, then walls, then the
-    heat bath, then the other id.
+    the direction. Events are compared in the order that applies if they are simultaneous: by the smaller id, then
+    walls, then the heat bath, then the other id.
     """
     best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):
@@ -218,7 +219,7 @@ def cross_boundary(periodic, disc, axis, forward):
 
 @inline
 def take_out(disc, i, kind, absorbing, rotation):
-    """Take disc i out of the gas if an event of this kind was its last."""
+    """Remove disc i from the gas if it has escaped; kind: kind of its last event."""
     if absorbing is not None and kind == ESCAPED:
         leave_gas(disc, i, rotation)
 
@@ -277,10 +278,10 @@ def advance_events(discs, effects, limits, epoch_start, batch, counters):
 
 
 class BruteForce(Method):
-    """The brute-force method, with the records and effects of the current epoch."""
+    """The brute-force method, with the discs and effects of the current epoch."""
 
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Process events, see `advance_events`."""
+        """Process events; see `advance_events`."""
         return advance_events(self.discs, self._effects, limits, epoch_start, batch, counters)

@@ -18,8 +18,8 @@ class Diagnostics(NamedTuple):
         kinetic_energy: sum over the discs, mass length²/time².
         momentum: (2,) f8, sum over the discs, mass length/time.
         overlap: deepest overlap of two discs, divided by the sum of their radii; 0 if no discs overlap.
-        outside: largest distance by which a disc protrudes beyond a side that is not periodic, divided by its diameter;
-            0 if none protrudes.
+        outside: largest distance by which a disc protrudes beyond a side that is not periodic, divided by the diameter
+            of the disc; 0 if no disc protrudes.
     """
 
     kinetic_energy: float
@@ -29,7 +29,7 @@ class Diagnostics(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Coordinates (n,) of discs, length, at a local time, with the field names of a record."""
+    """Coordinates (n,) of discs, length, at a local time; the field names are those of a record."""
 
     x: np.ndarray
     y: np.ndarray
@@ -37,16 +37,16 @@ class Points(NamedTuple):
 
 
 def deepest_overlap(gas: Gas, periodic: Periodic | None, absorbing: np.ndarray | None) -> float:
-    """Deepest overlap of two discs, divided by the sum of their radii; 0 if no discs overlap.
+    """Return the deepest overlap of two discs, divided by the sum of their radii; 0 if no discs overlap.
 
-    periodic: its shear must be taken at the time of the gas, from which local times count.
+    periodic: periodic sides; their shear must be in its state at the time of the gas, from which local times count.
     """
     present = inside(gas.position[:, 0], absorbing)
     position, radius, disc = gas.position[present], gas.radius[present], np.arange(len(gas))[present]
     period, deepest = (0.0, 0.0), 0.0
     if periodic is not None:
         period = (periodic.Lx * periodic.x, periodic.Ly * periodic.y)
-        if periodic.shear is not None:  # discs near the bottom meet those near the top as images above it
+        if periodic.shear is not None:  # discs near the bottom meet those near the top as images above the box
             low = position[:, 1] < 2 * (1 + MARGIN) * radius.max(initial=0.0)
             above = position[low] + (offset_at(periodic.shear, 0.0), periodic.shear.Ly)
             position, radius, disc = (
@@ -68,12 +68,12 @@ def check_invariants(
 
     Args:
         gas: the gas.
-        overlap: its deepest overlap, divided by the sum of the radii, which is passed through.
+        overlap: deepest overlap in the gas, divided by the sum of the radii; it is only passed on to the result.
         absorbing: see `inside`.
         periodic: whether the sides along x and along y are periodic, so that discs cannot protrude there.
 
     Returns:
-        The measured values.
+        The conserved quantities, the overlap and the largest protrusion.
     """
     present = inside(gas.position[:, 0], absorbing)
     radius, position = gas.radius[present], gas.position[present]

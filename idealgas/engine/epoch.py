@@ -1,4 +1,4 @@
-"""Length of an epoch. At its end all discs are brought to the same time, and local times start again from 0."""
+"""Length of epochs. At the end of an epoch all discs are moved to the same time, and local times restart from 0."""
 
 import math
 from collections.abc import Sequence
@@ -11,19 +11,19 @@ from idealgas.physics.motion import MAX_DISPLACEMENT
 from idealgas.physics.periodic import periodic_axes
 from idealgas.state import Gas
 
-EVENTS_PER_DISC = 64  # largest number in an epoch; an epoch has at least half as many
-EVENTS_OF_FEW = 1024  # largest number in an epoch of few discs; it has at least a quarter as many
+EVENTS_PER_DISC = 64  # largest number of events per disc in an epoch; the smallest is half as large
+EVENTS_OF_FEW = 1024  # largest number of events in an epoch of a few discs; the smallest is a quarter of it
 MOST_CROSSINGS = 8192  # crossings of periodic sides by the fastest disc: predictions store their number in 16 bits
-FEWEST_PER_DISC = 4  # events per disc, however long the paths: starting an epoch costs about one event per disc
-FEWEST_EVENTS = 512  # events in all, however few discs: starting an epoch costs at least several hundred events
-UNDECIDED = 1e-6  # distance from a power of two within which the speeds are summed exactly; NumPy errs far less
+FEWEST_PER_DISC = 4  # events per disc, however long the free paths; an epoch's start takes as long as 1 event per disc
+FEWEST_EVENTS = 512  # events in all, however few discs; an epoch's start takes as long as several hundred events
+UNDECIDED = 1e-6  # if the exponent is this close to an integer, speeds are summed exactly; NumPy's error is far smaller
 
 
 def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -> float:
-    """Number of encounters of all discs per length that each disc moves, 1/length, by kinetic theory.
+    """Return the number of encounters of all discs per distance that each disc travels, 1/length, from kinetic theory.
 
-    It counts encounters with discs and with sides; sides that leave a disc less room than its diameter are treated by
-    `narrow_side_hit_rate`. periodic: whether the sides along x and along y are periodic.
+    Encounters with discs and with sides are counted; `narrow_side_hit_rate` is for sides that leave a disc less room
+    than its diameter. periodic: whether the sides along x and along y are periodic.
     """
     n = len(gas)
     mean_diameter = 2.0 * math.fsum(gas.radius.tolist()) / n
@@ -32,9 +32,9 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
 
 
 def narrow_side_hit_rate(gas: Gas, periodic: Sequence[bool]) -> float:
-    """Estimated rate of hits, 1/time, on sides that leave the largest disc less room than its diameter.
+    """Estimate the rate of hits, 1/time, on sides that leave the largest disc less room than its diameter.
 
-    The rate follows from the velocities along that axis, because in a narrow box the direction of motion matters.
+    The rate is computed from the velocities along the narrow axis, because the direction of motion matters there.
     """
     rate, diameter = 0.0, 2.0 * float(gas.radius.max())
     for axis, (length, on) in enumerate(zip(gas.box, periodic, strict=True)):
@@ -54,18 +54,18 @@ def epoch_length(
 ) -> float:
     """Return the length of an epoch, time: a power of two, in which each disc has 32 to 64 events.
 
-    In a dilute gas there are fewer events per disc, but at least 256 to 512 in all; otherwise the epochs would cost
-    more than the events. If the last digits decide, the sum of the speeds is correctly rounded, so that the length
-    depends on neither the order of the discs nor the processor.
+    In a dilute gas there are fewer events per disc, but at least 256 to 512 events in all; otherwise starting an epoch
+    would take longer than its events. If the last digits of the sum of the speeds decide on the power of two, the sum
+    is correctly rounded, so that the length depends on neither the order of the discs nor the processor.
 
     Args:
         gas: the gas at the start of the epoch.
         encounters: number of encounters per length, see `encounters_per_length`, 1/length.
-        extra_speed: expected increase of the speeds by gravity, a piston or a heat bath, length/time.
+        extra_speed: expected increase in the speeds due to gravity, a piston or a heat bath, length/time.
         periodic: whether the sides along x and along y are periodic.
         thermostat_collisions: rate of the collisions with the heat bath, 1/time.
-        fall: acceleration along periodic sides, length/time²; in an epoch no disc gains more than the largest speed
-            by it.
+        fall: acceleration along periodic axes, length/time². The epoch is so short that no disc gains more than the
+            largest speed from this acceleration.
 
     Returns:
         The length of the epoch; infinite if there are no events.
@@ -80,7 +80,7 @@ def epoch_length(
     )
 
     def exponent(sum_of_speeds: float) -> float:
-        """Logarithm to base 2 of the longest time that an epoch may take; infinite if there are no events."""
+        """Base-2 logarithm of the longest duration of an epoch; infinite if there are no events."""
         rate = (sum_of_speeds / n + extra_speed) * encounters + other_events
         longest = fastest / fall if fall else math.inf
         if rate == 0.0:
@@ -98,7 +98,7 @@ def epoch_length(
 
 
 def fall_along_sides(effects: Effects) -> float:
-    """Largest acceleration along periodic sides, length/time²; 0 if a side ends every fall."""
+    """Return the largest acceleration along a periodic axis, length/time²; 0 if there is none."""
     if effects.gravity is None:
         return 0.0
     both = zip(effects.gravity, periodic_axes(effects.periodic), strict=True)
@@ -106,5 +106,5 @@ def fall_along_sides(effects: Effects) -> float:
 
 
 def driving_speed(gas: Gas, effects: Effects) -> float:
-    """Estimated increase of the mean speed of the discs by gravity, moving walls or a heat bath, length/time."""
+    """Estimate the increase in the mean speed of the discs due to gravity, moving walls or a heat bath, length/time."""
     return sum(effect.driving_speed(state, gas) for effect, state in present(effects))

@@ -1,4 +1,4 @@
-"""Writing events into a batch. Each function that writes a whole event returns its number of rows, 0 without a log."""
+"""Writing events to a batch. Each function that writes a whole event returns the number of rows, 0 without a log."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ NO_END = 1 << 62  # number of rows that stands for no limit, without a log
 
 @inline
 def batch_capacity(batch):
-    """Number of filled rows from which on no event is processed, because a pair needs two more rows."""
+    """Number of filled rows at which processing stops, because a pair needs two free rows."""
     if batch is not None:
         return batch.time.shape[0] - 1
     return NO_END
@@ -20,7 +20,7 @@ def batch_capacity(batch):
 
 @inline
 def write_event(batch, row, time, disc_id, partner, kind, disc, position, rotation, periodic):
-    """Write a disc's row of an event: its state after the event, in the columns that the batch has."""
+    """Write the row of a disc in an event: its state after the event, in the columns that the batch has."""
     u = U(row)
     batch.time[u] = time
     batch.disc[u] = disc_id
@@ -40,7 +40,7 @@ def write_event(batch, row, time, disc_id, partner, kind, disc, position, rotati
 
 @inline
 def fetch_next_rows(batch, row, position, angular_velocity, image, trial):
-    """Prefetch the memory of the next rows, so that the next pair is written sooner."""
+    """Prefetch the memory of the next rows, so that the next pair is written faster."""
     prefetch_next_line(batch.time, row)
     prefetch_next_line(batch.disc, row)
     prefetch_next_line(batch.partner, row)

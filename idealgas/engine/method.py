@@ -14,10 +14,10 @@ from idealgas.state import Gas
 
 
 class Limits(NamedTuple):
-    """Limits at which a call of an engine's kernel ends: a time, and numbers of events.
+    """Limits at which a call of an engine's kernel ends: a time and numbers of events.
 
     Attributes:
-        until: local time, time.
+        until: latest local time of an event, time.
         events: largest number of events in this call.
         collisions: largest number of collisions of two discs in this call.
         trials: largest number of Monte Carlo trials in this call.
@@ -30,11 +30,11 @@ class Limits(NamedTuple):
 
 
 class Threads(NamedTuple):
-    """How a method shares its work among threads; the result does not depend on it.
+    """How a method shares its work among threads, which does not affect the events.
 
     Attributes:
         number: number of threads.
-        reason: why there are this many.
+        reason: reason for this number.
         slices: number of slices of time that several threads shared.
         aborted: number of these slices that one thread had to repeat.
         min_events: smallest number of events per call of `advance` that several threads can share.
@@ -51,12 +51,12 @@ class Threads(NamedTuple):
 
 
 class Method(ABC):
-    """A method that finds the events, with the state of one epoch.
+    """A method of finding the events, with its state in the current epoch.
 
     Attributes:
         discs: records of the discs in the current epoch.
         has_positions: whether the method moves discs; if not, the positions of the gas remain unchanged.
-        single_epoch: whether the run must be a single epoch, because digits would be lost between epochs.
+        single_epoch: whether the run must be a single epoch, because precision would be lost between epochs.
     """
 
     discs: Discs
@@ -70,12 +70,12 @@ class Method(ABC):
 
     @property
     def threads(self) -> Threads:
-        """How the work is shared."""
+        """How the work is shared among threads."""
         return Threads()
 
     @property
     def extra_state(self) -> Mapping[Column, float]:
-        """State on which later epochs depend, by column of the log; `advance` returns as soon as it changes."""
+        """Additional state on which later epochs depend, by column of the log; `advance` returns once it changes."""
         return {}
 
     def start(self, gas: Gas, effects: Effects) -> None:
@@ -93,5 +93,5 @@ class Method(ABC):
         """
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap of two discs, divided by the sum of their radii; effects: effects at the time of the gas."""
+        """Return the deepest overlap of two discs over the sum of their radii; effects: effects at the gas's time."""
         return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

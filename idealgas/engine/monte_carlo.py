@@ -3,9 +3,9 @@
 Trials are a Poisson process. Each trial draws a random pair and accepts it with a probability equal to the ratio of its
 collision rate to the largest possible rate, so every pair collides exactly at its rate. Such a process has no memory:
 an epoch begins with a new waiting time and with its own random numbers, keyed by the seed and the start of the epoch.
-To continue a run, the velocities and a raised v_ref are therefore sufficient.
+A run can therefore be continued from the velocities alone, together with v_ref if it has been raised.
 
-The largest possible rate is the collision rate of a pair of the largest discs at the relative speed v_ref. If a disc
+The largest possible rate is the collision rate of a pair of the largest discs at relative speed v_ref. If a disc
 emerges from a collision so fast that two such discs could exceed a default v_ref, v_ref is raised before the next
 trial; no pair is then ever too fast, whether it is drawn or not. The time of the change depends only on the past, and
 from then on both the rate of trials and the accepted fraction follow the new v_ref, so every pair still collides at its
@@ -59,7 +59,7 @@ def random_pair(number, start):
 
 @inline
 def too_fast(a, b, fastest_square):
-    """Squared speed of the faster of two discs, (length/time)², if it exceeds the bound `fastest_square`; otherwise 0.
+    """Return the squared speed of the faster of two discs, (length/time)², if it exceeds `fastest_square`; otherwise 0.
 
     fastest_square: None if there is no bound.
     """
@@ -89,7 +89,7 @@ class Trials(NamedTuple):
 
 @njit
 def advance_trials(discs, trials, effects, limits, epoch_start, batch, counters):
-    """Try pairs until a limit or the end of the batch is reached, or a disc is too fast.
+    """Try pairs until a limit or the end of the batch is reached, or until a pair or a disc is too fast.
 
     Returns:
         The number of rows written; whether all events up to the time limit have happened; the product of relative
@@ -144,7 +144,7 @@ def advance_trials(discs, trials, effects, limits, epoch_start, batch, counters)
 
 
 class MonteCarlo(Method):
-    """The Monte Carlo method, with the records and effects of the current epoch."""
+    """The Monte Carlo method, with the discs and effects of the current epoch."""
 
     has_positions = False
 
@@ -152,7 +152,7 @@ class MonteCarlo(Method):
         """Set the seed and v_ref, the relative speed at which a pair of the largest discs is always accepted.
 
         v_ref: length/time. one_sided: whether all impact parameters have the same sign. rises: whether v_ref is raised
-        when it is too small, instead of ending the run.
+        when it is too small; otherwise the run then ends with an error.
         """
         self._seed, self._v_ref, self._one_sided = seed, v_ref, one_sided
         self._extra_state: dict[Column, float] = {V_REF: v_ref} if rises else {}
@@ -176,7 +176,7 @@ class MonteCarlo(Method):
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Try pairs, see `advance_trials`; UserError if a pair is too fast for a given v_ref."""
+        """Try pairs (see `advance_trials`); raise UserError if a pair is too fast for the v_ref of the scene."""
         v_ref = self.v_ref
         trials = Trials(
             epoch_key(self._seed, epoch_start),
@@ -191,19 +191,19 @@ class MonteCarlo(Method):
         if excess > 0:
             needed = excess / self._reach
             raise UserError(
-                f"run.v_ref: too small: an acceptance of {needed / v_ref:.4g} in trial {counters[0].trials} "
-                f"(got {v_ref:.6g}; allowed >= {needed:.6g}, better {1.25 * needed:.3g})"
+                f"run.v_ref: too small: an acceptance probability of {needed / v_ref:.4g} in trial "
+                f"{counters[0].trials} (got {v_ref:.6g}; allowed >= {needed:.6g}, better {1.25 * needed:.3g})"
             )
         if square > 0:
             self.extra_state[V_REF] = RAISED * math.sqrt(square)
         return rows, reached
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Always 0: discs without positions do not overlap."""
+        """Return 0: discs without positions do not overlap."""
         return 0.0
 
 
 def epoch_key(seed: int, epoch_start: float) -> np.uint64:
-    """Key of an epoch's random numbers, from the seed and the time of the epoch's start."""
+    """Return the key of an epoch's random numbers, computed from the seed and the time at which the epoch begins."""
     words = np.array([seed, np.float64(epoch_start).view(np.uint64)], np.uint64)
     return np.random.SeedSequence(words.view(np.uint32).tolist()).generate_state(1, np.uint64)[0]

@@ -2,8 +2,8 @@
 
 The laws of motion and collision are the same as in the other methods, compiled for each number type of
 `physics.arithmetic`. Simultaneous events are ordered as in `brute_force`. All pairs are searched for the next event;
-because a contact depends on two records only, it is computed again only when one of these has changed. Local times
-count from the start of the run, which is a single epoch.
+because the time of a contact depends only on the states of its two discs, it is computed again only when one of these
+has changed. Local times count from the start of the run, which is a single epoch.
 """
 
 from collections import namedtuple
@@ -30,7 +30,7 @@ PLAIN = Effects()
 
 
 Disc = namedtuple("Disc", "x y vx vy t r m")
-"""A disc, with the numbers of `DISC` in a single number type."""
+"""A disc, with the fields of `DISC` as numbers of a single type."""
 
 
 class Columns(NamedTuple):
@@ -53,7 +53,7 @@ class Next(NamedTuple):
     """The next event of each disc.
 
     Attributes:
-        time: column of local times, time.
+        time: column of local times.
         partner: (N,) i4, id of the partner, -1 - k for side k, or NO_PARTNER.
     """
 
@@ -71,7 +71,7 @@ def column_of(values: np.ndarray, precision: str) -> np.ndarray:
 
 
 def make_columns(gas: Gas, precision: str) -> Columns:
-    """Columns of the discs of a gas at local time 0; precision: as in `column_of`."""
+    """Make the columns of the discs of a gas at local time 0; precision: as in `column_of`."""
     arrays = (*gas.position.T, *gas.velocity.T, np.zeros(len(gas)), gas.radius, gas.mass, np.array(gas.box))
     return Columns(*(column_of(values, precision) for values in arrays))
 
@@ -108,7 +108,7 @@ def find_next(c, upcoming, i):
 
 @inline
 def offer(c, upcoming, i, j):
-    """Store the contact of disc i with disc j, whose record has changed, if it is the next event of disc i."""
+    """Store the contact of disc i with disc j, whose state has changed, if it is the next event of disc i."""
     time, best = pair_time(c, i, j), load(upcoming.time, i)
     if time < best or (j < upcoming.partner[i] and time <= best):
         store(upcoming.time, i, time)
@@ -186,7 +186,7 @@ def advance_precisely(c, upcoming, discs, effects, limits, epoch_start, batch, c
     """Process events up to the limits, or until the batch is full; discs are in order of id.
 
     Returns the number of rows written, and whether all events up to the time limit have happened. discs: the discs
-    rounded to float64, updated.
+    rounded to float64, which are updated.
     """
     record, ids, _ = discs
     rows = events = collisions = 0
@@ -225,7 +225,7 @@ def advance_precisely(c, upcoming, discs, effects, limits, epoch_start, batch, c
 
 @njit
 def turn_back(c, time):
-    """Move all discs to a local time, reverse their velocities, and let local times count from there."""
+    """Move all discs to a local time, reverse their velocities, and restart local times from 0 there."""
     end = number(time, load(c.t, 0))
     for i in range(c.t.shape[0]):
         move(c, i, end)
@@ -238,7 +238,7 @@ class PreciseBruteForce(Method):
     """The brute-force method in multiprecision arithmetic.
 
     Attributes:
-        columns: the discs with all their digits.
+        columns: the discs in full precision.
     """
 
     single_epoch = True
@@ -246,7 +246,7 @@ class PreciseBruteForce(Method):
     def __init__(self, precision: str, start: Columns | None = None) -> None:
         """Set the precision: "float32", "float64" or "double-double".
 
-        start: the discs at the start of the run, if they have more digits than a gas can store.
+        start: the discs at the start of the run, if their precision is higher than a gas can store.
         """
         self._precision, self._start = precision, start
 
@@ -261,7 +261,7 @@ class PreciseBruteForce(Method):
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Process events, see `advance_precisely`."""
+        """Process events; see `advance_precisely`."""
         return advance_precisely(
             self.columns, self._upcoming, self.discs, self._effects, limits, epoch_start, batch, counters
         )

@@ -1,4 +1,4 @@
-"""Arrays of the engines: a 64-byte record for each disc. Their order in memory differs from the order of ids."""
+"""Arrays of the engines: a 64-byte record of the state of each disc, in an order that may differ from that of ids."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ DISC = np.dtype(
         ("x", "f8"), ("y", "f8"), ("vx", "f8"), ("vy", "f8"),  # position, length; velocity, length/time
         ("t", "f8"),  # local time of the record, from the start of the epoch
         ("r", "f8"), ("m", "f8"),  # radius, length; mass
-        ("crossed_x", "i2"), ("crossed_y", "i2"),  # boundary crossings since that time, see `periodic`
+        ("crossed_x", "i2"), ("crossed_y", "i2"),  # boundary crossings since that time (see `periodic`)
         ("count", "u4"),  # events of this disc in this epoch
     ],
     align=True,
@@ -38,7 +38,7 @@ COUNTERS = np.dtype(
 
 
 class InelasticCollapseError(Exception):
-    """A disc has endless collisions at one instant."""
+    """A disc collides endlessly at one instant."""
 
 
 class Discs(NamedTuple):
@@ -56,7 +56,7 @@ class Discs(NamedTuple):
 
 
 def make_discs(gas: Gas, order: np.ndarray) -> Discs:
-    """Records of a gas at local time 0; order: (N,) ids in memory order."""
+    """Make the records of a gas at local time 0; order: (N,) ids in memory order."""
     record = aligned(len(gas), DISC)
     fields = record.view(np.ndarray)  # access to the fields of a record array is far slower
     columns = (*gas.position.T, *gas.velocity.T, gas.radius, gas.mass)
@@ -69,10 +69,10 @@ def make_discs(gas: Gas, order: np.ndarray) -> Discs:
 
 @inline
 def check_clock(time, now, events_at_this_time, n):
-    """Number of consecutive events at the same instant, after an event at local time `time` follows an event at `now`.
+    """Return the number of consecutive events at one instant, when an event at `time` follows an event at `now`.
 
-    InelasticCollapseError if there are so many that they seem endless, ValueError if time runs backwards. n: number of
-    discs.
+    Both times are local. n: number of discs. Raises InelasticCollapseError if there are so many events at one instant
+    that they seem endless, and ValueError if time runs backwards.
     """
     if time < now:
         raise ValueError("time ran backwards")
@@ -85,7 +85,7 @@ def check_clock(time, now, events_at_this_time, n):
 
 @inline
 def add_to_counters(counter, events, disc_collisions, thermostat_collisions, now, events_at_this_time):
-    """Add the events of a kernel call to the counters; events of no other kind are wall hits.
+    """Add the events of a kernel call to the counters; all events of other kinds are wall hits.
 
     now: local time of the last event. events_at_this_time: number of consecutive events at that time.
     """

@@ -1,4 +1,4 @@
-"""Effect of an event on the records: discs, or a disc and a wall, move to its time and collide, and it is counted."""
+"""Resolution of events: the discs involved are moved to the time of the event and collide, and the event is counted."""
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def record_wall_energy(wall, received, lost, wall_energy, dissipated, thermal):
 
 @inline
 def finish(disc, disc_id, time, restitution, periodic):
-    """Wrap a disc's record after an event, store the time of the collision, and count the event."""
+    """Finish an event of a disc: wrap its position, store the time of the collision, and count the event."""
     if periodic is not None:
         wrap(disc, disc_id, periodic)
     if restitution is not None:
@@ -75,11 +75,11 @@ def resolve_pair(a, b, a_id, b_id, time, images, effects):
 
 @inline
 def collide_and_record(a, b, a_id, b_id, images, shear, dissipated, effects):
-    """Collide two discs whose records are at the time of contact, and record the energy dissipated.
+    """Collide two discs that are at the time of contact, and record the energy dissipated.
 
-    Through sheared sides the discs collide in the frame half-way between their two frames. The moving image of a
-    partner beyond the top does work equal to u times the momentum transferred through the top, which is recorded too.
-    Returns the velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
+    Across sheared sides, the discs collide in the frame half-way between their two frames. The image of a partner
+    beyond the top moves at speed u and does work equal to u times the momentum transferred through the top; this work
+    is also recorded. Returns the velocities (a_vx, a_vy, b_vx, b_vy) before the collision, length/time.
     """
     before = a.vx, a.vy, b.vx, b.vy
     if shear is not None:
@@ -101,7 +101,7 @@ def collide_and_record(a, b, a_id, b_id, images, shear, dissipated, effects):
 
 @inline
 def arrive(disc, time, flow, gravity):
-    """Move a disc's record to the local time at which it meets a wall or the heat bath."""
+    """Move a disc to the local time at which it meets a wall or the heat bath, and record the flight."""
     if flow is not None:
         record_flight(flow, disc, time, gravity)
     advance(disc, time, gravity)
@@ -109,9 +109,10 @@ def arrive(disc, time, flow, gravity):
 
 @inline
 def bounce(disc, disc_id, nx, ny, wall, time, effects):
-    """Reflect or emit a disc at a wall at rest, and record the energies; the record must be at the time of contact.
+    """Reflect a disc at a wall at rest, or emit it from a thermal wall, and record the energies.
 
-    wall: number of the wall. Returns the momentum (px, py) that the disc received, mass length/time.
+    The disc must be at the time of contact. wall: number of the wall. Returns the momentum (px, py) that the disc
+    received, mass length/time.
     """
     energy = energy_of(disc, disc_id, effects.rotation)
     vx = disc.vx
@@ -125,9 +126,9 @@ def bounce(disc, disc_id, nx, ny, wall, time, effects):
 
 @inline
 def absorb(disc, disc_id, wall, time, effects):
-    """Absorb a disc at a wall, which takes its whole energy and momentum; the record must be at the time of contact.
+    """Absorb a disc at a wall, which takes up all its energy and momentum.
 
-    Returns the momentum (px, py) that the disc received, mass length/time.
+    The disc must be at the time of contact. Returns the momentum (px, py) that it received, mass length/time.
     """
     finish(disc, disc_id, time, effects.restitution, effects.periodic)
     place = place_in_space(disc, disc_id, effects.periodic)
@@ -176,7 +177,7 @@ def resolve_side(disc, disc_id, side, time, effects):
 
 @inline
 def meet_side(disc, disc_id, side, time, shear, vibration, flow, effects):
-    """Do the work of `resolve_side`; the record must be at the time of contact."""
+    """Do the work of `resolve_side` for a disc that is at the time of contact."""
     if shear is not None:
         cross_side(disc, disc_id, side, shear, effects)
         return
@@ -191,7 +192,7 @@ def meet_side(disc, disc_id, side, time, shear, vibration, flow, effects):
 
 @inline
 def cross_side(disc, disc_id, side, shear, effects):
-    """Move a disc that has reached a sheared side to the opposite side; this does not begin a contact duration."""
+    """Move a disc that has reached a sheared side to the opposite side; this does not start a new contact duration."""
     vx = disc.vx
     rows = cross(disc, side, shear)
     add_energy(effects.wall_energy, side, 0.5 * disc.m * (disc.vx - vx) * (disc.vx + vx))
@@ -263,7 +264,7 @@ def resolve_stop(k, time, piston):
 
 @inline
 def resolve_thermostat_collision(disc, disc_id, time, thermostat, effects):
-    """Give a disc a new velocity from the heat bath at a local time; this does not begin a contact duration."""
+    """Give a disc a new velocity from the heat bath at a local time; this does not start a new contact duration."""
     if thermostat is not None:
         arrive(disc, time, effects.flow, effects.gravity)
         energy = energy_of(disc, disc_id, effects.rotation)

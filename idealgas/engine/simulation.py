@@ -30,11 +30,11 @@ from idealgas.physics.stress import StressAccumulator
 from idealgas.state import Gas
 
 TRAJECTORY = 4
-"""Version of the trajectory. Raise it by hand whenever a change to the program changes the log of a scene."""
+"""Version of the trajectories. Raise it by hand whenever a change to the program changes the log of a scene."""
 
 
 class Stop(NamedTuple):
-    """The end of a run: a time and numbers of events, of which the first to be reached ends it.
+    """The end of a run: a time and numbers of events; the run ends when the first of them is reached.
 
     Attributes:
         time: time since the start of the run.
@@ -61,8 +61,8 @@ class Totals(NamedTuple):
         wall_hits: collisions of discs with walls, including pistons.
         thermostat_collisions: collisions of discs with the heat bath.
         steered: discs whose velocity or acceleration was changed from outside.
-        escaped: discs that have left the gas through absorbing walls; each last hit also counts as a wall hit.
-        trials: pairs tried by Monte Carlo.
+        escaped: discs that have left the gas through absorbing walls; the final hit of each also counts as a wall hit.
+        trials: pairs tried in the Monte Carlo method.
     """
 
     events: int = 0
@@ -86,10 +86,10 @@ class Simulation:
 
     Attributes:
         gas: the gas at the start of the epoch.
-        method: method that finds the events; no other simulation may use it.
+        method: method that finds the events; it cannot be shared with another simulation.
         effects: parameters and state of the effects; the simulation changes the state.
         time: time at the start of the epoch.
-        epoch: number of the epoch, from 0.
+        epoch: number of the epoch, starting at 0.
         totals: numbers of events up to the start of the epoch.
         steered: ids of the discs whose velocity or acceleration was changed from outside at the start of the epoch.
     """
@@ -142,7 +142,7 @@ class Simulation:
             The number of rows filled.
 
         Raises:
-            UserError: a disc has endless collisions at one instant, or a sum exceeds its range.
+            UserError: a disc collides endlessly at one instant, or a sum exceeds its range.
         """
         done = self.counters
         end = min(self.length, stop.time - self.time, LATEST)
@@ -166,7 +166,7 @@ class Simulation:
     ) -> Iterator[int]:
         """Advance to the stop or the pause, through as many epochs as necessary.
 
-        Yields the number of rows filled, from the first row of the batch on, after each call of `advance`.
+        After each call of `advance`, yields the number of rows filled, which begin at the first row of the batch.
         """
         while not self.finished(stop):
             yield self.advance(stop, batch, events, pause)
@@ -214,7 +214,7 @@ class Simulation:
 
     @property
     def reached(self) -> float:
-        """Time at which the last `advance` ended: the time limit or, if it was not reached, the last event."""
+        """Time at which the last `advance` ended: the time limit or, if this was not reached, the last event."""
         return self.time + self._local_now
 
     def state(self) -> tuple[Gas, Effects]:
@@ -227,7 +227,7 @@ class Simulation:
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
-        """Return an error of a kernel, which cannot format the time, with the time of the last event."""
+        """Return the error of a kernel with the time of the last event, because a kernel cannot format the time."""
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(

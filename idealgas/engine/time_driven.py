@@ -1,10 +1,10 @@
-"""The time-driven method: all discs move by a time step, then those that overlap or are outside the box collide.
+"""The time-driven method: all discs move for a time step; then discs that overlap or protrude from the box collide.
 
-It serves for comparison with the event-driven method; its errors grow with the step. A contact is detected late, by
-half a step on average, and with a rotated line of centres. It is missed if no step ends while the discs overlap and
-still approach. The method is implemented as fast as possible: near pairs are listed with the help of cells, and the
-list is used until two discs may have approached by `skin` (Verlet, Phys. Rev. 159, 98 (1967); Allen & Tildesley,
-Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
+The method serves for comparison with the event-driven method; its errors grow with the step. A contact is detected
+late, by half a step on average, and with a rotated line of centres. It is missed if no step ends while the discs
+overlap and still approach each other. The implementation is as fast as possible: near pairs are listed with the help of
+cells, and the list is used until two discs may have approached each other by `skin` (Verlet, Phys. Rev. 159, 98 (1967);
+Allen & Tildesley, Computer Simulation of Liquids, 2nd ed. (2017), ch. 5.3).
 """
 
 import math
@@ -24,7 +24,7 @@ from idealgas.physics.periodic import is_periodic, nearest_images, periodic_axes
 from idealgas.state import Gas
 
 U = np.uintp
-NEAR = 3.0  # mean number of discs within the reach of a list; the fastest choice in benchmarks
+NEAR = 3.0  # mean number of discs in the neighbourhood that is listed for a disc; the fastest choice in benchmarks
 LEAST_SKIN = 0.2  # smallest skin, in diameters
 CELLS_PER_DISC = 4  # largest number of cells per disc
 
@@ -32,7 +32,7 @@ STEP = np.dtype(
     [
         ("dt", "f8"),  # length of a step, time
         ("number", "i8"),  # number of the step, counted from time 0
-        ("cursor", "i8"),  # number of discs, and then pairs, that are finished in this step
+        ("cursor", "i8"),  # number of discs, and after these of pairs, that are finished in this step
         ("pairs", "i8"),  # number of listed pairs
         ("furthest", "f8"),  # square of the largest displacement of a disc in this step, length²
         ("spent", "f8"),  # distance by which two discs may have approached since the pairs were listed, length
@@ -64,7 +64,7 @@ class Nearby(NamedTuple):
 
 
 def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
-    """Cells and an empty list of pairs for a gas; periodic: whether the sides along x and along y are periodic."""
+    """Make cells and an empty list of pairs for a gas; periodic: whether the sides along x and y are periodic."""
     n, widest = len(gas), 2.0 * float(gas.radius.max())
     skin = max(math.sqrt(NEAR * gas.area / (math.pi * n)) - widest, LEAST_SKIN * widest)
     size = max(widest + skin, math.sqrt(gas.area / (CELLS_PER_DISC * n)))
@@ -80,7 +80,7 @@ def make_nearby(gas: Gas, periodic: tuple[bool, bool]) -> Nearby:
 
 @inline
 def sort_into_cells(record, ids, box, near, periodic):
-    """Counting sort of the discs by cell; discs outside the box belong to the nearest cell."""
+    """Sort the discs by cell with a counting sort; discs outside the box belong to the nearest cell."""
     near.first[:] = 0
     for i in range(record.shape[0]):
         disc = record[U(i)]
@@ -99,7 +99,7 @@ def sort_into_cells(record, ids, box, near, periodic):
 
 @inline
 def neighbour_cell(near, column, row, k, periodic):
-    """Index of neighbour k of a cell, of the four neighbours (k = 0 to 3) to the right and above; -1 if it has none."""
+    """Index of neighbour k (0 to 3) of a cell, one of the four to the right and above; -1 if it does not exist."""
     column += 1 if k == 0 else k - 2
     row += 0 if k == 0 else 1
     if is_periodic(periodic, False) and near.columns > 1:
@@ -112,7 +112,7 @@ def neighbour_cell(near, column, row, k, periodic):
 
 @njit
 def list_pairs(record, ids, box, near, periodic):
-    """List the pairs of discs with a gap below the skin, as far as there is room; return the number of such pairs."""
+    """List pairs of discs with a gap below the skin until the list is full; return the number of all such pairs."""
     sort_into_cells(record, ids, box, near, periodic)
     count = 0
     for c in range(near.columns * near.rows):
@@ -152,7 +152,7 @@ def side_beyond(disc, box, periodic):
 
 @inline
 def fly(record, step, box, time, effects):
-    """Move the discs from the cursor on to a local time, up to the first that protrudes beyond a side.
+    """Move the discs, starting at the cursor, to a local time, and stop at the first that protrudes beyond a side.
 
     Returns that side, or -1 if no disc protrudes.
     """
@@ -252,7 +252,7 @@ def advance_steps(discs, near, step, effects, limits, epoch_start, batch, counte
 
 
 def first_step_after(time: float, dt: float) -> int:
-    """Number of the first step that ends after a time; step k ends at the float nearest to k dt."""
+    """Return the number of the first step that ends after a time; step k ends at the float nearest to k dt."""
     number = math.floor(time / dt)  # because the quotient is rounded, this may be off by 1 in either direction
     while number * dt > time:
         number -= 1
@@ -262,7 +262,7 @@ def first_step_after(time: float, dt: float) -> int:
 
 
 class TimeDriven(Method):
-    """The time-driven method, with the records and effects of the current epoch; steps end at multiples of dt."""
+    """The time-driven method, with the discs and effects of the current epoch; steps end at multiples of dt."""
 
     def __init__(self, dt: float) -> None:
         """Set the length of a step, dt (time)."""
@@ -271,7 +271,7 @@ class TimeDriven(Method):
         self._overlap = 0.0
 
     def start(self, gas: Gas, effects: Effects) -> None:
-        """Begin an epoch; it may begin within a step, as the discs just continue to move."""
+        """Begin an epoch. It may begin within a step, because the discs then simply continue to move."""
         super().start(gas, effects)
         self._near = make_nearby(gas, periodic_axes(effects.periodic))
         list_pairs(*self.discs, self._near, effects.periodic)
@@ -285,7 +285,7 @@ class TimeDriven(Method):
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Take steps, see `advance_steps`."""
+        """Take steps; see `advance_steps`."""
         step = self._step[0]
         if step.number == 0:
             step.number = first_step_after(epoch_start, step.dt)
@@ -294,5 +294,5 @@ class TimeDriven(Method):
         return advance_steps(self.discs, self._near, self._step, self._effects, limits, epoch_start, batch, counters)
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Deepest overlap in a collision of this epoch (at its start: the previous one), over the sum of the radii."""
+        """Deepest overlap in a collision in this epoch or, at its start, in the previous one, over the sum of radii."""
         return self._overlap if self._step[0].number == 0 else float(self._step[0].deepest)

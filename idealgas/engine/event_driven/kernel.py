@@ -230,7 +230,7 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
             change = np.int64(prediction.crossing_code)
             cross_cell(record, state, i, change, effects.periodic)
             continue
-        # 5. The event of a pair is also removed from the partner's leaf. For pistons this is checked in step 7.
+        # 5. The event of a pair is also removed from the partner's leaf. Stale contacts of pistons are found in step 7.
         of_piston = i >= record.shape[0]
         tied = False
         if at_contact and prediction.partner >= 0 and not of_piston:

@@ -18,7 +18,7 @@ PREDICTION = np.dtype(
         ("contact", "f8"),  # local time of the earliest contact with a disc or a wall segment
         ("crossing", "f8"),  # local time at which the disc leaves its cell, meets a side of the box or the heat bath
         ("partner", "i4"),  # index of the partner, -1 for none, -2 - k for wall segment k
-        ("partner_count", "u4"),  # the partner's count at the time of prediction; if it has changed, the contact is stale
+        ("partner_count", "u4"),  # the partner's count when predicted; if it has changed, the contact is stale
         ("image_x", "i2"),  # box lengths by which the partner or the segment is shifted, if sides are periodic
         ("image_y", "i2"),
         ("crossing_code", "i4"),  # 0-3: enters the cell left, right, below, above; 4-7: meets that side; or THERMOSTAT

@@ -85,7 +85,9 @@ def test_seeds_differ_and_epochs_do_too():
 
 def test_too_small_a_reference_speed_is_named_with_the_one_that_is_needed():
     made = simulation(v_ref=2.0)
-    with pytest.raises(UserError, match=r"^run\.v_ref: too small: an acceptance of 1\.\d+ in trial \d+ ") as caught:
+    with pytest.raises(
+        UserError, match=r"^run\.v_ref: too small: an acceptance probability of 1\.\d+ in trial \d+ "
+    ) as caught:
         record(made, Stop(trials=100_000))
     message = str(caught.value)
     assert "\n" not in message
