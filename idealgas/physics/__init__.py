@@ -1,7 +1,8 @@
-"""The laws of motion and of collisions, one file per law: pure functions that run compiled or as plain Python.
+"""The laws of motion and of collisions, one file per law; the functions run compiled or as plain Python.
 
-Lengths, times and masses are in the units of the scene; temperatures are energies (k_B = 1). A `disc` is a record with
-the position x, y (length), velocity vx, vy (length/time), radius r and mass m of a disc at the local time t of the
-record, which counts from the start of the epoch. `disc_id`, `a_id` and `b_id` are ids of discs. If the scene does not
-have an effect, the argument for that effect is None.
+Lengths, times and masses are in the units of the scene; temperatures are energies (k_B = 1). The argument `disc` is the
+stored state of a disc, a NumPy record: position x, y (length), velocity vx, vy (length/time), radius r, mass m, and the
+local time t at which the disc has this position and velocity. Local times count from the start of the epoch. The
+arguments `disc_id`, `a_id` and `b_id` are ids of discs. If the scene does not have an effect, the argument for that
+effect is None.
 """

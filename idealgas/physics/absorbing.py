@@ -1,6 +1,7 @@
 """Walls that absorb discs: a disc that touches such a wall leaves the gas.
 
-From then on its coordinates are nan and its velocity is 0; it is in no cell and takes part in no event.
+Once a disc has left, its coordinates are nan and its velocity is 0; the disc belongs to no cell and takes part in no
+event.
 """
 
 import math
@@ -16,7 +17,7 @@ U = np.uintp
 def has_left(disc, absorbing):
     """Whether a disc has left the gas.
 
-    absorbing: (segments,) bool, whether each wall segment absorbs discs; None if none does.
+    absorbing: (segments,) bool, whether each wall segment absorbs discs; None if no segment does.
     """
     if absorbing is not None:
         return disc.x != disc.x
@@ -24,7 +25,10 @@ def has_left(disc, absorbing):
 
 
 def inside(x: np.ndarray, absorbing: np.ndarray | None) -> np.ndarray | slice:
-    """Mask (N,) of the discs in the gas, from their coordinates x (N,), length; every disc if no wall absorbs discs."""
+    """Mask (N,) of the discs that are still in the gas; a slice of all discs if no wall absorbs discs.
+
+    x: (N,) x coordinates of the discs, length; nan for discs that have left.
+    """
     return slice(None) if absorbing is None else ~np.isnan(x)
 
 
@@ -36,7 +40,7 @@ def mass_in_gas(disc, absorbing):
 
 @inline
 def leave_gas(disc, disc_id, rotation):
-    """Mark a disc as having left the gas, in its record."""
+    """Mark a disc as having left the gas."""
     disc.x = disc.y = math.nan
     disc.vx = disc.vy = 0.0
     if rotation is not None:

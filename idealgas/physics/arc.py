@@ -1,7 +1,7 @@
-"""Contact of a disc with an arc of a circle: with its outer and inner face, and with its two ends.
+"""Contact of a disc with the outer face, the inner face or an end of an arc of a circle.
 
-An arc consists of a wall segment, its chord, and a record ARC. In all functions x and y are the disc's position
-relative to the centre of the arc, length. A whole circle has no ends.
+An arc is stored as a wall segment, which is its chord, and an ARC record. Unless stated otherwise, x and y are the
+position of the disc relative to the centre of the arc, length. A whole circle has no ends.
 """
 
 import math
@@ -22,31 +22,37 @@ ARC = np.dtype(
         ("x", "f8"), ("y", "f8"),  # centre relative to the start of the segment, length
         ("radius", "f8"),  # length; 0 for a straight wall
         ("mx", "f8"), ("my", "f8"),  # unit vector from the centre to the middle of the arc
-        ("cosine", "f8"),  # cosine of the angle from the middle to an end; CIRCLE for a circle
+        ("cosine", "f8"),  # cosine of the angle from the middle of the arc to an end; CIRCLE for a circle
         ("turn", "f8"),  # 1 if the arc runs counterclockwise from its start to its end, otherwise -1
     ],
     align=True,
 )  # fmt: skip
 
 GLIDE = 2.0**-26
-"""Shortest chord inside an arc, in units of its radius; the depth of a shorter chord is below the rounding error."""
+"""Shortest flight along the inner face of an arc, in units of the arc's radius.
+
+The distance between a shorter chord and the arc is below the rounding error.
+"""
 
 U = np.uintp
 
 
 @inline
 def faces_arc(x, y, distance, arc):
-    """Whether the point of the circle nearest to (x, y) is on the arc; distance: distance of (x, y) from the centre."""
+    """Whether the point nearest to (x, y) on the whole circle lies on the arc.
+
+    distance: distance between (x, y) and the centre, length.
+    """
     return x * arc.mx + y * arc.my > distance * arc.cosine
 
 
 @inline
 def toggles(x, y, along_x, along_y, arc):
-    """Whether a ray from a point to the right crosses a wall an odd number of times; numbers or arrays.
+    """Whether a ray that runs to the right from a point crosses a wall an odd number of times; numbers or arrays.
 
     x, y: position of the point relative to the wall's start, length. along_x, along_y: position of the wall's end
     relative to its start, length. arc: NO_ARC for a straight wall. For an arc, the result for its chord is inverted in
-    the area between the chord and the arc.
+    the region between the chord and the arc.
     """
     crosses = ((y < 0.0) != (along_y > y)) & ((x * along_y < y * along_x) == (along_y > 0.0))
     away_x, away_y = x - arc.x, y - arc.y
@@ -58,10 +64,10 @@ def toggles(x, y, along_x, along_y, arc):
 def straight_exit_delay(x, y, vx, vy, reach, inside):
     """Time until a point in straight flight leaves the circle of radius `reach` around the origin, or NEVER.
 
-    x, y, reach: length. vx, vy: length/time. The delay is 0 for a point on the circle, or beyond it, that moves
-    outwards. inside: whether a point beyond the circle belongs inside and is there only because of rounding; such a
-    point leaves when it is at least as far out again as it is now. The roots have no cancellation for a point near the
-    circle.
+    x, y, reach: length. vx, vy: length/time. The delay is 0 for a point on or beyond the circle that moves outwards.
+    inside: whether a point beyond the circle belongs inside and is outside only because of rounding. If the path of
+    such a point misses the circle, the point leaves when it is again as far from the origin as it is now. For a point
+    near the circle, the roots are computed without cancellation.
     """
     square = vx * vx + vy * vy
     if square == 0.0:
@@ -71,7 +77,7 @@ def straight_exit_delay(x, y, vx, vy, reach, inside):
     cross = vx * y - vy * x
     discriminant = square * (reach * reach) - cross * cross
     if gap <= 0.0:
-        discriminant = max(discriminant, approach * approach - square * gap)  # equal, but rounding keeps this one >= 0
+        discriminant = max(discriminant, approach * approach - square * gap)  # same value, but never below 0
     if approach > 0.0:
         return max(-gap, 0.0) / (math.sqrt(max(discriminant, 0.0)) + approach)
     if discriminant < 0.0:
@@ -83,9 +89,10 @@ def straight_exit_delay(x, y, vx, vy, reach, inside):
 
 @inline
 def crossing_delay(x, y, disc, reach, inner, inside, gravity, after):
-    """Time until a disc's centre comes within `reach` of the arc's centre or, if inner, leaves this circle, or NEVER.
+    """Time until a disc's centre enters a circle of radius `reach` or, if inner, leaves it; NEVER if it does not.
 
-    With gravity, only a crossing after the time `after` counts.
+    x, y: position of the disc relative to the centre of this circle, length. With gravity, only a crossing after the
+    time `after` counts.
     """
     if gravity is not None:
         if inner:
@@ -108,21 +115,22 @@ def changes_nothing(x, y, disc, disc_id, restitution):
 def face_delay(x, y, disc, disc_id, arc, inner, gravity, restitution):
     """Time until a disc touches the inner or the outer face of an arc; NEVER if it does not.
 
-    A disc touches the face on whose side its centre is, when its centre crosses a circle of radius `reach`:
+    A disc touches the face that is on the side of its centre when its centre crosses a circle of radius `reach`:
 
         centre of
         the arc        inner face ║ outer face
            ●───────────────┼──────║──────┼──────────→ distance of the disc's centre
            0             R - r    R    R + r
-                      leaves →         ← comes within
+                      leaves →         ← enters
 
-    and if the nearest point of the whole circle is on the arc. If it is not, the disc may meet the arc later. The
-    squared distance is a polynomial of time, whose graph crosses reach² in alternating directions. In straight flight
-    its degree is 2, so it crosses once in each direction: there is no other contact. On a parabola its degree is 4, so
-    it crosses at most twice in each direction: the second crossing has to be tried too.
+    The crossing is a contact if the nearest point of the whole circle lies on the arc. If it does not, the disc may
+    still touch the arc at a later crossing. The squared distance is a polynomial in time that crosses reach²
+    alternately upwards and downwards. In straight flight its degree is 2, so there is at most one crossing in each
+    direction and no later contact. On a parabola its degree is 4, so there are at most two crossings in each direction,
+    and the second one must be tried too.
 
-    A touching disc that moves along the outer face counts as reflected; a touching disc that moves along the inner face
-    touches it again.
+    A touching disc that moves along the outer face counts as already reflected; a touching disc that moves along the
+    inner face touches that face again.
     """
     reach = arc.radius - disc.r if inner else arc.radius + disc.r
     if reach <= 0.0:
@@ -149,19 +157,19 @@ def face_delay(x, y, disc, disc_id, arc, inner, gravity, restitution):
 
 @inline
 def leaves_arc(delay, centre, end, other, disc, ax, ay, arc):
-    """Whether a disc that touches an end after `delay` moves away from the arc's nearest point, which is not this end.
+    """Whether, when a disc touches an end, another point of the arc is nearer and the disc moves away from that point.
 
-    centre, end, other: position (x, y) of the disc relative to the centre of the arc, to this end and to the other end,
-    length. ax, ay: acceleration, length/time².
+    delay: time until the disc touches the end. centre, end, other: positions (x, y) of the disc relative to the centre
+    of the arc, to this end and to the other end, length. ax, ay: acceleration, length/time².
 
     This happens only if a gate has closed on the disc:
 
              ·↗
         ───────────────●
 
-    The centre · of the disc is less than r above the wall. It moves away from the wall, but towards the end ●. When it
-    comes within r of the end, its nearest point is still the point of the wall below it, from which it moves away: it
-    leaves the wall and does not bounce off the end.
+    The centre · of the disc is less than r above the wall and moves away from the wall, but towards the end ●. When the
+    centre comes within r of the end, the nearest point of the wall is still the point below the centre. Because the
+    disc moves away from that point, it leaves the wall and does not bounce off the end.
     """
     x, y = parabola(centre[0], disc.vx, ax, delay), parabola(centre[1], disc.vy, ay, delay)
     vx, vy = velocity_after(disc.vx, ax, delay), velocity_after(disc.vy, ay, delay)
@@ -179,8 +187,8 @@ def leaves_arc(delay, centre, end, other, disc, ax, ay, arc):
 def arc_end_delay(centre, end, other, disc, disc_id, arc, gravity, restitution):
     """Time until a disc touches an end of an arc; NEVER if it does not.
 
-    The arguments are as in `leaves_arc`. The disc touches an end, which is a point, when its centre comes within r of
-    it, unless it leaves the arc. As at a face, there is a second approach to try only on a parabola.
+    The arguments are as in `leaves_arc`. The disc touches the end when its centre comes within r of this point, unless
+    the disc is leaving the arc at that moment. A second approach is possible only on a parabola, where it is tried too.
     """
     ax = ay = 0.0
     if gravity is not None:
@@ -216,7 +224,7 @@ def arc_contact(disc, disc_id, segment, arc, gravity, restitution, periodic, ima
 
 @inline
 def arc_frame(disc, segment, arc, periodic, images):
-    """Do the work of `wall_frame` for an arc."""
+    """Return the result of `wall_frame` for an arc."""
     start_x, start_y = shift_by_images(disc.x - segment.x, disc.y - segment.y, periodic, images)
     x, y = start_x - arc.x, start_y - arc.y
     distance = math.sqrt(x * x + y * y)
@@ -238,8 +246,9 @@ def arc_frame(disc, segment, arc, periodic, images):
 def wall_frame(disc, k, segments, arcs, passage, periodic, images):
     """Directions at the contact of a disc with wall k, a segment or an arc.
 
-    Returns the unit normal (nx, ny) towards the disc, whether it touches an end, the unit tangent (tx, ty) of the face
-    that it touches, and 1 if that face is on the left of the wall, seen from its start, or -1 if it is on the right.
+    Returns the unit normal (nx, ny) towards the disc; whether the disc touches an end; the unit tangent (tx, ty) of the
+    face that the disc touches; and 1 if that face is on the left of the wall as seen from the wall's start, -1 if it is
+    on the right.
     """
     segment = segments[U(k)]
     if arcs is not None and arcs[U(k)].radius > 0.0:
@@ -254,7 +263,7 @@ def wall_frame(disc, k, segments, arcs, passage, periodic, images):
 def wall_contact(disc, disc_id, k, arcs, passage, images, effects):
     """Local time at which a disc touches wall k, a segment or an arc; NEVER if it does not.
 
-    passage: from which side the wall lets the disc pass, see `permeable`; an arc lets it pass from both or from none.
+    passage: sides from which the wall lets the disc pass, see `permeable`; for an arc, both sides or neither.
     """
     if passage is not None and passage == OPEN:
         return NEVER
@@ -267,7 +276,10 @@ def wall_contact(disc, disc_id, k, arcs, passage, images, effects):
 
 @inline
 def misses_wall(disc, k, segments, arcs, gravity, periodic, images):
-    """Whether a disc certainly does not touch wall k; faster than `wall_contact`. Always False for an arc."""
+    """Whether it is certain that a disc does not touch wall k; always False for an arc.
+
+    This test is faster than `wall_contact`.
+    """
     if arcs is not None and arcs[U(k)].radius > 0.0:
         return False
     return misses_segment(disc, segments[U(k)], gravity, periodic, images)

@@ -1,4 +1,4 @@
-"""Geometry of arcs: arcs through three points, nearest points, and polygons by which arcs are drawn."""
+"""Geometry of arcs: arcs through three points, nearest points, and the polygonal lines with which arcs are drawn."""
 
 import math
 from typing import Any, NamedTuple
@@ -8,10 +8,10 @@ import numpy as np
 Point = tuple[float, float]
 
 CIRCLE = -2.0
-"""Value of `cosine` for a circle, less than the cosine of any angle."""
+"""Value of `cosine` for a whole circle; it is less than the cosine of any angle."""
 
 DRAWN = 64
-"""Number of line segments by which a circle is drawn."""
+"""Number of line segments with which a circle is drawn."""
 
 
 class Arc(NamedTuple):
@@ -21,8 +21,8 @@ class Arc(NamedTuple):
         x, y: centre relative to the start, length.
         radius: length.
         mx, my: unit vector from the centre to the middle of the arc.
-        cosine: cosine of the angle from the middle to an end; CIRCLE for a circle.
-        turn: 1 if it runs counterclockwise from its start to its end, otherwise -1.
+        cosine: cosine of the angle from the middle of the arc to an end; CIRCLE for a circle.
+        turn: 1 if the arc runs counterclockwise from its start to its end, otherwise -1.
     """
 
     x: float
@@ -35,7 +35,7 @@ class Arc(NamedTuple):
 
     @property
     def angle(self) -> float:
-        """Angle that the arc spans, in radians."""
+        """Angle subtended by the arc, in radians."""
         return 2 * math.pi if self.cosine == CIRCLE else 2 * math.acos(max(min(self.cosine, 1.0), -1.0))
 
     @property
@@ -45,13 +45,13 @@ class Arc(NamedTuple):
 
 
 NO_ARC = Arc(*(0.0,) * 7)
-"""The arc of a straight wall, for functions that require numbers."""
+"""Placeholder for the arc of a straight wall, for functions that require numbers."""
 
 
 def arc_through(start: Point, via: Point, end: Point) -> Arc | None:
     """Return the arc from start through `via` to end, or None if the three points are on a line.
 
-    If end is start, it is the circle whose diameter reaches from start to `via`.
+    If start and end coincide, return the circle that has the line from start to `via` as a diameter.
     """
     ax, ay, bx, by = via[0] - start[0], via[1] - start[1], end[0] - start[0], end[1] - start[1]
     if start == end:
@@ -68,7 +68,10 @@ def arc_through(start: Point, via: Point, end: Point) -> Arc | None:
 
 
 def nearest_on_arc(points: np.ndarray, end: np.ndarray, arc: Any) -> np.ndarray:
-    """Points (M, 2) of an arc, ends included, nearest to points (M, 2); all coordinates are relative to its start."""
+    """Points (M, 2) on an arc, including its ends, that are nearest to the given points (M, 2), length.
+
+    All coordinates are relative to the start of the arc.
+    """
     centre, middle = np.array((arc.x, arc.y)), np.array((arc.mx, arc.my))
     away = points - centre
     distance = np.hypot(*away.T)[:, None]
@@ -79,7 +82,7 @@ def nearest_on_arc(points: np.ndarray, end: np.ndarray, arc: Any) -> np.ndarray:
 
 
 def nearest_points(points: np.ndarray, start: Any, end: Any, arc: Arc | None) -> np.ndarray:
-    """Points (M, 2) of a wall from start to end nearest to points (M, 2)."""
+    """Points (M, 2) on the wall from start to end that are nearest to the given points (M, 2), length."""
     along = np.subtract(end, start)
     if arc is not None:
         return np.add(start, nearest_on_arc(points - start, along, arc))
@@ -88,7 +91,7 @@ def nearest_points(points: np.ndarray, start: Any, end: Any, arc: Arc | None) ->
 
 
 def bounds(start: Any, end: Any, arc: Any) -> tuple[Point, Point]:
-    """Lower left and upper right corner of the rectangle around a wall from start to end."""
+    """Lower left and upper right corners of the smallest rectangle around a wall from start to end, length."""
     points = [start, end]
     if arc is not None:
         extremes = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
@@ -99,7 +102,7 @@ def bounds(start: Any, end: Any, arc: Any) -> tuple[Point, Point]:
 
 
 def drawn_points(start: Point, end: Point, arc: Arc | None) -> list[Point]:
-    """Corners of the polygonal line by which a wall from start to end is drawn."""
+    """Vertices of the polygonal line with which a wall from start to end is drawn, length."""
     if arc is None:
         return [start, end]
     steps = max(math.ceil(DRAWN * arc.angle / (2 * math.pi)), 2)

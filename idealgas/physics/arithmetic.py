@@ -1,8 +1,8 @@
 """Number types of different precision: a law written with operators runs on floats and on pairs with twice the digits.
 
-`Pair` is also a number type in compiled code, with the arithmetic of `double_double`. A law for all these types uses
-`number(0.0, x)` instead of 0.0, which would turn a float32 into a float64, and `root(x)` for √x. A column of numbers is
-an array (n,) of floats, or (n, 2) of pairs.
+`Pair` is a number type in compiled code too, with the arithmetic of `double_double`. A law that supports all these
+types uses `root(x)` for √x, and `number(0.0, x)` instead of 0.0, which would turn a float32 into a float64. A column of
+numbers is an array (n,) of floats or an array (n, 2) of pairs.
 """
 
 import math
@@ -51,7 +51,7 @@ class Pair:
         return double_double.less(parts(self), parts(other))
 
     def __le__(self, other: "Pair") -> bool:
-        """Whether this number is smaller than the other or equal to it."""
+        """Whether this number is smaller than or equal to the other."""
         return not double_double.less(parts(other), parts(self))
 
     def __eq__(self, other: object) -> bool:
@@ -99,7 +99,7 @@ def _declare_pair() -> None:
 
 
 def _operate(sign: Any, operation: Any) -> None:
-    """Define an operator for compiled code that computes a pair from two pairs."""
+    """Define, for compiled code, an operator that computes a pair from two pairs."""
 
     @overload(sign)
     def choose(a, b):
@@ -119,7 +119,7 @@ _operate(operator.truediv, double_double.divide)
 
 
 def _compare(sign: Any, operate: Any) -> None:
-    """Define an operator for compiled code that compares two pairs, or selects one of them."""
+    """Define, for compiled code, an operator that compares two pairs or selects one of them."""
     overload(sign)(lambda a, b: operate if a is PAIR and b is PAIR else None)
 
 
@@ -176,7 +176,7 @@ def _rounded(a):
 
 
 def load(column, i):
-    """Number i of a column: an array (n,) of floats, or (n, 2) of pairs."""
+    """Number i of a column, which is an array (n,) of floats or an array (n, 2) of pairs."""
     return Pair(column[i, 0], column[i, 1]) if column.ndim == 2 else column[i]
 
 
@@ -186,7 +186,7 @@ def _load(column, i):
 
 
 def store(column, i, value):
-    """Write a value as number i of a column: an array (n,) of floats, or (n, 2) of pairs."""
+    """Write a value as number i of a column, which is an array (n,) of floats or an array (n, 2) of pairs."""
     column[i] = parts(value) if isinstance(value, Pair) else value
 
 
@@ -206,17 +206,18 @@ def _store(column, i, value):
 
 
 ROUNDING = 1e-12
-"""Relative change of an impulse above which an excess of energy is not due to rounding of the impulse."""
+"""Largest relative correction of an impulse; excess energy that would require more is not due to rounding."""
 
 
 @inline
 def correction(excess, work):
-    """Relative change of an impulse that removes the energy added by the rounding of the impulse.
+    """Relative change of an impulse that removes the energy added by rounding the impulse.
 
-    If |r|² is always rounded to the same side, as at contacts with |r| = 1, the impulses of all collisions are too
-    large on average. The excess of energy, summed from the changes of the velocities, is rounded without bias.
+    If |r|², the squared distance of two discs at contact, is always rounded in the same direction, as it is for |r| =
+    1, then impulses are too large on average. The excess energy, computed from the changes in velocity, is rounded
+    without bias.
 
-    excess: excess of energy times a constant. work: its derivative with respect to the relative change, > 0.
+    excess: excess energy times a constant. work: derivative of this product with respect to the relative change, > 0.
     """
     zero, bound = number(0.0, work), number(ROUNDING, work) * work
     return (zero - excess) / work if (excess < bound) & (zero - bound < excess) else zero

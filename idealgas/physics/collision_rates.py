@@ -1,22 +1,23 @@
 """Collision rates of hard discs from kinetic theory.
 
-Two discs with the sum of radii S and the relative speed v sweep the area 2Sv per time, out of the box's area A. A pair
-at random positions thus collides at the rate 2Sχv/A, where χ is the contact value of the pair distribution, 1 in a
-dilute gas. Such estimates determine the lengths of epochs; they are not measurements. Monte Carlo trials are made at
-the rate of the fastest possible pair, and accepted in the ratio of the rates: Novak & Bortz, Am. J. Phys. 38, 1402
-(1970); Eger & Kress, Am. J. Phys. 50, 120 (1982).
+Two discs whose radii have the sum S and that move at relative speed v sweep an area 2Sv per unit time. In a box of area
+A, two discs at random positions therefore collide at a rate 2Sχv/A, where χ is the contact value of the pair
+distribution function, which is 1 in a dilute gas. These estimates determine the lengths of epochs; they are not
+measurements. Monte Carlo trials take place at the rate of the fastest possible pair, and each trial is accepted with a
+probability equal to the ratio of the two rates: Novak & Bortz, Am. J. Phys. 38, 1402 (1970); Eger & Kress, Am. J. Phys.
+50, 120 (1982).
 """
 
 import math
 from collections.abc import Sequence
 
-DENSEST = 0.9  # packing fraction above which the contact value is not evaluated
+DENSEST = 0.9  # largest packing fraction for which the contact value is evaluated; beyond it, χ stays constant
 
 
 def contact_value(packing_fraction):
-    """Contact value χ = (1 - 7φ/16)/(1 - φ)² of hard discs; packing_fraction: φ, a number or an array.
+    """Contact value χ = (1 - 7φ/16)/(1 - φ)² of the pair distribution function of hard discs.
 
-    Source: Henderson, Mol. Phys. 30, 971 (1975).
+    packing_fraction: φ, a number or an array. Source: Henderson, Mol. Phys. 30, 971 (1975).
     """
     return (1.0 - 7.0 * packing_fraction / 16.0) / (1.0 - packing_fraction) ** 2
 
@@ -24,7 +25,10 @@ def contact_value(packing_fraction):
 def disc_collisions_per_length(
     number: int, mean_diameter: float, packing_fraction: float, box: tuple[float, float]
 ) -> float:
-    """Number of collisions of a disc with other discs per length of its path, 1/length; see `collisions_per_length`."""
+    """Mean number of collisions of one disc with other discs per unit length of its path, 1/length.
+
+    The arguments are as in `collisions_per_length`.
+    """
     chi = contact_value(min(packing_fraction, DENSEST))
     return math.sqrt(2.0) * mean_diameter * (number - 1) / (box[0] * box[1]) * chi
 
@@ -37,16 +41,17 @@ def collisions_per_length(
     box: tuple[float, float],
     periodic: Sequence[bool],
 ) -> float:
-    """Number of collisions of all discs with discs and sides per length that each disc moves, 1/length.
+    """Collisions with discs and sides, summed over all discs, per unit length that each disc moves, 1/length.
 
-    Opposite sides that leave the largest disc less room than its diameter are left out.
+    A collision of two discs counts for both of them. Two opposite sides that are not periodic are ignored if the
+    largest disc can move between them by no more than its diameter.
 
     Args:
         number: number of discs.
-        mean_diameter: length.
-        largest_radius: length.
+        mean_diameter: mean diameter of the discs, length.
+        largest_radius: largest radius of a disc, length.
         packing_fraction: area of the discs divided by the area of the box.
-        box: width and height, length.
+        box: width and height of the box, length.
         periodic: whether the box is periodic along x and along y.
     """
     pairs = disc_collisions_per_length(number, mean_diameter, packing_fraction, box)
@@ -60,15 +65,16 @@ def collisions_per_length(
 
 
 def mean_trial_time(number: int, area: float, packing_fraction: float, largest_reach: float, v_ref: float) -> float:
-    """Mean time between trials, A/(N(N - 1) S χ v_ref).
+    """Mean time between Monte Carlo trials, A/(N(N - 1) S χ v_ref).
 
-    N(N - 1)/2 pairs are tried, each at the rate 2Sχv_ref/A. In equilibrium a disc then collides at the rate (1 - 1/N)
-    2Snχ√(πT/m) of kinetic theory.
+    Each of the N(N - 1)/2 pairs is tried at a rate 2Sχv_ref/A. In equilibrium at temperature T, a disc among N equal
+    discs of mass m then collides at a rate (1 - 1/N) 2Snχ√(πT/m), where n = N/A. Apart from the factor 1 - 1/N, this is
+    the rate from kinetic theory.
 
     Args:
         number: number N of discs.
         area: area A of the box, length².
-        packing_fraction: packing fraction, from which χ follows.
+        packing_fraction: packing fraction, which determines χ.
         largest_reach: largest sum S of two radii, length.
         v_ref: upper bound of the relative speed, length/time.
     """

@@ -1,7 +1,8 @@
-"""Collision of two discs: the time of their contact, and their velocities afterwards.
+"""Collision of two discs: the time of contact, and the velocities after the collision.
 
-Both laws are symmetric to the last bit under exchange of the discs, because differences only change their sign. For
-smooth elastic discs they run in any precision, see `arithmetic`. A record is any object with x, y, vx, vy, t, r and m.
+Both laws are symmetric to the last bit under exchange of the discs, because differences only change sign. For smooth
+elastic discs they work in any precision, see `arithmetic`. The arguments a and b are the stored states of two discs,
+which may be any objects with the fields x, y, vx, vy, t, r and m.
 """
 
 import math
@@ -17,7 +18,7 @@ from idealgas.physics.shear import enter_common_frame, set_velocities_along_x, s
 
 @inline
 def relative_motion(a, b, gravity, periodic, images):
-    """Later local time of two records, and the position and velocity of disc a relative to disc b at that time.
+    """Later of the local times of two discs, and the position and velocity of disc a relative to disc b at that time.
 
     Returns (time, x, y, vx, vy), in units of time, length and length/time.
     """
@@ -42,13 +43,14 @@ def relative_motion(a, b, gravity, periodic, images):
 
 @inline
 def collision_discriminant(x, y, vx, vy, reach):
-    """Whether a point in straight flight comes within `reach` of the origin, and coefficients of the time until then.
+    """Whether a point in straight flight comes within `reach` of the origin, and the coefficients that determine when.
 
-    x, y, reach: length. vx, vy: length/time. Returns (meets, approach b = r·v, gap c = r² - S², discriminant D).
+    x, y, reach: length. vx, vy: length/time. Returns (meets, approach b = r·v, gap c = r² - S², discriminant D), where
+    r is the position, v the velocity and S the reach.
 
-    D = v²S² - (v × r)² keeps its digits for a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191 (2014)). D = 0
-    does not count as a contact: such a collision would change nothing, and for discs that slide past each other the
-    time c/|b| would be arbitrary because of rounding. The code has no branches.
+    The form D = v²S² - (v × r)² keeps its precision for a grazing pair (Bannerman et al., Comput. Part. Mech. 1, 191
+    (2014)). A pair with D = 0 does not count as touching, because the collision would change nothing, and for discs
+    that slide past each other rounding would make the time c/|b| arbitrary. The code has no branches.
     """
     approach = x * vx + y * vy
     gap = x * x + y * y - reach * reach
@@ -63,7 +65,7 @@ def collision_delay(x, y, vx, vy, reach):
     """Whether a point in straight flight comes within `reach` of the origin, and the time until it does.
 
     The arguments are as in `collision_discriminant`. The delay is 0 for an approaching point that is already within
-    reach. The root c/(√D - b) of the quadratic equation for the time has no cancellation for small c.
+    reach. The time is computed as c/(√D - b), the root of its quadratic equation in which no digits cancel for small c.
     """
     meets, approach, gap, discriminant = collision_discriminant(x, y, vx, vy, reach)
     zero = number(0.0, x)
@@ -72,7 +74,7 @@ def collision_delay(x, y, vx, vy, reach):
 
 @inline
 def will_collide(a, b, gravity, periodic, images):
-    """Whether two discs approach each other and will touch or touch already; faster than `collision_time`."""
+    """Whether two discs approach each other and touch now or later; faster than `collision_time`."""
     _, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     return collision_discriminant(x, y, vx, vy, a.r + b.r)[0]
 
@@ -81,7 +83,7 @@ def will_collide(a, b, gravity, periodic, images):
 def collision_time(a, b, gravity, periodic, images):
     """Local time at which two approaching discs touch; NEVER if they do not.
 
-    If approaching discs already touch or overlap at the later time of the two records, it is this time.
+    If the approaching discs already touch or overlap at the later of their local times, that time is returned.
     """
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     meets, delay = collision_delay(x, y, vx, vy, a.r + b.r)
@@ -92,8 +94,8 @@ def collision_time(a, b, gravity, periodic, images):
 def contact_time(a, b, a_id, b_id, images, gravity, periodic, effects):
     """Local time of the next collision of discs a and b; NEVER if there is none.
 
-    Touching discs whose collision would not change a digit of any velocity count as having collided. The result can
-    differ from `collision_time` only if that is the time of a record.
+    Touching discs whose collision would not change any digit of their velocities count as having collided already. The
+    result therefore differs from `collision_time` only for some discs that touch at the later of their local times.
     """
     touched = collision_time(a, b, gravity, periodic, images)
     if (touched == max(a.t, b.t)) and changes_nothing(a, b, a_id, b_id, images, gravity, periodic, effects):
@@ -103,7 +105,7 @@ def contact_time(a, b, a_id, b_id, images, gravity, periodic, effects):
 
 @noinline
 def changes_nothing(a, b, a_id, b_id, images, gravity, periodic, effects):
-    """Whether a collision at the later time of two records would leave every digit of the velocities unchanged."""
+    """Whether a collision at the later of the two local times would leave every digit of the velocities unchanged."""
     time, x, y, vx, vy = relative_motion(a, b, gravity, periodic, images)
     factor = restitution_factor(effects.restitution, a_id, b_id, time)
     before = a.vx, b.vx
@@ -136,9 +138,9 @@ def velocities_after(a, b, x, y, vx, vy, factor):
 
 @inline
 def collide(a, b, a_id, b_id, images, rotation, periodic, effects):
-    """Collide two discs whose records are at the time of contact; their velocities and spins change.
+    """Change the velocities and spins of two colliding discs, whose stored states must be at the time of contact.
 
-    If sides are sheared, the velocities must be those in the common frame.
+    If sides are sheared, the velocities must be in the common frame, see `enter_common_frame`.
     """
     x, y = a.x - b.x, a.y - b.y
     if periodic is not None:
@@ -152,9 +154,9 @@ def collide(a, b, a_id, b_id, images, rotation, periodic, effects):
 
 @inline
 def random_contact(a, b, offset):
-    """Place two records at a contact with a given impact parameter: b at the origin, a along the line of centres.
+    """Place two discs in contact with a given impact parameter: disc b at the origin, disc a on the line of centres.
 
-    offset: impact parameter divided by the sum of the radii, -1 to 1, which is the sine of the angle from the relative
+    offset: impact parameter divided by the sum of the radii, -1 to 1; this is the sine of the angle from the relative
     velocity to the line of centres. The distance between the discs does not enter the collision law. It is set to the
     relative speed, because with unit vectors the rounding in `collide` would be biased, and the energy would grow by
     half a unit in the last place per collision.

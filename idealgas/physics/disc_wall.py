@@ -1,7 +1,7 @@
-"""Contact of a disc with a side of the box (left 0, right 1, bottom 2, top 3), and its collision with any wall.
+"""Contact of a disc with a side of the box (left 0, right 1, bottom 2, top 3), and its collision with any wall at rest.
 
-Without gravity, contact times can be computed in any precision, see `arithmetic`. In all functions for walls, (nx, ny)
-is the unit normal of the wall towards the disc.
+Without gravity, contact times can be computed in any precision, see `arithmetic`. In all functions, (nx, ny) is the
+unit normal of the wall, which points towards the disc.
 """
 
 from idealgas.jit import inline
@@ -15,10 +15,10 @@ from idealgas.physics.thermal import emit, is_thermal
 
 @inline
 def arrival_delay(position, velocity, target):
-    """Time until a coordinate in straight flight reaches a target ahead of it; NEVER if the velocity is 0.
+    """Time until a coordinate changing at constant velocity reaches a target ahead of it; NEVER if the velocity is 0.
 
-    position, target: length. velocity: towards the target, length/time. The delay is 0 for a coordinate that is at the
-    target or, because of rounding, beyond it.
+    position, target: length. velocity: length/time, directed towards the target. The delay is 0 if the coordinate is at
+    the target or, because of rounding, beyond it.
     """
     zero = number(0.0, velocity)
     delay = max((target - position) / velocity, zero)
@@ -59,7 +59,7 @@ def side_contact(disc, side, length, gravity):
 def reflected_velocity(disc, disc_id, nx, ny, restitution):
     """Velocity (vx, vy) of a disc after the normal impulse of a wall at rest, length/time.
 
-    The result is correct although (nx, ny) has unit length only up to rounding.
+    The result does not rely on (nx, ny) having exactly unit length, because rounding changes this length.
     """
     factor = wall_restitution_factor(restitution, disc_id, disc.t)
     k = factor * (disc.vx * nx + disc.vy * ny) / (nx * nx + ny * ny)
@@ -70,7 +70,10 @@ def reflected_velocity(disc, disc_id, nx, ny, restitution):
 
 @inline
 def collide_with_wall(disc, disc_id, nx, ny, wall, restitution, rotation, thermal):
-    """Change the velocity and spin of a disc that touches a wall at rest; wall: number of the wall."""
+    """Change the velocity and spin of a disc that hits a wall at rest.
+
+    wall: number of the wall.
+    """
     if thermal is not None and is_thermal(thermal, wall):
         emit(disc, disc_id, nx, ny, wall, thermal, rotation)
         return

@@ -1,6 +1,6 @@
 """Numbers of about 32 digits as pairs (high, low) of floats, where `high` is the float nearest to their sum.
 
-Rounding errors of sums and products are computed by the algorithms of Knuth and Dekker, without a fused multiply-add.
+Rounding errors of sums and products are computed with the algorithms of Knuth and Dekker, without a fused multiply-add.
 The arithmetic follows Hida, Li & Bailey, Proc. 15th IEEE Symposium on Computer Arithmetic, 155 (2001); relative errors
 are a few times 2^-104 = 5e-32.
 """
@@ -29,7 +29,7 @@ def quick_two_sum(a, b):
 
 @inline
 def split(a):
-    """Two floats of 26 bits whose sum is exactly a."""
+    """Two floats of 26 bits each whose sum is exactly a."""
     t = SPLITTER * a
     high = t - (t - a)
     return high, a - high
@@ -80,9 +80,10 @@ def divide(a, b):
 
 @inline
 def root(a):
-    """Square root of a pair a >= 0, by a step of Newton's method from the root of its high part; 0 for a < 0.
+    """Square root of a pair a; 0 if a is negative.
 
-    Source: Karp & Markstein, ACM TOMS 23, 561 (1997).
+    The square root of the high part is improved by one step of Newton's method: Karp & Markstein, ACM TOMS 23, 561
+    (1997).
     """
     if a[0] <= 0.0:
         return 0.0, 0.0

@@ -1,7 +1,8 @@
-"""Logarithm, sine and cosine with the same bits on every machine; results of C libraries differ in the last bit.
+"""Logarithm, sine and cosine with the same bits on every machine; results of C libraries can differ in the last bit.
 
 The functions use only + - * / in double precision, without a fused multiply-add, and their errors are below one unit in
-the last place. Polynomials and sums are taken from fdlibm (Sun Microsystems, 1993: e_log.c, k_sin.c, k_cos.c).
+the last place. The polynomials and the order of summation are taken from fdlibm (Sun Microsystems, 1993: e_log.c,
+k_sin.c, k_cos.c).
 """
 
 import numpy as np
@@ -14,11 +15,11 @@ _TWO_PI_HIGH, _TWO_PI_LOW = 6.283185243606567, 6.357301909411278e-08
 """2π as the sum of a float of 26 bits and a small remainder."""
 
 _ROOT_HALF = np.int64(0x3FE6A09E00000000)
-"""Bits of the lower end of the interval to which the mantissa is reduced, nearly √½."""
+"""Bits of the lower end, approximately √½, of the interval to which the mantissa is reduced."""
 _EXPONENT = np.int64(52)
 _FRACTION = np.int64((1 << 52) - 1)
 _THIRD_GUESS = np.int64(0x2A9F7893782DA1CE)
-"""Two thirds of the bits of 1; added to a third of the bits of x, they are the bits of ∛x to within a tenth."""
+"""Two thirds of the bits of 1. Added to a third of the bits of x, they give the bits of ∛x to within 10 %."""
 
 
 @inline
@@ -40,7 +41,7 @@ def log(x):
 
 @inline
 def cos_sin_turns(turns):
-    """Cosine and sine of 2π turns, for turns in [0, 1] that are a multiple of 2^-53, like all random numbers."""
+    """Cosine and sine of 2π turns, for turns in [0, 1] that are multiples of 2^-53, as all random numbers are."""
     quarters = np.int64(4.0 * turns + 0.5)
     remainder = turns - 0.25 * np.float64(quarters)  # exact, at most ⅛
     high, low = split(remainder)
@@ -56,7 +57,7 @@ def cos_sin_turns(turns):
 
 @inline
 def _cos(x, y, z, w):
-    """Cosine of x + y, |x| <= π/4, with y below the last place of x, z = x² and w = x⁴."""
+    """Cosine of x + y for |x| <= π/4, where y is less than the last place of x, z = x² and w = x⁴."""
     r = z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * 2.48015872894767294178e-05))
     more = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
     half = 0.5 * z
@@ -66,7 +67,7 @@ def _cos(x, y, z, w):
 
 @inline
 def _sin(x, y, z, w):
-    """Sine of x + y, |x| <= π/4, with y below the last place of x, z = x² and w = x⁴."""
+    """Sine of x + y for |x| <= π/4, where y is less than the last place of x, z = x² and w = x⁴."""
     r = 8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * 2.75573137070700676789e-06)
     r += z * w * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)
     cube = z * x
@@ -75,7 +76,10 @@ def _sin(x, y, z, w):
 
 @inline
 def third_power(x):
-    """Return x ** (1.0 / 3.0) for a normal float x > 0, for 0 or for infinity; the float 1.0 / 3.0 is ⅓ - 2^-54/3."""
+    """Return x ** (1.0 / 3.0) for a normal float x > 0, for 0 or for infinity.
+
+    The exponent is the float 1.0 / 3.0, which is ⅓ - 2^-54/3.
+    """
     if not 0.0 < x < np.inf:
         return x
     y = np.int64(np.float64(x).view(np.int64) // np.int64(3) + _THIRD_GUESS).view(np.float64)

@@ -1,7 +1,8 @@
-"""Sums that do not depend on the order of their terms: each term is rounded to a whole number of units, 2^k.
+"""Sums that do not depend on the order of their terms, because each term is rounded to a whole number of units 2^k.
 
-Whole numbers below 2^100 are added with 128 bits, which is associative. The bits of a sum therefore do not depend on
-the order or grouping of its terms, or on the number of runs in which they are added.
+The whole numbers, each below 2^100 in size, are added as 128-bit integers, and this addition is associative. The bits
+of a sum therefore depend neither on the order or grouping of its terms nor on the number of runs in which they are
+added.
 """
 
 import math
@@ -14,28 +15,28 @@ from idealgas.jit import aligned, inline, noinline
 SUM = np.dtype(
     [
         ("low", "u8"), ("high", "i8"),  # the sum in units is high * 2^64 + low
-        ("per_unit", "f8"),  # 2^-k, by which a term is multiplied
+        ("per_unit", "f8"),  # factor 2^-k that converts a term to units
     ],
     align=True,
 )  # fmt: skip
 
 WORD = 63
-"""Bits of the lower of the two signed words in which a sum is stored, high * 2^63 + low."""
+"""Number of bits of the lower of the two signed words in which a sum is stored as high * 2^63 + low."""
 
 DIGITS = 52
-"""Bits of a term of typical size, about the precision of a float."""
+"""Number of bits of a term of typical size, about the precision of a float."""
 
 FARTHEST = 1000
-"""Largest absolute value of the exponent k of a unit, so that 2^k and 2^-k are floats."""
+"""Largest absolute value of the exponent k of a unit, chosen so that both 2^k and 2^-k are floats."""
 
 U = np.uintp
 BATCH = 64  # number of terms that are added together
 SMALL = 2.0**62  # size below which a term, in units, fits into one word
 FITS = SMALL / BATCH  # size below which the sum of BATCH terms fits into one word
-LARGEST = 2.0**100  # size from which on a term is refused
-FULL = 1 << 61  # largest upper word of a sum, so that the sum can be stored
+LARGEST = 2.0**100  # terms of this size or larger, in units, are refused
+FULL = 1 << 61  # largest upper word of a sum that can be stored
 HALF = 2.0**32  # terms are rounded in two parts, each a whole number far below 2^51
-ROUNDER = 1.5 * 2.0**52  # adding it to a number below 2^51 rounds it: the bits are ROUNDER_BITS plus the whole number
+ROUNDER = 1.5 * 2.0**52  # adding it rounds a number below 2^51; the bits are ROUNDER_BITS plus the integer
 ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 
@@ -45,7 +46,11 @@ class SumRangeError(Exception):
 
 @inline
 def add(total, term):
-    """Add a term, rounded to a whole number of units (ties to even), to a SUM; SumRangeError from 2^100 units on."""
+    """Add a term, rounded to a whole number of units (ties to even), to a SUM.
+
+    Raises:
+        SumRangeError: the term is nan or at least 2^100 units, or the sum is too large.
+    """
     units = term * total.per_unit
     if abs(units) < SMALL:
         whole = np.int64(round(units))
@@ -64,7 +69,11 @@ def add_words(total, high, low):
 
 @noinline
 def add_large(total, units):
-    """Add a number of units of at least 2^62, which is a whole number, to a SUM."""
+    """Add a whole number of units, at least 2^62 in size, to a SUM.
+
+    Raises:
+        SumRangeError: the number is nan or at least 2^100 units, or the sum is too large.
+    """
     if not abs(units) < LARGEST:
         raise SumRangeError("a term of a sum is too large or not a number")
     if abs(total.high) > FULL:
@@ -79,10 +88,10 @@ def add_large(total, units):
 
 @noinline
 def add_all(total, terms):
-    """Add all terms (n,) to a SUM with the same result as `add`, but several at a time; n is at most BATCH.
+    """Add all terms (n,) to a SUM, with the same result as `add` but faster; n is at most BATCH.
 
-    Few processors can convert several floats to integers at once. The floats are therefore rounded by adding a
-    constant, and their bits are read.
+    The processor can handle several terms at once. Because few processors can convert several floats to integers at
+    once, each float is rounded by adding a constant, and the integer is read from the bits of the result.
     """
     number = np.int64(terms.shape[0])
     upper = number * -ROUNDER_BITS
@@ -105,24 +114,30 @@ def add_all(total, terms):
 
 
 def unit_exponent(typical: float) -> int:
-    """Exponent k of the unit 2^k, which is at most 2^-51 of the typical size of a term."""
+    """Exponent k of the unit 2^k, which is at most 2^-52 of the typical size of a term.
+
+    The exponent is limited to FARTHEST in size; it is 0 if the typical size is 0 or not finite.
+    """
     return max(-FARTHEST, min(math.frexp(typical)[1] - 1 - DIGITS, FARTHEST)) if 0 < typical < math.inf else 0
 
 
 def make_sums(typical: Sequence[float]) -> np.recarray:
-    """Return sums (n,) SUM of 0; typical: size of the terms of each sum at the start of a run, in its unit."""
+    """Return an array (n,) of SUM, all set to 0.
+
+    typical: typical size of the terms of each sum at the start of a run, in the unit of that sum.
+    """
     sums = aligned(len(typical), SUM)
     sums.per_unit = [math.ldexp(1.0, -unit_exponent(size)) for size in typical]
     return sums
 
 
 def values(sums: np.ndarray) -> np.ndarray:
-    """Return the sums rounded to floats, (n,) f8, in the unit of each sum."""
+    """Return the sums (n,) f8, rounded to floats, each in its unit."""
     return np.array([math.ldexp(number, k) for number, k in _numbers(sums)])
 
 
 def add_term(sums: np.ndarray, term: float) -> None:
-    """Add a term to the only sum of an array, as `add` does in compiled code."""
+    """Add a term to the single sum in an array, as `add` does in compiled code."""
     ((number, k),) = _numbers(sums)
     number += round(math.ldexp(term, -k))
     sums["high"], sums["low"] = number >> 64, number & (1 << 64) - 1
@@ -134,7 +149,7 @@ def clear(sums: np.ndarray) -> None:
 
 
 def add_sums(totals: np.ndarray, parts: np.ndarray) -> None:
-    """Add a part to each sum; each part must have the same unit as its sum."""
+    """Add a partial sum to each total; both must have the same unit."""
     low = totals["low"] + parts["low"]
     totals["high"] += parts["high"] + (low < totals["low"])
     totals["low"] = low
@@ -143,14 +158,18 @@ def add_sums(totals: np.ndarray, parts: np.ndarray) -> None:
 def stored(sums: np.ndarray) -> np.ndarray:
     """Return the sums in the form in which they are stored, (n, 3) i8.
 
-    A row (high, low, k) is the sum (high * 2^63 + low) * 2^k, with 0 <= low < 2^63.
+    A row (high, low, k) stands for the sum (high * 2^63 + low) * 2^k, where 0 <= low < 2^63.
     """
     words = [(number >> WORD, number & (1 << WORD) - 1, k) for number, k in _numbers(sums)]
     return np.array(words, np.int64).reshape(-1, 3)
 
 
 def restore(sums: np.ndarray, entry: np.ndarray) -> None:
-    """Set sums and their units from the result of `stored`; SumRangeError if a sum exceeds its range."""
+    """Set sums and their units from the result of `stored`.
+
+    Raises:
+        SumRangeError: a sum or the exponent of its unit is out of range.
+    """
     for total, (high, low, k) in zip(sums, entry.tolist(), strict=True):
         number = (high << WORD) + low
         if abs(number >> 64) > 2 * FULL or abs(k) > FARTHEST:

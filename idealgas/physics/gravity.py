@@ -1,4 +1,4 @@
-"""Gravity: a uniform acceleration, constant between the steps of its schedule, so that discs move on parabolas."""
+"""Gravity: a uniform acceleration, constant between the steps of its schedule, under which discs move on parabolas."""
 
 from typing import NamedTuple
 
@@ -27,7 +27,10 @@ def acceleration_along(gravity, along_y):
 
 @inline
 def potential_energy(mass, place, gravity):
-    """Potential energy, mass length²/time², at the unwrapped position place = (x, y), length; 0 without gravity."""
+    """Potential energy of a mass in gravity, mass length²/time²; 0 without gravity.
+
+    place: unwrapped position (x, y), length.
+    """
     if gravity is not None:
         return -(mass * (gravity.x * place[0] + gravity.y * place[1]))
     return 0.0

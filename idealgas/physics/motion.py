@@ -1,4 +1,4 @@
-"""Free flight, r(t) = r₀ + v t or, with gravity, r₀ + v t + ½ g t², and the time of a fall to a plane."""
+"""Free flight, r(t) = r₀ + v t or, with gravity, r₀ + v t + ½ g t², and the time until a body reaches a plane."""
 
 import math
 
@@ -7,14 +7,14 @@ import numpy as np
 from idealgas.jit import inline
 
 NEVER = 1e300
-"""Time of an event that does not happen: later than all events, but finite, so that sums and comparisons are valid."""
+"""Time of an event that never happens: later than all events, but finite, so that sums and comparisons remain valid."""
 
 MAX_DISPLACEMENT = 6144
-"""Longest path of the fastest disc in an epoch, in diameters of the smallest, unless 4 events per disc take longer.
+"""Longest path of the fastest disc in an epoch, in diameters of the smallest disc.
 
-The rounding of the clock then adds at most 2⁻⁵⁴ of this path per disc to the error of a contact. A few discs in a wide
-box have longer epochs, of about 500 events in all; if the path is 500 box lengths L, the rounding of the clock adds
-about 2⁻⁴⁵ L.
+If 4 events per disc take longer, the epoch lasts until they have happened. The rounding of the clock adds at most 2⁻⁵⁴
+of this path per disc to the error of a contact. A few discs in a wide box have longer epochs, of about 500 events in
+total; if the path is 500 box lengths L, the rounding of the clock adds about 2⁻⁴⁵ L.
 """
 
 
@@ -23,7 +23,7 @@ def position_after(position, velocity, acceleration, delay):
     """Coordinate (length) after a delay (time) in free flight, x + v t + ½ a t²; numbers or arrays.
 
     acceleration: length/time², or None without gravity. The terms are always summed from left to right, so that the
-    engine, the replay and the analyses agree to the last bit.
+    engine, the replay and the analyses obtain the same result to the last bit.
     """
     if acceleration is not None:
         return position + velocity * delay + 0.5 * acceleration * delay * delay
@@ -39,11 +39,11 @@ def velocity_after(velocity, acceleration, delay):
 def path_length(
     vx: np.ndarray, vy: np.ndarray, gravity: np.ndarray | tuple[float, float] | None, delay: np.ndarray
 ) -> np.ndarray:
-    """Lengths (n,) of the paths of free flights, ∫ |v| dt.
+    """Path lengths (n,) of free flights, ∫ |v| dt.
 
-    On a parabola, let u be the component of the velocity along gravity, w the component across and s = √(u² + w²). The
-    integral of s du/g is (u s + w² asinh(u/w))/2g; the difference of its values at both ends is transformed so that no
-    digits cancel.
+    On a parabola, let u be the component of the velocity along gravity, w the component perpendicular to gravity, and s
+    = √(u² + w²). The path length is ∫ s du/g, with antiderivative (u s + w² asinh(u/w))/2g. The difference between the
+    values at the two ends is rearranged so that no digits cancel.
 
     Args:
         vx: (n,) velocity along x at the start, length/time.
@@ -66,13 +66,13 @@ def path_length(
         steady = 2.0 * middle * g * delay / (last * begin + first * end)
         bent = square * np.arcsinh(np.where(first * last > 0.0, steady, turned)) / g
         steep = delay * (0.5 * both + 2.0 * middle * middle / both)
-    flat = square / np.where(begin > 0.0, begin, 1.0) * delay  # the limit of no gravity
+    flat = square / np.where(begin > 0.0, begin, 1.0) * delay  # the limit of zero gravity
     return np.asarray(0.5 * (np.where(both > 0.0, steep, 0.0) + np.where(falls & (square > 0.0), bent, flat)))
 
 
 @inline
 def advance(disc, time, gravity):
-    """Move a disc's record in free flight to a later local time."""
+    """Move a disc in free flight to a later local time."""
     delay = time - disc.t
     if gravity is not None:
         disc.x = position_after(disc.x, disc.vx, gravity.x, delay)
@@ -90,8 +90,8 @@ def time_to_plane(height, velocity, acceleration):
     """Time until height + velocity t + ½ acceleration t² is at or below zero and falling; NEVER if that never happens.
 
     height: length. velocity: length/time. acceleration: length/time². The time is 0 for a falling body at or below
-    zero. A rising body that is below zero because of rounding arrives when it falls back through zero or, if it never
-    rises so far, when it begins to fall; thus it cannot sink.
+    zero. A rising body that is below zero because of rounding arrives when it falls back through zero or, if it does
+    not rise to zero, when it begins to fall. Rounding therefore cannot make a body sink.
     """
     discriminant = velocity * velocity - 2.0 * acceleration * height
     root = math.sqrt(max(discriminant, 0.0))
@@ -106,9 +106,9 @@ def time_to_plane(height, velocity, acceleration):
 
 @inline
 def time_after(now, delay):
-    """Time now + delay, which is later than now for any positive delay, even one that is lost by rounding.
+    """Time now + delay, rounded up to a time later than now if the delay is positive.
 
-    Otherwise a body that turns back at the border of a cell would cross it back and forth forever.
+    Otherwise a body that turns back at the border of a cell could cross the border back and forth forever.
     """
     time = now + delay
     return np.nextafter(now, np.inf) if (time == now) & (delay > 0.0) else time
@@ -116,8 +116,9 @@ def time_after(now, delay):
 
 @inline
 def stays_above(height, velocity, acceleration, delay):
-    """Whether height + velocity t + ½ acceleration t² is certainly above zero from time 0 up to a delay (time).
+    """Whether it is certain that height + velocity t + ½ acceleration t² is above zero until a delay (time) has passed.
 
-    Only both ends are checked. For a body accelerated upwards, which may be below zero in between, the result is False.
+    Only the beginning and the end are checked. A body that is accelerated upwards may be below zero in between, and the
+    result for it is always False.
     """
     return (height > 0.0) & (acceleration <= 0.0) & (position_after(height, velocity, acceleration, delay) > 0.0)

@@ -1,9 +1,10 @@
 """Periodic sides of the box: wrapped positions, images and minimum-image distances.
 
-A disc that crosses a periodic side keeps its record. The record counts the disc's boundary crossings along x and y
-since the time of the record, where crossings to the left and downwards count as -1; the position is wrapped when the
-record is next moved. In all functions, `images` are the numbers of box lengths (x, y) between two records, or between a
-record and a wall; they matter only if sides are periodic.
+When a disc crosses a periodic side, its stored position does not change. Instead, `crossed_x` and `crossed_y` count how
+often the disc has crossed the boundary along x and y since its local time t, where crossings to the left and downwards
+count as -1. The position is wrapped when the disc is next moved. In all functions, `images` are the numbers of box
+lengths (x, y) to subtract from the stored position of a disc relative to another disc or to a wall; they matter only if
+sides are periodic.
 """
 
 from typing import NamedTuple
@@ -25,9 +26,9 @@ class Periodic(NamedTuple):
         y: whether the bottom and the top side are periodic.
         Lx: width of the box, length.
         Ly: height of the box, length.
-        image: (N, 2) i4 by id, box lengths to add to a record's position to unwrap it.
-        shear: motion of the images along y, for kernels; None without sheared sides. Because the crossing of a sheared
-            side is an event, y is false if there is shear.
+        image: (N, 2) i4 by id, numbers of box lengths to add to a disc's stored position to unwrap it.
+        shear: motion of the images above and below the box, for kernels; None without sheared sides. With shear, y is
+            false, because the crossing of a sheared side is an event.
     """
 
     x: bool
@@ -39,12 +40,12 @@ class Periodic(NamedTuple):
 
 
 def periodic_axes(periodic: Periodic | None) -> tuple[bool, bool]:
-    """Whether the sides are periodic along x, and whether along y."""
+    """Whether the box is periodic along x, and whether it is periodic along y."""
     return (periodic.x, periodic.y) if periodic else (False, False)
 
 
 def copy_of(periodic: Periodic | None) -> Periodic | None:
-    """Copy of periodic sides whose images may change without changing the original; None without periodic sides."""
+    """Copy of the periodic sides with an independent array of images; None without periodic sides."""
     if periodic is None:
         return None
     return periodic._replace(image=periodic.image.copy())
@@ -57,9 +58,9 @@ def unwrapped(position: np.ndarray, periodic: Periodic | None) -> np.ndarray:
 
 @inline
 def images_between(periodic, a, b, image):
-    """Numbers of box lengths (x, y) between the records of discs a and b; zeros without periodic sides.
+    """Numbers of box lengths to subtract from the position of disc a relative to disc b; zeros without periodic sides.
 
-    image: numbers of box lengths (x, y) between the discs now, if both are taken inside the box.
+    image: the numbers (x, y) that would be subtracted if both positions were wrapped into the box.
     """
     if periodic is not None:
         return (
@@ -71,9 +72,10 @@ def images_between(periodic, a, b, image):
 
 @inline
 def images_to_wall(periodic, disc, image):
-    """Numbers of box lengths (x, y) between a disc's record and an image of a wall; zeros without periodic sides.
+    """Numbers of box lengths to subtract from a disc's position relative to a wall; zeros without periodic sides.
 
-    image: numbers of box lengths (x, y) between the wall and its image, if the disc is taken inside the box.
+    image: the numbers (x, y) that would be subtracted if the position were wrapped into the box; they select an image
+    of the wall.
     """
     if periodic is not None:
         return np.int64(disc.crossed_x) + image[0], np.int64(disc.crossed_y) + image[1]
@@ -82,7 +84,7 @@ def images_to_wall(periodic, disc, image):
 
 @inline
 def shift_by_images(x, y, periodic, images):
-    """Subtract numbers of box lengths from a relative position (x, y), length."""
+    """Subtract numbers of box lengths (x, y) from a relative position (x, y), length."""
     if periodic is not None:
         return x - periodic.Lx * images[0], y - periodic.Ly * images[1]
     return x, y
@@ -90,7 +92,7 @@ def shift_by_images(x, y, periodic, images):
 
 @inline
 def is_periodic(periodic, along_y):
-    """Whether the sides are periodic along y or, if not along_y, along x."""
+    """Whether the box is periodic along y or, if not along_y, along x."""
     if periodic is not None:
         return periodic.y if along_y else periodic.x
     return False
@@ -98,7 +100,7 @@ def is_periodic(periodic, along_y):
 
 @inline
 def nearest_image(distance, length, is_periodic):
-    """Difference of coordinates (length) to the nearest image; unchanged if not periodic; numbers or arrays."""
+    """Difference of coordinates to the nearest image, length; unchanged if not periodic; numbers or arrays."""
     return distance - length * np.rint(distance / length) if is_periodic else distance
 
 
@@ -114,7 +116,10 @@ def nearest_images(x, y, periodic):
 
 @inline
 def separation(a, b, periodic):
-    """Position (x, y), length, of disc a relative to the nearest image of disc b; records of numbers or of arrays."""
+    """Position (x, y), length, of disc a relative to the nearest image of disc b.
+
+    The fields of a and b may be numbers or arrays.
+    """
     x = a.x - b.x
     y = a.y - b.y
     if periodic is not None:
@@ -133,9 +138,9 @@ def wrapped(position, length):
 
 @inline
 def wrap(disc, disc_id, periodic):
-    """Wrap a record's position into the box, and update its image and boundary crossings."""
+    """Wrap a disc's position into the box, and update its image and its boundary crossings."""
     if periodic is not None:
-        if periodic.x and not 0.0 < disc.x < periodic.Lx:  # this is rare, and wrapping takes a division
+        if periodic.x and not 0.0 < disc.x < periodic.Lx:  # rare, and wrapping requires a slow division
             disc.x, boxes = wrapped(disc.x, periodic.Lx)
             periodic.image[U(disc_id), 0] += np.int32(boxes)
             disc.crossed_x -= np.int16(boxes)
@@ -147,7 +152,10 @@ def wrap(disc, disc_id, periodic):
 
 @inline
 def enter_opposite_side(disc, disc_id, rows, periodic):
-    """Wrap the record of a disc that has crossed a sheared side; rows: box lengths upwards, 1 or -1."""
+    """Wrap the position of a disc that has crossed a sheared side.
+
+    rows: 1 if the disc has left through the top, -1 if through the bottom.
+    """
     if periodic is not None:
         wrap(disc, disc_id, periodic)
         disc.crossed_x = 0
@@ -156,7 +164,7 @@ def enter_opposite_side(disc, disc_id, rows, periodic):
 
 @inline
 def place_in_space(disc, disc_id, periodic):
-    """Unwrapped position (x, y), length, of a wrapped record."""
+    """Unwrapped position (x, y), length, of a disc whose stored position is wrapped."""
     if periodic is not None:
         return (
             disc.x + periodic.image[U(disc_id), 0] * periodic.Lx,

@@ -1,12 +1,12 @@
 """Walls that let discs of some species pass, from both sides or from one.
 
-A disc that passes a wall from both sides never meets it. For a disc that passes from one side, the wall is a line with
-one closed face and solid ends. The disc does not meet the face while its centre is on the open side. Beyond the line,
-it bounces when it touches the closed face or, as long as it still overlaps the line, when its centre comes back to the
-line.
+A disc that can pass from both sides never touches the wall. For a disc that can pass from one side only, the wall is a
+line with one closed face and solid ends. While the centre of the disc is on the open side, the disc does not touch the
+face. Once the centre is beyond the line, the disc bounces when it touches the closed face or, while it still overlaps
+the line, when its centre returns to the line.
 
-In coordinates of the closed face, d is the disc's distance from the line (length), negative on the open side, vn its
-velocity (length/time) and an its acceleration (length/time²) away from the face.
+Positions and velocities are measured away from the closed face: d is the distance of the disc's centre from the line
+(length), negative on the open side; vn is the velocity (length/time) and an the acceleration (length/time²) along d.
 """
 
 import math
@@ -23,12 +23,12 @@ SOLID, FROM_LEFT, FROM_RIGHT, OPEN = range(4)
 TOUCHING = 0.999
 """Distance from the line, in radii, above which a disc touches the closed face; below it, the disc overlaps the line.
 
-Despite rounding, a disc that touches a face is far above this distance.
+Rounding errors are so small that a disc that touches a face is always above this distance.
 """
 
 
 class Permeable(NamedTuple):
-    """Passage of the species of discs through wall segments.
+    """Sides from which each wall segment lets the discs of each species pass.
 
     Attributes:
         species: (N,) u2 by id, species of each disc.
@@ -41,7 +41,10 @@ class Permeable(NamedTuple):
 
 @inline
 def passage_of(permeable, disc_id, segment):
-    """Sides from which a segment lets a disc pass; None if no wall is permeable. segment: number of the segment."""
+    """Sides from which a segment lets a disc pass; None if no wall is permeable.
+
+    segment: number of the segment.
+    """
     if permeable is not None:
         return permeable.passage[np.uintp(segment), np.uintp(permeable.species[np.uintp(disc_id)])]
     return None
@@ -49,28 +52,42 @@ def passage_of(permeable, disc_id, segment):
 
 @inline
 def closed_side(passage):
-    """Return 1 if the closed face of a segment that is open from one side is on its left, -1 if it is on its right."""
+    """Side of a segment's closed face: 1 if it is on the left of the segment, -1 if it is on the right.
+
+    passage: FROM_LEFT or FROM_RIGHT.
+    """
     return -1.0 if passage == FROM_LEFT else 1.0
 
 
 @inline
 def closed_face_delay(d, vn, an, r):
-    """Time until a disc of radius r touches the closed face's line, or its centre is back at the line; or NEVER."""
+    """Time until a disc touches the line of the closed face, or its centre returns to this line; NEVER if neither.
+
+    d, vn, an: position, velocity and acceleration of the disc away from the closed face. r: radius of the disc, length.
+    """
     if d <= 0.0 and (vn < 0.0 or vn * vn <= 2.0 * an * d):
-        return NEVER  # it stays on the open side
-    falls_back = (vn > 0.0) & (an < 0.0) & (vn * vn >= 2.0 * an * (d - r))  # after it has left the line
+        return NEVER  # the disc stays on the open side
+    falls_back = (vn > 0.0) & (an < 0.0) & (vn * vn >= 2.0 * an * (d - r))  # after it no longer overlaps the line
     return time_to_plane(d - r if (d > TOUCHING * r) | falls_back else d, vn, an)
 
 
 @inline
 def touches_face(d, end_distance, r):
-    """Whether a disc of radius r in contact, with its foot on the body, touches the closed face and not an end."""
+    """Whether a disc of radius r in contact with a segment touches the closed face and not an end.
+
+    The foot of the perpendicular from the disc's centre must be on the segment. end_distance: distance between the
+    disc's centre and the nearer end, length.
+    """
     return min(abs(d - r), abs(d)) < abs(end_distance - r)
 
 
 @inline
 def nearest_end(x, y, s, length, tx, ty):
-    """Position (x, y) relative to the nearer end of a segment, and its distance; x, y: relative to the start."""
+    """Position (x, y) of a disc relative to the nearer end of a segment, and its distance from that end, length.
+
+    x, y: position relative to the start of the segment, length. s: component of this position along the segment,
+    length. length, tx, ty: length and unit tangent of the segment.
+    """
     if 2.0 * s > length:
         x -= length * tx
         y -= length * ty

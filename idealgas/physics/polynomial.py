@@ -1,4 +1,4 @@
-"""First time at which a body on a parabola comes within a distance of a point, where a quartic falls through zero."""
+"""First time at which a body on a parabola comes within a given distance of a point: a falling zero of a quartic."""
 
 import math
 
@@ -17,13 +17,13 @@ def cubic(b, c, d, e, t):
 
 @inline
 def parabola(x, v, a, t):
-    """Value of x + v t + ½ a t²; the form x + (v + ½ a t) t keeps more digits near a return to x."""
+    """Value of x + v t + ½ a t²; the form x + (v + ½ a t) t is more precise when the body has nearly returned to x."""
     return x + (v + 0.5 * a * t) * t
 
 
 @inline
 def bisect(b, c, d, e, low, high):
-    """Point in [low, high] where a cubic changes sign, to the last bit; its signs at the ends must differ."""
+    """Point in [low, high] where a cubic changes sign, to the last bit; the signs at the two ends must differ."""
     rising = cubic(b, c, d, e, low) < cubic(b, c, d, e, high)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -53,7 +53,10 @@ def quadratic_roots(a, b, c):
 
 @inline
 def cubic_extrema(b, c, d, e, last):
-    """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in order; padded with `last` to three."""
+    """Points in (0, last) where the cubic b t³ + c t² + d t + e changes sign, in increasing order.
+
+    Returns three points; if there are fewer, the rest are set to `last`.
+    """
     left, right = quadratic_roots(3.0 * b, 2.0 * c, d)
     count = 0
     first = second = third = last
@@ -84,8 +87,8 @@ def cubic_extrema(b, c, d, e, last):
 def gap(x, y, disc, gravity, r, t):
     """Squared distance of a disc's centre from a point after a delay t on a parabola, minus r²; length².
 
-    x, y: position relative to the point at first, length. It is computed from the position after the delay, so that
-    digits are not lost if r is small.
+    x, y: initial position relative to the point, length. The gap is computed from the position after the delay, so that
+    no precision is lost if r is small.
     """
     x_then = parabola(x, disc.vx, gravity.x, t)
     y_then = parabola(y, disc.vy, gravity.y, t)
@@ -94,7 +97,7 @@ def gap(x, y, disc, gravity, r, t):
 
 @inline
 def first_contact_root(x, y, disc, gravity, r, after):
-    """Delay after which a disc's centre on a parabola is within r of a point and approaches it; NEVER if it never is.
+    """Delay until the centre of a disc on a parabola is within r of a point and approaches it; NEVER if it never is.
 
     x, y: position relative to the point, length. r: length. Only an approach that begins after the delay `after`
     counts.
@@ -104,7 +107,7 @@ def first_contact_root(x, y, disc, gravity, r, after):
 
 @inline
 def first_exit_root(x, y, disc, gravity, r, after):
-    """Delay after which a disc's centre on a parabola is at least r from a point and moves away; NEVER if it never is.
+    """Delay until the centre of a disc on a parabola is at least r from a point and moves away; NEVER if it never is.
 
     The arguments are as in `first_contact_root`.
     """
@@ -113,10 +116,11 @@ def first_exit_root(x, y, disc, gravity, r, after):
 
 @noinline
 def first_descent(x, y, disc, gravity, r, after, sign):
-    """Smallest t ≥ 0 at which p(t), the gap times `sign` (1 or -1), falls and is zero or less.
+    """Smallest t ≥ 0 at which p(t), the gap times `sign` (1 or -1), is falling and is zero or negative; NEVER if none.
 
-    The gap is the quartic a t⁴ + b t³ + c t² + d t + e. Its first coefficient, a = |gravity|²/4, is positive, because
-    gravity is absent if it is zero. It has at most three turning points and is monotonic between them:
+    The gap is the quartic a t⁴ + b t³ + c t² + d t + e. Its leading coefficient a = |gravity|²/4 is positive, because
+    an acceleration of zero counts as no gravity. The gap has at most three turning points and is monotonic between
+    them:
 
         p
         │╲         ╱╲
@@ -126,18 +130,19 @@ def first_descent(x, y, disc, gravity, r, after, sign):
         │    ╲_╱        ╲ │
         0   first second  last
 
-    Consider an interval between turning points in which p falls and that ends at p ≤ 0. Either p is positive at its
-    beginning: then it contains a single zero ●, which bisection finds to the last bit. Or p is zero or less already:
-    then the descent begins with the interval. The first such interval contains the result. Bisection evaluates the gap
-    itself; the closed formula for the zeros of a quartic would lose digits by cancellation.
+    The result lies in the first interval between turning points in which p falls and ends at p ≤ 0. If p is positive at
+    the beginning of this interval, the interval contains a single zero ●, which bisection finds to the last bit. If p
+    is already zero or negative there, the result is the beginning of the interval. Bisection evaluates the gap itself,
+    because the closed formula for the zeros of a quartic would lose digits by cancellation.
 
-    No zero is missed beyond `last`, because all zeros satisfy |t| ≤ 1 + max(|b|, |c|, |d|, |e|)/a (Cauchy) and
-    |t| ≤ 2 max(|b/a|, |c/a|^½, |d/a|^⅓, |e/a|^¼) (Fujiwara).
+    There are no zeros beyond `last`, because all zeros satisfy |t| ≤ 1 + max(|b|, |c|, |d|, |e|)/a (Cauchy) and |t| ≤ 2
+    max(|b/a|, |c/a|^½, |d/a|^⅓, |e/a|^¼) (Fujiwara).
 
-    A disc may begin at p ≤ 0, in contact or, by rounding or under a gate that has closed, in an overlap. If p falls at
-    once, the result is 0. If p rises, the disc moves away, and the next descent counts: to 0 or, if p does not reach 0
-    before it falls again, to its value at t = 0, so that the overlap does not grow. The bounds are valid for this level
-    too, because p minus the level has the same coefficients but for e, which becomes 0.
+    A disc may start at p ≤ 0: in contact or, because of rounding or a gate that has closed on it, in overlap. If p
+    falls at once, the result is 0. If p rises, the disc moves away, and the result is the time at which p falls again
+    to 0 or, if p does not reach 0 before it falls, to its initial value; the overlap therefore does not grow. The
+    bounds hold for this initial value too: if it is subtracted from p, all coefficients remain the same except e, which
+    becomes 0.
     """
     vx, vy, gx, gy = disc.vx, disc.vy, gravity.x, gravity.y
     a = 0.25 * (gx * gx + gy * gy)

@@ -8,7 +8,7 @@ import numpy as np
 from idealgas.jit import inline
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-"""Constant of SplitMix64 with which the counter is multiplied."""
+"""Constant by which SplitMix64 multiplies the counter."""
 
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
 _MIX_2 = np.uint64(0x94D049BB133111EB)
@@ -33,8 +33,8 @@ def unit_interval(bits):
 def disc_uniform(seed, disc_id, number, draw):
     """Random number in (0, 1], a pure function of the four arguments.
 
-    seed: u8. disc_id: id of a disc. number: u8, number of the random event of this disc, from 0. draw: number of the
-    random number among the eight of the event; walls that emit discs use 0 to 2, and a heat bath uses 3 to 7.
+    seed: u8. disc_id: id of a disc. number: u8, index of the random event of this disc, from 0. draw: index of the
+    random number among the eight for this event; thermal walls use 0 to 2, and the heat bath uses 3 to 7.
     """
     key = mix(seed + GOLDEN * (np.uint64(disc_id) + np.uint64(1)))
     count = number * np.uint64(8) + np.uint64(draw)

@@ -1,7 +1,7 @@
 """Rough discs: the tangential impulse that couples translation and spin, with a constant coefficient of roughness.
 
-Chapman & Cowling, The Mathematical Theory of Non-Uniform Gases, 11.2; Brilliantov & Pöschel, Kinetic Theory of Granular
-Gases, 2.2. Discs with roughness 1 conserve energy; discs with roughness -1 are smooth.
+Perfectly rough discs (roughness 1) and smooth discs (roughness -1) conserve energy. Sources: Chapman & Cowling, The
+Mathematical Theory of Non-Uniform Gases, 11.2; Brilliantov & Pöschel, Kinetic Theory of Granular Gases, 2.2.
 """
 
 import math
@@ -19,8 +19,8 @@ class Rotation(NamedTuple):
     Attributes:
         omega: (N,) f8 by id, angular velocity, 1/time.
         inertia: (N,) f8 by id, moment of inertia, mass length².
-        roughness: coefficient of tangential restitution of two discs, from -1 (smooth) to 1 (perfectly rough).
-        wall_roughness: coefficient of tangential restitution of a disc and a wall, from -1 to 1.
+        roughness: coefficient of tangential restitution for two discs, from -1 (smooth) to 1 (perfectly rough).
+        wall_roughness: coefficient of tangential restitution for a disc and a wall, from -1 to 1.
     """
 
     omega: np.ndarray
@@ -62,7 +62,7 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
 
 @inline
 def _rounding(disc, u, tx, ty, impulse, factor, rotation):
-    """Excess of a disc's energy due to rounding, and its derivative, in the form required by `correction`."""
+    """Excess energy of a disc due to rounding, and the derivative of this energy that `correction` requires."""
     dx, dy = impulse / disc.m * tx, impulse / disc.m * ty
     spin = disc.r / rotation.inertia[u] * impulse
     motion = (factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy
@@ -72,7 +72,7 @@ def _rounding(disc, u, tx, ty, impulse, factor, rotation):
 
 @inline
 def _apply(disc, u, tx, ty, impulse, correction, rotation):
-    """Change a disc's velocity and spin by an impulse along (tx, ty) with a relative correction."""
+    """Apply an impulse along (tx, ty), with a relative correction, to a disc's velocity and spin."""
     disc.vx = changed(disc.vx, impulse / disc.m * tx, correction)
     disc.vy = changed(disc.vy, impulse / disc.m * ty, correction)
     rotation.omega[u] = changed(rotation.omega[u], disc.r / rotation.inertia[u] * impulse, correction)
@@ -82,7 +82,7 @@ def _apply(disc, u, tx, ty, impulse, correction, rotation):
 def tangential_impulse_at_wall(disc, disc_id, nx, ny, rotation):
     """Apply the tangential impulse of a wall at rest to the velocity and spin of a disc that touches it."""
     u = np.uintp(disc_id)
-    tx = ny  # the wall takes the place of the second disc, so n from the disc to the wall is -(nx, ny)
+    tx = ny  # the wall takes the place of the second disc, so n, from the disc to the wall, is -(nx, ny)
     ty = -nx
     slip = disc.vx * tx + disc.vy * ty + disc.r * rotation.omega[u]
     mobility = (nx * nx + ny * ny) / disc.m + disc.r * disc.r / rotation.inertia[u]

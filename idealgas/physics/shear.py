@@ -1,9 +1,9 @@
 """Sheared sides of the box: Lees & Edwards, J. Phys. C 5, 1921 (1972).
 
-The image of the gas k boxes up moves along x with the velocity k u, where u is the shear rate times the height of the
-box; at the time t it is k u t ahead. Images move uniformly, so contact times through the sheared sides are the same as
-for two discs in free flight. A disc whose centre leaves through the top enters at the bottom, u t further to the left
-and slower by u.
+The periodic image of the gas that lies k box heights above the box moves along x at velocity k u, where u is the shear
+rate times the height of the box; at time t, this image is displaced by k u t. Because images move uniformly, contact
+times through sheared sides are computed as for any two discs in free flight. A disc whose centre leaves through the top
+re-enters at the bottom, displaced by -u t along x and with a velocity along x that is smaller by u.
 """
 
 import math
@@ -22,11 +22,11 @@ class Shear(NamedTuple):
 
     Attributes:
         rate: change of the mean velocity along x per length along y, 1/time.
-        speed: velocity of the image above, u, length/time.
+        speed: velocity u of the periodic image above the box, length/time.
         Lx: width of the box, length.
         Ly: height of the box, length.
-        offset: (2,) f8, distance by which the image above is ahead at the start and at the end of the epoch, length;
-            whole widths of the box at the start are subtracted.
+        offset: (2,) f8, displacement along x of the image above the box at the start and at the end of the epoch,
+            length; whole widths of the box are subtracted so that the first value is less than Lx.
     """
 
     rate: float
@@ -37,12 +37,18 @@ class Shear(NamedTuple):
 
 
 def make_shear(rate: float, size: tuple[float, float]) -> Shear:
-    """Shear at time 0 in a box of the given width and height, length; rate: 1/time."""
+    """Return the shear at time 0.
+
+    rate: shear rate, 1/time. size: width and height of the box, length.
+    """
     return Shear(rate, rate * size[1], *size, np.zeros(2))
 
 
 def begin_epoch(shear: Shear, time: float, length: float) -> None:
-    """Let local times count from a time of the run; the offset is exact. length: duration of the epoch."""
+    """Let local times count from a time of the run, and compute the offset, which is rounded only once.
+
+    time: time of the run at which the epoch begins. length: duration of the epoch, time.
+    """
     ahead = float(Fraction(shear.speed) * Fraction(time) % Fraction(shear.Lx))
     shear.offset[:] = ahead, ahead + shear.speed * length
 
@@ -57,13 +63,16 @@ def at(shear: Shear | None, time: float) -> Shear | None:
 
 
 def longest_epoch(shear: Shear | None) -> float:
-    """Longest epoch, time: a power of two, in which the image above moves by at most one width of the box."""
+    """Longest duration of an epoch, time; infinite without shear.
+
+    It is a power of two, in which the image above the box moves by at most the width of the box.
+    """
     return math.inf if shear is None else 2.0 ** math.floor(math.log2(shear.Lx / shear.speed))
 
 
 @inline
 def offset_at(shear, time):
-    """Distance by which the image above is ahead at a local time, length."""
+    """Displacement along x, at a local time, of the periodic image above the box, length."""
     return shear.offset[0] + shear.speed * time
 
 
@@ -71,7 +80,7 @@ def offset_at(shear, time):
 def subtract_offset(x, vx, time, shear, images):
     """Subtract the displacement and velocity of an image from a relative position and velocity along x.
 
-    x: length. vx: length/time. time: local time. images: numbers of box lengths (x, y) to the image.
+    x: length. vx: length/time. time: local time. images: numbers of box lengths (x, y) by which the image is shifted.
     """
     if shear is not None:
         return x - offset_at(shear, time) * images[1], vx - shear.speed * images[1]
@@ -80,7 +89,10 @@ def subtract_offset(x, vx, time, shear, images):
 
 @inline
 def less_offset_of_nearest(x, y, time, shear):
-    """Subtract the displacement of the nearest image along y from a relative position (x, y), length; time: local."""
+    """Convert a relative position (x, y), length, to that of the nearest image along y, whose displacement is included.
+
+    time: local time at which the displacement is computed.
+    """
     if shear is not None:
         rows = np.rint(y / shear.Ly)
         return x - offset_at(shear, time) * rows, y - shear.Ly * rows
@@ -89,7 +101,7 @@ def less_offset_of_nearest(x, y, time, shear):
 
 @inline
 def enter_common_frame(a, b, shear, images):
-    """Transform the velocities of two discs to the frame half-way between the box of a and the box of b's image."""
+    """Transform two discs' velocities to the frame midway between the frames of a's box and of the box of b's image."""
     if shear is not None:
         half = 0.5 * shear.speed * images[1]
         a.vx -= half
@@ -107,7 +119,7 @@ def leave_common_frame(a, b, shear, images):
 
 @inline
 def set_velocities_along_x(a, b, shear, velocities):
-    """Set the velocities along x of two records, if sides are sheared."""
+    """Set the velocities along x of two discs if sides are sheared."""
     if shear is not None:
         a.vx, b.vx = velocities
 
@@ -116,7 +128,8 @@ def set_velocities_along_x(a, b, shear, velocities):
 def crossing_time(disc, side, length, shear, contact):
     """Local time at which a disc's centre reaches a sheared side, bottom (2) or top (3); NEVER if it does not.
 
-    If the sides are not sheared, it is `contact`, the time of the disc's contact with the side.
+    length: height of the box. If the sides are not sheared, the result is `contact`, the time at which the disc touches
+    the side.
     """
     if shear is not None:
         upwards = disc.vy > 0.0
@@ -128,9 +141,9 @@ def crossing_time(disc, side, length, shear, contact):
 
 @inline
 def cross(disc, side, shear):
-    """Move a disc's record, at the time of its crossing, to the opposite side; return the box lengths upwards, 1 or -1.
+    """Move a disc that is crossing a sheared side to the opposite side; return 1 for the top, -1 for the bottom.
 
-    Afterwards its position along x may be outside the box.
+    The disc must be at the time of the crossing. Its new x coordinate may be outside the box.
     """
     rows = 1 if side == 3 else -1
     disc.x -= offset_at(shear, disc.t) * rows
@@ -141,12 +154,12 @@ def cross(disc, side, shear):
 
 @inline
 def flow_at(y, rate, height):
-    """Mean velocity along x at a height y in a box of the given height, length/time; numbers or arrays."""
+    """Mean velocity along x at height y in a box of the given height, length/time; numbers or arrays."""
     return rate * (y - 0.5 * height)
 
 
 @inline
 def add_flow(disc, shear):
-    """Add the mean velocity at a disc's position to its velocity, if sides are sheared."""
+    """Add the mean flow velocity at a disc's position to the disc's velocity if sides are sheared."""
     if shear is not None:
         disc.vx += flow_at(disc.y, shear.rate, shear.Ly)

@@ -1,15 +1,16 @@
 """Stress tensor, heat flux and wall impulses of a gas, accumulated as exact sums.
 
-The pressure tensor times area and time is P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The integral is the kinetic part.
-The sum over collisions of two discs is the collisional part, where Δp is the impulse on one disc and r its position
-relative to the other. No bit of a term changes if the two discs are exchanged. Both parts are energies times time.
+The pressure tensor P, multiplied by the area A and the time τ, is P_ab A τ = ∫ Σ m v_a v_b dt + Σ Δp_a r_b. The
+integral is the kinetic contribution. The sum over collisions of two discs is the collisional contribution, where Δp is
+the impulse on one of the discs and r the position of that disc relative to the other. Exchanging the two discs does not
+change any bit of a term. Both contributions are energies times time.
 
 The heat flux is accumulated in the same way as ∫ Σ (m v²/2) v_a dt + Σ ΔE r_a, an energy times length, where ΔE is the
-energy gained by one disc and velocities are relative to the centre of mass. It is recorded only if velocities change
-exclusively in collisions of smooth elastic discs.
+energy gained by one disc and velocities are relative to the centre of mass. The heat flux is recorded only if
+velocities change exclusively in collisions of smooth elastic discs.
 
-A face is one side of a wall. Faces 0 to 3 are the sides of the box, followed by the two faces of each wall segment,
-first the face on the left when looking from its start to its end.
+A face is one side of a wall. Faces 0 to 3 are the sides of the box. Each wall segment then has two faces: first the
+face on the left as seen from the start of the segment, then the face on the right.
 """
 
 from typing import Any, NamedTuple
@@ -23,24 +24,24 @@ from idealgas.physics.periodic import shift_by_images
 
 U = np.uintp
 KINETIC, COLLISIONAL = slice(0, 3), slice(3, None)
-"""Components of the tensor: kinetic xx, xy, yy, and collisional xx, xy, yy and, for rough discs, yx."""
+"""Components of the tensor: kinetic xx, xy, yy, then collisional xx, xy, yy and, for rough discs, yx."""
 
 TERMS = np.dtype([("column", "f8", (BATCH,))])
-"""Terms of a sum, one per collision."""
+"""Terms of a sum, one for each buffered collision."""
 
 PARTS = 7
-"""Largest number of sums of the tensor, for rough discs."""
+"""Largest number of sums for the tensor, which rough discs require."""
 
 HEAT = 4
-"""Number of sums of the heat flux."""
+"""Number of sums for the heat flux."""
 
 
 class Buffer(NamedTuple):
-    """Terms of collisions; `flush` adds them together, which is faster than adding them one by one.
+    """Buffered terms of collisions; adding them together with `flush` is faster than adding them one by one.
 
     Attributes:
         number: (1,) i8, number of buffered collisions.
-        terms: (PARTS + HEAT,) TERMS, terms of the tensor, then of the heat flux.
+        terms: (PARTS + HEAT,) TERMS, terms of the tensor, followed by those of the heat flux.
     """
 
     number: np.ndarray
@@ -48,18 +49,18 @@ class Buffer(NamedTuple):
 
 
 class StressAccumulator(NamedTuple):
-    """Sums of a run for the stress tensor, the heat flux and the walls, and numbers of collisions.
+    """Sums over a run for the stress tensor, the heat flux and the walls, and numbers of collisions.
 
     Attributes:
         tensor: (6,) SUM, kinetic xx, xy, yy, then collisional xx, xy, yy, energy times time; for rough discs (7,), with
-            the collisional yx, which equals xy for smooth discs.
-        buffer: terms that are not yet in these sums.
-        walls: (1,) SUM, -Σ r·Δp over all wall hits, with r from the centre of the box and Δp the impulse on the disc,
-            energy times time.
+            collisional yx appended, which equals xy for smooth discs.
+        buffer: terms that have not yet been added to these sums.
+        walls: (1,) SUM, -Σ r·Δp over all wall hits, where r is the position relative to the centre of the box and Δp
+            is the impulse on the disc, energy times time.
         normal_impulse: (F,) SUM, impulse on each face along its normal, into the wall, mass length/time.
         tangential_impulse: (F,) SUM, impulse on each face along its tangent, mass length/time. The tangent of a side
             points towards larger coordinates, and the tangent of a segment from its start to its end.
-        hits: (F,) i8, number of hits of each face.
+        hits: (F,) i8, number of hits on each face.
         pairs: (S, S) i8, numbers of collisions of species i and j, in the upper triangle; None for a single species.
         species: (N,) u2, species of each disc by id; None for a single species.
         x: x coordinate of the centre of the box, length.
@@ -92,7 +93,7 @@ def empty_buffer() -> Buffer:
 
 @inline
 def kinetic_flow(mass, vx, vy, delay, gravity):
-    """Kinetic stress (xx, xy, yy), energy times time, of a disc in free flight.
+    """Kinetic contribution (xx, xy, yy) of a disc in free flight to the stress, energy times time.
 
     vx, vy: velocity at the start, length/time. delay: duration of the flight, time.
     """
@@ -111,14 +112,17 @@ def kinetic_flow(mass, vx, vy, delay, gravity):
 
 @inline
 def kinetic_heat_flow(mass, vx, vy, delay):
-    """Kinetic heat flux (x, y), energy times length, of a disc in free flight, relative to the centre of mass."""
+    """Kinetic contribution (x, y) of a disc in free flight to the heat flux, energy times length.
+
+    vx, vy: velocity relative to the centre of mass, length/time. delay: duration of the flight, time.
+    """
     energy = 0.5 * mass * (vx * vx + vy * vy) * delay
     return energy * vx, energy * vy
 
 
 @inline
 def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
-    """Energy gained by a disc whose velocity changed, in a frame with the velocity (frame_x, frame_y).
+    """Energy gained by a disc whose velocity changed, in a frame that moves at velocity (frame_x, frame_y).
 
     Velocities are in length/time, the energy in mass length²/time².
     """
@@ -129,7 +133,7 @@ def energy_gained(mass, vx, vy, vx_after, vy_after, frame_x, frame_y):
 
 @inline
 def record_flight(flow, disc, time, gravity):
-    """Record the flight of a disc from its record's time to a local time, if stress is recorded."""
+    """Record the flight of a disc from its own local time to a later local time, if stress is recorded."""
     if flow is not None:
         xx, xy, yy = kinetic_flow(disc.m, disc.vx, disc.vy, time - disc.t, gravity)
         add(flow.tensor[U(0)], xx)
@@ -139,10 +143,10 @@ def record_flight(flow, disc, time, gravity):
 
 @inline
 def record_collision_stress(flow, a, b, a_id, b_id, flights, images, effects):
-    """Record the collision of two discs, whose records are at the time of contact, if stress is recorded.
+    """Record the collision of two discs, whose stored states must be at the time of contact, if stress is recorded.
 
-    flights: durations of the flights (a, b) up to the contact, time, and velocities (a_vx, a_vy, b_vx, b_vy) at their
-    start and at their end, before the collision, length/time.
+    flights: durations (a, b) of the flights that ended with the contact, time; velocities (a_vx, a_vy, b_vx, b_vy) at
+    the start of these flights, length/time; and the same velocities just before the collision.
     """
     if flow is not None:
         number, terms = flow.buffer.number, flow.buffer.terms
@@ -169,9 +173,9 @@ def record_collision_stress(flow, a, b, a_id, b_id, flights, images, effects):
 
 @inline
 def buffer_heat(heat, flow, k, a, b, flights, x, y):
-    """Buffer the terms of a collision for the heat flux in row k of the buffer, if the heat flux is recorded.
+    """Write the heat-flux terms of a collision to row k of the buffer, if the heat flux is recorded.
 
-    x, y: position of a relative to b, length.
+    x, y: position of a relative to b, length. The other arguments are as in `record_collision_stress`.
     """
     if heat is not None:
         terms, vx, vy = flow.buffer.terms, flow.vx, flow.vy
@@ -198,7 +202,10 @@ def flush(flow):
 
 @inline
 def add_terms(sums, terms, first, parts, number):
-    """Add `number` terms to each of the first `parts` sums, from column `first` of the terms on; sums may be None."""
+    """Add `number` terms to each of the first `parts` sums; `sums` may be None.
+
+    first: index in `terms` of the terms of the first sum.
+    """
     if sums is not None:
         for k in range(parts):
             add_all(sums[U(k)], terms[U(first + k)].column[:number])
@@ -206,7 +213,7 @@ def add_terms(sums, terms, first, parts, number):
 
 @inline
 def count_pair(pairs, species, a_id, b_id):
-    """Count a collision by the species of its discs, if there are several species."""
+    """Count a collision under the species of its two discs, if there are several species."""
     if species is not None:
         i = species[U(a_id)]
         j = species[U(b_id)]
@@ -215,7 +222,7 @@ def count_pair(pairs, species, a_id, b_id):
 
 @inline
 def record_hit(flow, disc, face, normal, tangent, impulse):
-    """Record a hit of a face, if stress is recorded; the disc's record must be at the contact, inside the box.
+    """Record a hit on a face, if stress is recorded; the disc must be at the contact, inside the box.
 
     normal: unit normal of the face towards the disc. tangent: unit tangent of the face. impulse: impulse on the disc,
     mass length/time.
@@ -231,7 +238,7 @@ def record_hit(flow, disc, face, normal, tangent, impulse):
 
 @njit
 def complete_flights(record, time, gravity, flow, absorbing):
-    """Add the buffered collisions, and then the flights of all discs from their records' times to a local time."""
+    """Add the buffered collisions, then the flights of all discs from their own local times to a common local time."""
     flush(flow)
     terms = flow.buffer.terms
     for first in range(0, record.shape[0], BATCH):
@@ -249,9 +256,9 @@ def complete_flights(record, time, gravity, flow, absorbing):
 
 @inline
 def complete_heat(heat, terms, record, first, number, time, vx, vy):
-    """Add the kinetic heat flux of `number` discs from the times of their records to a local time, if it is recorded.
+    """Add the kinetic heat flux of `number` discs, from `first` on, up to a local time, if the heat flux is recorded.
 
-    It is not recorded for a box with walls inside, so no disc can have left the gas.
+    The heat flux is not recorded for a box with walls inside, so no disc can have left the gas.
     """
     if heat is not None:
         for k in range(number):
@@ -263,7 +270,7 @@ def complete_heat(heat, terms, record, first, number, time, vx, vy):
 
 
 def sums_of(flow: StressAccumulator) -> list[np.ndarray]:
-    """Return all arrays of SUM."""
+    """Return all arrays of type SUM."""
     return [
         flow.tensor,
         flow.walls,
@@ -279,7 +286,7 @@ def counts_of(flow: StressAccumulator) -> list[np.ndarray]:
 
 
 def copy_of(flow: StressAccumulator | None) -> StressAccumulator | None:
-    """Return an independent copy of the sums and the buffer; None for None."""
+    """Return an independent copy of the sums and the buffer; None if stress is not recorded."""
     if flow is None:
         return None
     copies: Any = {name: part.copy() for name, part in flow._asdict().items() if isinstance(part, np.ndarray)}

@@ -1,8 +1,8 @@
 """Tangent map of a gas: how small deviations of positions and velocities grow in flights and collisions.
 
-The method follows Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. Deviations
-are K columns of an array (N, 4, K) with δx, δy (length), δvx, δvy (length/time) of each disc. The shift of the time of
-a collision is taken into account to first order.
+The method follows Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. An array (N,
+4, K) contains K deviations, each with components δx, δy (length), δvx, δvy (length/time) for every disc. The shift in
+the time of a collision is taken into account to first order.
 """
 
 import math
@@ -20,7 +20,7 @@ def fly(deviations, i, delay):
 
 @inline
 def collide_smooth(deviations, i, j, masses, x, y, vx, vy):
-    """Apply the elastic collision of two smooth discs to the deviations.
+    """Propagate the deviations through an elastic collision of two smooth discs i and j.
 
     masses: (N,). x, y: position of disc i relative to disc j at contact, length. vx, vy: velocity of disc i relative to
     disc j before the collision, length/time.
@@ -50,7 +50,7 @@ def collide_smooth(deviations, i, j, masses, x, y, vx, vy):
 
 @inline
 def reflect(deviations, i, axis, velocity, gravity):
-    """Apply the elastic reflection of disc i at a side of the box to the deviations.
+    """Propagate the deviations through an elastic reflection of disc i at a side of the box.
 
     axis: axis of the normal, 0 or 1. velocity: velocity along this axis before the reflection, length/time. gravity:
     acceleration along this axis, length/time².

@@ -1,8 +1,9 @@
-"""Thermal walls: discs leave with the velocity distribution of a gas that effuses from the wall at its temperature.
+"""Thermal walls: discs leave a wall with the velocity distribution of a gas that effuses at the wall's temperature.
 
-The normal velocity v has the density (m v/T) exp(-m v²/2T); tangential velocity and spin are Gaussian. The random
-numbers are a pure function of the seed, the disc's id and the number of its emissions (SplitMix64: Steele, Lea & Flood,
-OOPSLA 2014), so they depend neither on the order of discs in memory nor on whether a run was resumed.
+The normal velocity v has probability density (m v/T) exp(-m v²/2T); the tangential velocity and the spin are Gaussian.
+The random numbers are a pure function of the seed, the disc's id and the number of times that walls have emitted the
+disc (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend neither on the order of discs in memory nor on
+whether a run was resumed.
 """
 
 import math
@@ -19,7 +20,7 @@ class Thermal(NamedTuple):
     """Temperatures of the walls, and the state of the random numbers.
 
     Attributes:
-        temperature: (walls,) f8, mass length²/time² (k_B = 1), negative for a wall that reflects.
+        temperature: (walls,) f8, mass length²/time² (k_B = 1); negative for a wall that reflects.
         seed: seed of the scene.
         emissions: (N,) u8 by id, number of times that walls have emitted each disc.
     """
@@ -39,7 +40,10 @@ def is_thermal(thermal, wall):
 
 @inline
 def uniform(thermal, disc_id, draw):
-    """Random number in (0, 1] for a disc's current emission; draw: index of the number within the emission."""
+    """Random number in (0, 1] for a disc's current emission.
+
+    draw: index of the random number within the emission.
+    """
     return disc_uniform(thermal.seed, disc_id, thermal.emissions[np.uintp(disc_id)], draw)
 
 

@@ -1,9 +1,9 @@
-"""Andersen's thermostat: at random times a disc receives a random velocity at the temperature of a heat bath.
+"""Andersen thermostat: at random times a disc receives a random velocity at the temperature of a heat bath.
 
 The collisions of each disc with the bath are an independent Poisson process, so the gas approaches the canonical
-ensemble for any rate: Andersen, J. Chem. Phys. 72, 2384 (1980). Times and velocities are a pure function of the seed,
-the disc's id and the number of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend neither on
-the order of events nor on whether a run was resumed.
+ensemble at any rate: Andersen, J. Chem. Phys. 72, 2384 (1980). The times and velocities are a pure function of the
+seed, the disc's id and the index of the collision (SplitMix64: Steele, Lea & Flood, OOPSLA 2014), so they depend
+neither on the order of events nor on whether a run was resumed.
 """
 
 import math
@@ -21,10 +21,10 @@ class Thermostat(NamedTuple):
 
     Attributes:
         temperature: temperature of the bath, mass length²/time² (k_B = 1).
-        rate: rate of the collisions of a disc with the bath, 1/time.
+        rate: rate at which each disc collides with the bath, 1/time.
         seed: seed of the scene.
         time: (N,) f8 by id, local time of each disc's next collision with the bath.
-        number: (N,) u8 by id, number of each disc's next collision with the bath, from 0.
+        number: (N,) u8 by id, index of each disc's next collision with the bath, from 0.
     """
 
     temperature: float
@@ -45,22 +45,23 @@ def uniform(thermostat, disc_id, draw):
 
 @inline
 def interval(thermostat, disc_id):
-    """Time between two collisions of a disc with the bath, exponentially distributed with the mean 1/rate."""
+    """Time between two collisions of a disc with the bath, exponentially distributed with mean 1/rate."""
     return -log(uniform(thermostat, disc_id, 3)) / thermostat.rate
 
 
 @njit
 def draw_first_collisions(thermostat):
-    """Draw the local time of every disc's first collision with the bath, counted from 0."""
+    """Draw the local time, counted from 0, of every disc's first collision with the bath."""
     for disc_id in range(thermostat.time.shape[0]):
         thermostat.time[disc_id] = interval(thermostat, disc_id)
 
 
 @inline
 def andersen_collision(disc, disc_id, thermostat, rotation):
-    """Give a disc a random velocity and spin, and draw its next collision; its record must be at the time of collision.
+    """Give a disc that collides with the bath a random velocity and spin, and draw the time of its next collision.
 
-    Each component of the velocity is Gaussian with the variance T/m, and the spin with T/I.
+    The disc must be at the time of the collision. Each component of the velocity is Gaussian with variance T/m, and the
+    spin is Gaussian with variance T/I.
     """
     if thermostat is not None:
         u = np.uintp(disc_id)
@@ -77,5 +78,8 @@ def andersen_collision(disc, disc_id, thermostat, rotation):
 
 
 def end_epoch(thermostat: Thermostat, length: float) -> None:
-    """Let the local times of the next collisions count from the end of the epoch; length: duration of the epoch."""
+    """Shift the local times of the next collisions so that they count from the end of the epoch.
+
+    length: duration of the epoch, time.
+    """
     thermostat.time[:] -= length

@@ -1,8 +1,8 @@
-"""A vibrating side of the box: it moves on parabolas between the side and twice the amplitude inside the box.
+"""A vibrating side of the box: its height inside the box follows parabolas between 0 and twice the amplitude A.
 
-The acceleration has a constant magnitude and changes sign at the mean height, so contact times can be computed as for a
-free fall. The motion is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, that is 1.03 A, 0.04 A, …
-At time 0 it is at rest at the side.
+The acceleration has a constant magnitude and changes sign at the mean height, so contact times can be computed as for
+free fall. The motion is nearly harmonic: its Fourier amplitudes are 32 A/(π n)³ for odd n, that is, 1.03 A, 0.04 A, …
+At time 0 the side is at rest at its lowest point, height 0.
 """
 
 import math
@@ -25,13 +25,13 @@ VIBRATION = np.dtype(
 )  # fmt: skip
 
 MOST_PARABOLAS = 64
-"""Number of parabolas after which a disc that is still within reach of the side only grazes its highest point."""
+"""Number of parabolas after which a disc still within reach of the side only grazes the highest point of the side."""
 
 U = np.uintp
 
 
 def begin_epoch(vibration: np.recarray, time: float, _: float) -> None:
-    """Let local times count from a time of the run; the phase is exact."""
+    """Let local times count from a time of the run; the phase of the vibration is computed without rounding."""
     for side in vibration:
         if side.amplitude > 0.0:
             side.start = -math.fmod(time, 2.0 * side.half)
@@ -39,13 +39,16 @@ def begin_epoch(vibration: np.recarray, time: float, _: float) -> None:
 
 @inline
 def parabola_at(side, time):
-    """Number of the parabola on which a side is at a local time; even parabolas are around its lowest point."""
+    """Index of the parabola that a side follows at a local time; even indices are parabolas around the lowest point."""
     return np.floor((time - side.start) / side.half + 0.5)
 
 
 @inline
 def height_on(side, parabola, time):
-    """Height (length), velocity (length/time) and acceleration (length/time²) of a side on a parabola at a time."""
+    """Height, velocity and acceleration of a side that follows the given parabola, at a local time.
+
+    Returns (length, length/time, length/time²). parabola: index of the parabola.
+    """
     since = time - side.start - parabola * side.half
     if parabola % 2.0 == 0.0:
         return 0.5 * side.acceleration * since * since, side.acceleration * since, side.acceleration
@@ -55,7 +58,11 @@ def height_on(side, parabola, time):
 
 @inline
 def edge_motion(disc, number, length, gravity):
-    """Height of a disc's edge above a side's lowest point, and the disc's velocity and acceleration into the box."""
+    """Height of a disc's edge above a side's lowest point, and the disc's velocity and acceleration into the box.
+
+    number: number of the side, 0 to 3. length: distance to the opposite side, length. The results are in units of
+    length, length/time and length/time².
+    """
     pull = acceleration_along(gravity, number >= 2)
     position, velocity = (disc.x, disc.vx) if number < 2 else (disc.y, disc.vy)
     if number & 1:
@@ -65,9 +72,10 @@ def edge_motion(disc, number, length, gravity):
 
 @inline
 def misses_side_until(disc, side, number, length, gravity, limit):
-    """Whether a disc certainly does not touch a vibrating side up to a local time; faster than `vibrating_contact`.
+    """Whether it is certain that a disc does not touch a vibrating side up to a local time `limit`.
 
-    The test extends slightly beyond this limit, so that rounding does not matter.
+    This test is faster than `vibrating_contact`. It extends slightly beyond the limit, so that rounding does not
+    matter.
     """
     height, velocity, pull = edge_motion(disc, number, length, gravity)
     return stays_above(height - 2.0 * side.amplitude, velocity, pull, limit * (1.0 + 1e-9) - disc.t)

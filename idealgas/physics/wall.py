@@ -3,13 +3,13 @@
 A fixed disc is a segment of length 0 whose end points have a radius.
 
 The motion (d, s, vn, vt, an, at) of a disc is given in coordinates of the segment: d and s are the normal and
-tangential position (length) of its centre relative to the start point, vn and vt its velocity (length/time), an and at
-its acceleration (length/time²):
+tangential components of the position (length) of its centre relative to the start point, vn and vt those of its
+velocity (length/time), an and at those of its acceleration (length/time²):
 
            ○ disc
            │
            │ d
-    ●──────┴──────●        the foot point is at arc length s; at the body of the segment, 0 < s < length
+    ●──────┴──────●        the foot of the perpendicular is on the body if 0 < s < length
     start  s      end
 """
 
@@ -37,7 +37,7 @@ SEGMENT = np.dtype(
         ("tx", "f8"), ("ty", "f8"),  # unit tangent
         ("length", "f8"),  # distance between the two end points, length
         ("radius", "f8"),  # radius of the end points, length: the radius of a fixed disc, otherwise 0
-        ("active", "?"),  # whether it is present in this epoch
+        ("active", "?"),  # whether the segment is present in this epoch
     ],
     align=True,
 )  # fmt: skip
@@ -45,7 +45,10 @@ SEGMENT = np.dtype(
 
 @inline
 def foot_inside(s, length):
-    """Whether the foot point of a disc, at arc length s, lies strictly between the ends of a segment of this length."""
+    """Whether the foot of the perpendicular from a disc to a segment lies strictly between the ends of the segment.
+
+    s: distance of the foot from the start, length. length: length of the segment.
+    """
     return (s > 0.0) & (s < length)
 
 
@@ -66,8 +69,8 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 def accelerated_body_delay(motion, r, length):
     """Time until a disc of radius r on a parabola touches a segment's body; NEVER if it does not.
 
-    It is the earliest approach to one of the two faces with the foot point inside. A disc on which a gate has closed,
-    and which cannot rise out of it, bounces at its current depth.
+    The disc touches at its earliest approach to either face at which the foot of the perpendicular is on the body. If a
+    gate has closed on a disc and gravity keeps it from leaving the gate, the disc bounces at its current depth.
     """
     d, s, vn, vt, an, at = motion
     best = NEVER
@@ -101,7 +104,10 @@ def accelerated_body_delay(motion, r, length):
 
 @inline
 def straight_end_delay(x, y, disc, reach):
-    """Time until a disc in straight flight, at (x, y) from an end of a segment, is within reach of it, or NEVER."""
+    """Time until a disc in straight flight is within `reach` of an end of a segment; NEVER if it never is.
+
+    x, y: position of the disc relative to the end, length. reach: length.
+    """
     meets, delay = collision_delay(x, y, disc.vx, disc.vy, reach)
     return delay if meets else NEVER
 
@@ -110,8 +116,8 @@ def straight_end_delay(x, y, disc, reach):
 def moves_off(delay, far, motion, length):
     """Whether a disc that touches an end after `delay` moves away from the segment's nearest point.
 
-    The nearest point may be on the body or at the other end. far: whether the end is the one at arc length `length`.
-    This happens only if a gate has closed on the disc, which then reaches the end from within the wall.
+    The nearest point may be on the body or at the other end. far: whether the end is at distance `length` from the
+    start. This happens only if a gate has closed on the disc, which then reaches the end from within the wall.
     """
     d, s, vn, vt, an, at = motion
     foot = parabola(s, vt, at, delay)
@@ -127,9 +133,9 @@ def moves_off(delay, far, motion, length):
 
 @inline
 def point_delay(x, y, disc, reach, gravity, after):
-    """Time until a disc, at (x, y) from a point, is within reach (length) of the point; NEVER if it never is.
+    """Time until a disc, at (x, y) from a point, is within `reach` (length) of the point; NEVER if it never is.
 
-    after: on a parabola, only a contact after this time counts.
+    after: on a parabola, only an approach that begins after this time counts.
     """
     if gravity is not None:
         return first_contact_root(x, y, disc, gravity, reach, after)
@@ -140,7 +146,8 @@ def point_delay(x, y, disc, reach, gravity, after):
 def end_delay(x, y, far, motion, length, disc, reach, gravity):
     """Time until a disc, at (x, y) from an end of a segment, touches that end; NEVER if it does not.
 
-    far: whether the end is the one at arc length `length`. reach: distance at which they touch, length.
+    far: whether the end is at distance `length` from the start. reach: distance from the end at which the disc touches
+    it, length.
     """
     delay = -1.0
     for _ in range(2):  # on a parabola a disc approaches a point at most twice
@@ -174,17 +181,17 @@ def segment_normal(disc, segment, passage, periodic, images):
 
 @inline
 def reflection_changes(disc, disc_id, nx, ny, restitution):
-    """Whether a reflection would change a digit of a disc's velocity; if not, the disc counts as reflected."""
+    """Whether a reflection would change any digit of a disc's velocity; if not, the disc counts as reflected."""
     vx, vy = reflected_velocity(disc, disc_id, nx, ny, restitution)
     return (vx != disc.vx) | (vy != disc.vy)
 
 
 @inline
 def misses_segment(disc, segment, gravity, periodic, images):
-    """Whether a disc certainly does not touch a segment, because it does not enter the circle around the segment.
+    """Whether it is certain that a disc does not touch a segment, because it misses a circle around the segment.
 
-    This is faster than `segment_contact`, which has the same arguments. The circle is slightly enlarged, so that
-    rounding does not matter. With gravity the path is not a straight line, and the result is always False.
+    This test is faster than `segment_contact`, whose arguments have the same meaning. The circle is slightly enlarged,
+    so that rounding does not matter. With gravity the path is not a straight line, and the result is always False.
     """
     if gravity is not None:
         return False
@@ -215,7 +222,7 @@ def solid_delay(x, y, motion, disc, segment, gravity):
 
 @inline
 def one_way_delay(x, y, motion, disc, segment, passage, gravity):
-    """Time until a disc touches the closed face or an end of a segment that lets it pass from one side, or NEVER."""
+    """Time until a disc touches the closed face or an end of a one-way segment; NEVER if it does not."""
     side, length = closed_side(passage), segment.length
     d, s, vn, vt, an, at = motion
     delay = closed_face_delay(side * d, side * vn, side * an, disc.r)
@@ -239,10 +246,10 @@ def segment_delay(x, y, motion, disc, segment, passage, gravity):
 def segment_contact(disc, disc_id, segment, passage, gravity, restitution, periodic, images):
     """Local time at which a disc touches the body or an end of a segment; NEVER if it does not.
 
-    passage: from which side the segment lets the disc pass, see `permeable`; None if no wall is permeable.
+    passage: sides from which the segment lets the disc pass, see `permeable`; None if no wall is permeable.
 
-    A touching disc whose reflection would not change a digit of its velocity counts as reflected, unless gravity
-    presses it against the wall.
+    A touching disc whose reflection would not change any digit of its velocity counts as already reflected, unless
+    gravity presses it against the wall.
     """
     tx = segment.tx
     ty = segment.ty
