@@ -1,4 +1,4 @@
-"""Changes that a program makes to a scene during its run: past steps are kept, and later steps are replaced."""
+"""Changes that a program makes to a scene during a run: earlier steps of a value are kept, later steps are replaced."""
 
 from typing import Any, NamedTuple
 
@@ -11,15 +11,16 @@ from idealgas.toml.overrides import OverrideError, find, value_of
 from idealgas.toml.text import TextOrigin
 
 OPEN = "open"
-"""Key that opens a wall, or closes it if false."""
+"""Key that opens a wall if its value is true, and closes it if false."""
 
 
 class SceneChange(NamedTuple):
-    """A change of a scene.
+    """A change to a scene.
 
     Attributes:
-        time: time from which on the change holds.
-        setting: "table.key=value" for a value that may be in steps, or "wall.NAME.open=true" or "false".
+        time: time at which the change takes effect.
+        setting: "table.key=value" for a value that may change in steps, "wall.NAME.open=true" or
+            "wall.NAME.open=false".
     """
 
     time: float
@@ -27,7 +28,7 @@ class SceneChange(NamedTuple):
 
 
 def changed_scene(scene: Scene, change: SceneChange) -> Scene:
-    """Return the scene with a change. Raises SceneError if the setting or the changed scene is invalid."""
+    """Return the scene after a change. Raises SceneError if the setting or the changed scene is invalid."""
     document = scene.model_dump(mode="json", by_alias=True, exclude_none=True)
     try:
         apply_change(document, change)
@@ -37,7 +38,7 @@ def changed_scene(scene: Scene, change: SceneChange) -> Scene:
 
 
 def apply_change(document: dict[str, Any], change: SceneChange) -> None:
-    """Apply a change to a document. Raises OverrideError if the document has no such key."""
+    """Apply a change to a document. Raises OverrideError if the key is missing or cannot change."""
     (*tables, key), table, text = find(change.setting, document)
     if not text:
         raise OverrideError("no value")
@@ -55,7 +56,7 @@ def apply_change(document: dict[str, Any], change: SceneChange) -> None:
 
 
 def effects_at(scene: Scene, later: Later) -> dict[str, Any]:
-    """Return the tables of the effects, by key, for a scene that continues from a later time of another scene."""
+    """Return the tables of the effects, by key, for a new scene that continues this scene from a later time."""
     return {effect.key: effect.continued(getattr(scene, effect.key), later) for effect in EFFECTS if effect.key}
 
 

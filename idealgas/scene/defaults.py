@@ -1,4 +1,4 @@
-"""Mean speeds and energies that follow from the discs at the start, and the motion of discs that have come to rest."""
+"""Mean speed and energy of the discs at the start, and the motion of discs that have come to rest."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 
 
 def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
-    """Expected mean speed of species and of discs with velocities (n, 2) at the start, length/time."""
+    """Return the expected mean initial speed of the discs of all species and of discs with given velocities.
+
+    Args:
+        species: species whose velocities are drawn or listed in their tables.
+        velocity: (n, 2), velocities of the discs that are given individually, length/time.
+    """
     speeds = [math.hypot(*v) for v in velocity.tolist()]
     for s in species:
         if s.velocities is not None:
@@ -29,7 +34,13 @@ def mean_speed(species: Sequence[Species], velocity: np.ndarray) -> float:
 
 
 def mean_kinetic_energy(species: Sequence[Species], mass: np.ndarray, velocity: np.ndarray) -> float:
-    """Mean kinetic energy of species and of discs with masses (n,) and velocities (n, 2) at the start, energy."""
+    """Return the expected mean initial kinetic energy of the discs of all species and of discs with given velocities.
+
+    Args:
+        species: species whose velocities are drawn or listed in their tables.
+        mass: (n,), masses of the discs that are given individually.
+        velocity: (n, 2), velocities of the discs that are given individually, length/time.
+    """
     total = float(mass @ (velocity**2).sum(axis=1)) / 2
     for s in species:
         masses = np.repeat([size.mass for size in s.sizes], [size.number for size in s.sizes])
@@ -41,23 +52,24 @@ def mean_kinetic_energy(species: Sequence[Species], mass: np.ndarray, velocity: 
 
 
 def reference_speed(run: Run, largest: float) -> float:
-    """Reference speed of the Monte Carlo method, length/time; by default five times the largest speed at the start."""
+    """Return the reference speed of the Monte Carlo method, length/time; by default five times `largest`."""
     return run.v_ref or 5.0 * largest
 
 
 @dataclass(frozen=True)
 class RestingDisc:
-    """A disc that has come to rest on a wall or disc against which a constant force presses it.
+    """A disc that has come to rest on a wall or another disc, against which a constant force presses it.
 
-    It keeps bouncing without loss, because each hit comes less than a contact duration t after the previous one. With
-    the acceleration a, its speed is at most a t/2.
+    The disc keeps bouncing without loss, because each hit follows the previous one within the contact duration t. For
+    acceleration a, its speed is at most a t/2.
 
     Attributes:
-        hits: smallest and largest rate of hits of the disc, 1/t and 1/(et), 1/time.
-        height: largest height of its bounces, a t²/8, length.
-        energy: largest energy of its bounces divided by the disc's mass, a² t²/8, (length/time)².
-        per_free_time: largest number of its hits in a mean free time of the gas at the start. This number and the
-            largest rate are None for a coefficient e = 0, for which the disc has endless collisions at one instant.
+        hits: smallest and largest hit rates of the disc, 1/t and 1/(e t), where e is the coefficient of restitution,
+            1/time.
+        height: largest height of the bounces, a t²/8, length.
+        energy: largest energy of the bounces per unit mass of the disc, a² t²/8, (length/time)².
+        per_free_time: largest number of hits per initial mean free time of the gas. This number and the largest rate
+            are None for e = 0, because the disc would then collide infinitely often at one instant.
     """
 
     hits: tuple[float, float | None]

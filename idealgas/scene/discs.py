@@ -1,4 +1,4 @@
-"""Discs that are given individually, as arrays: from tables [[disc]], or from the state in which a scene starts."""
+"""Arrays of the discs that are given individually, in tables [[disc]] or in the state from which a scene starts."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -12,12 +12,12 @@ from idealgas.effects.properties import ActiveEffect
 from idealgas.effects.wall import FixedDisc
 
 EXPLICIT = "disc"
-"""Species of given discs without a species."""
+"""Name of the species of individually given discs that do not name their species."""
 
 
 @dataclass(frozen=True, eq=False)
 class InitialDiscs:
-    """Given discs, in order of id; they have the first ids of a scene.
+    """Individually given discs, in order of id; they have the lowest ids in a scene.
 
     Attributes:
         position: (n, 2), length.
@@ -25,9 +25,9 @@ class InitialDiscs:
         radius: (n,), length.
         mass: (n,), mass.
         angular_velocity: (n,), 1/time.
-        species: (n,), index into names.
+        species: (n,), index of each disc's species in `names`.
         names: names of the species.
-        index: (n,), number of each disc's table, or of the disc in its file.
+        index: (n,), number of the table [[disc]] of each disc, or of its row in the file or log.
     """
 
     position: np.ndarray
@@ -43,25 +43,26 @@ class InitialDiscs:
         return len(self.radius)
 
     def first(self, number: int) -> "InitialDiscs":
-        """Return the first discs; number: how many."""
+        """Return the first `number` discs."""
         keys = ("position", "velocity", "radius", "mass", "angular_velocity", "species", "index")
         names = self.names[: int(self.species[:number].max()) + 1]
         return replace(self, names=names, **{key: getattr(self, key)[:number] for key in keys})
 
     def reversed(self) -> "InitialDiscs":
-        """Return the discs with reversed velocities and spins."""
+        """Return the discs with reversed velocities and angular velocities."""
         return replace(self, velocity=0.0 - self.velocity, angular_velocity=0.0 - self.angular_velocity)
 
     def wrapped(self, size: Sequence[float], periodic: Sequence[bool], shear: float = 0.0) -> "InitialDiscs":
-        """Return the discs wrapped into a box, which may be periodic along x or y.
+        """Return the discs wrapped into the box along its periodic axes.
 
-        Between sheared sides, a disc that is moved down by a number of heights of the box becomes slower along x,
-        because the image of the gas from which it comes is faster. At the start all images are above each other.
+        Between sheared sides, the periodic image above the box moves faster along x. A disc that is shifted down by k
+        box heights therefore loses k times the velocity difference between the top and the bottom. At the start the
+        periodic images are aligned vertically, so positions along x do not change.
 
         Args:
             size: width and height of the box, length.
-            periodic: whether the box is periodic along x, and along y.
-            shear: shear rate of bottom and top, 1/time.
+            periodic: whether the box is periodic along x and along y.
+            shear: shear rate imposed by the bottom and top sides, 1/time.
         """
         position, velocity = self.position.copy(), self.velocity.copy()
         for axis in (a for a in range(2) if periodic[a]):
@@ -76,12 +77,12 @@ class InitialDiscs:
 
     @cached_property
     def numbers(self) -> dict[str, int]:
-        """Number of discs of each species, by name."""
+        """Number of discs of each species, by name of the species."""
         return dict(zip(self.names, np.bincount(self.species, minlength=len(self.names)).tolist(), strict=True))
 
     @cached_property
     def digest(self) -> str:
-        """Digest of all values and names."""
+        """Digest of the values of all discs and the names of their species."""
         sha = hashlib.sha256("\n".join(self.names).encode())
         for array in (self.position, self.velocity, self.radius, self.mass, self.angular_velocity, self.species):
             sha.update(np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes())
@@ -89,7 +90,13 @@ class InitialDiscs:
 
 
 def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> InitialDiscs:
-    """Make discs from columns by name, without checks. names: species of each disc."""
+    """Make discs from columns, without checking them.
+
+    Args:
+        columns: columns by name.
+        names: (n,), name of each disc's species.
+        index: (n,), see `InitialDiscs`; 0 to n - 1 by default.
+    """
     numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
     n = len(names)
     return InitialDiscs(
@@ -105,7 +112,7 @@ def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[in
 
 
 def discs_of_tables(tables: Sequence[Any]) -> InitialDiscs:
-    """Discs of the valid tables [[disc]] that are not fixed; None marks invalid tables."""
+    """Return the discs of the valid tables [[disc]], except fixed discs; None marks an invalid table."""
     items = [(i, d) for i, d in enumerate(tables) if d is not None and not d.fixed]
     keys = ("position", "velocity", "radius", "mass")
     columns = {key: [getattr(d, key) for _, d in items] for key in keys}
@@ -114,7 +121,7 @@ def discs_of_tables(tables: Sequence[Any]) -> InitialDiscs:
 
 
 def fixed_discs(tables: Sequence[Any]) -> tuple[FixedDisc, ...]:
-    """Fixed discs of the valid tables [[disc]]."""
+    """Return the fixed discs among the valid tables [[disc]]; None marks an invalid table."""
     return tuple(FixedDisc(i, d.position, d.radius) for i, d in enumerate(tables) if d is not None and d.fixed)
 
 
@@ -123,18 +130,18 @@ NO_DISCS = discs_of_tables(())
 
 @dataclass(eq=False)
 class ExplicitDiscs:
-    """Given discs of a scene, and what else follows from its tables.
+    """The individually given discs of a scene, with cached values that follow from its tables.
 
     All instances compare equal, because the digest in the table [start] distinguishes the discs.
 
     Attributes:
-        discs: the discs.
-        update: keys of the table [start] that follow from its state.
-        tables: tables [[disc]] from which the discs were made; None for the discs of a start.
+        discs: the individually given discs.
+        update: keys of the table [start] that follow from the state it names.
+        tables: tables [[disc]] from which the discs were made; None if the discs come from the table [start].
         walls: fixed discs of the tables `walls_of`.
         walls_of: tables [[disc]] from which `walls` were made.
         effects: active effects of the tables `effects_of`.
-        effects_of: tables from which `effects` were found.
+        effects_of: tables from which `effects` were determined.
     """
 
     discs: InitialDiscs = NO_DISCS

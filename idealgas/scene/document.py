@@ -1,6 +1,6 @@
-"""All tables of a scene, before checks between them, and the defaults and estimates that follow from several tables.
+"""All tables of a scene, before they are checked against each other, with the defaults and estimates derived from them.
 
-Units are reduced units (k_B = 1). The tables of the effects follow from the list of effects.
+All quantities are in reduced units (k_B = 1). The list of effects determines which tables of effects a scene may have.
 """
 
 import math
@@ -25,10 +25,10 @@ from idealgas.scene.tables import Box, Disc, Header, LogTable, Run, Species, Sta
 from idealgas.toml.table import Rectangle, Table, Vector
 
 DEFAULT_CONTACT = 0.05
-"""Default contact duration in units of the mean free time, if a constant force presses discs together."""
+"""Default contact duration in units of the mean free time, used if a constant force presses discs together."""
 
 SHORT_CONTACT = 1e-6
-"""Default contact duration in units of the time for a mean diameter at the mean speed, without such a force."""
+"""Default contact duration without such a force, in units of the mean diameter divided by the mean speed."""
 
 
 class _Discs(Table):
@@ -42,7 +42,7 @@ class _Discs(Table):
 
 
 def _fields_of_effects() -> dict[str, Any]:
-    """Fields for the tables of the effects; arrays of tables come first, next to the arrays of discs."""
+    """Return the fields for the tables of effects; arrays of tables come first, next to the arrays of discs."""
     fields: dict[str, Any] = {}
     for effect in sorted(EFFECTS, key=lambda effect: not effect.many):
         if effect.table is not None and effect.many:
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 
     class _DiscsAndEffects(_Discs):
         def __getattr__(self, name: str) -> Any:
-            """Return the table of an effect."""
+            """Return the table of the effect with this key."""
             ...
 
 else:
@@ -65,7 +65,7 @@ else:
 
 
 _TABLES = ("box", "disc", *(effect.key for effect in EFFECTS if effect.key))
-"""Fields on which the effects of a scene depend."""
+"""Fields that determine which effects a scene has."""
 
 
 class Document(_DiscsAndEffects):
@@ -77,7 +77,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def explicit_discs(self) -> InitialDiscs:
-        """Discs from the table [start] or the tables [[disc]]."""
+        """Discs that are given individually, in the table [start] or the tables [[disc]]."""
         if self.start is None and self._explicit.tables is not self.disc:
             self._explicit = ExplicitDiscs(discs_of_tables(self.disc), tables=self.disc)
         return self._explicit.discs
@@ -91,7 +91,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def walls(self) -> tuple[Any, ...]:
-        """Walls inside the box: the segments, followed by inner pistons at their positions at the start."""
+        """Walls inside the box: the segments, followed by inner pistons at their initial positions."""
         return (*self.segments, *(inner_pistons(self.piston, self.box.size) if self.box else ()))
 
     @property
@@ -101,7 +101,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def solids(self) -> Solids:
-        """Solids formed by the tables [[wall]]; their area includes fixed discs."""
+        """Solids formed by the tables [[wall]]; their area includes the area covered by fixed discs."""
         width, height = self.box.size
         made = any(wall is not None and wall.solid for wall in self.wall)
         solids = find_solids(tuple(self.wall), width * height) if made else NO_SOLIDS
@@ -111,14 +111,14 @@ class Document(_DiscsAndEffects):
 
     @property
     def free_area(self) -> float:
-        """Area of the room outside solids and fixed discs, length²."""
+        """Area of the room that is not covered by solids or fixed discs, length²."""
         left, bottom, right, top = self.room
         area, solid = (right - left) * (top - bottom), self.solids.area
-        return area - solid if area > solid else area  # otherwise part of the solids is beyond a piston
+        return area - solid if area > solid else area  # otherwise some solids are behind a piston
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
-        """Valid tables [[species]] with their indices; their counts do not include given discs."""
+        """Valid tables [[species]] with their indices; individually given discs are subtracted from their counts."""
         given = self.explicit_discs
         tables = [(i, s) for i, s in enumerate(self.species) if s is not None]
         if not given.names:
@@ -127,7 +127,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def sizes(self) -> list[Size]:
-        """Sizes and numbers of the discs that are not given."""
+        """Sizes and numbers of the discs that are placed by their species and not given individually."""
         return [size for _, s in self.placed for size in s.sizes]
 
     @property
@@ -137,16 +137,16 @@ class Document(_DiscsAndEffects):
 
     @property
     def draws_velocities(self) -> bool:
-        """Whether given discs receive new velocities from their species."""
+        """Whether individually given discs receive new velocities, drawn as their species prescribe."""
         return self.start is not None and self.start.velocities == "new"
 
     @property
     def accepted_overlap(self) -> float:
-        """Accepted overlap of given discs in addition to rounding, length."""
+        """Overlap of individually given discs that is accepted in addition to rounding errors, length."""
         return self._explicit.update.get("overlap", self.start and self.start.overlap) or 0.0
 
     def tables_of(self, effect: Effect[Any]) -> Tables:
-        """Return the part of the scene for an effect; while a scene is being checked, its box may be missing."""
+        """Return the tables on which an effect depends; while a scene is being checked, its box may be missing."""
         table = getattr(self, effect.key) if effect.key else None
         table = self.segments if effect.key == "wall" else table
         size, sides = (self.box.size, self.box.sides) if self.box else ((math.nan, math.nan), ())
@@ -169,29 +169,29 @@ class Document(_DiscsAndEffects):
 
     @property
     def properties(self) -> Properties:
-        """Properties of the gas with all effects that the scene has."""
+        """Combined properties of all effects that the scene has."""
         return combine(self.active_effects)
 
     def lacking(self, *properties: str) -> tuple[str, ...]:
-        """Names of the effects for which at least one of these properties is not true."""
+        """Return the names of the effects for which at least one of these properties is false."""
         return lacking(self.active_effects, *properties)
 
     @property
     def room(self) -> Rectangle:
-        """Rectangle x0, y0, x1, y1 that the gas may fill at the start, length."""
+        """Rectangle (x0, y0, x1, y1) available to the gas at the start, length."""
         rooms = [(0.0, 0.0, *self.box.size), *(piston.room(self.box.size) for piston in self.pistons)]
         left, bottom, right, top = zip(*rooms, strict=True)
         return max(left), max(bottom), min(right), min(top)
 
     @property
     def lattice(self) -> TriangularLattice | None:
-        """Triangular lattice on which discs start; None if there are no such discs or their number is odd."""
+        """Triangular lattice on which discs are placed; None if there are no such discs or their number is odd."""
         number = sum(s.count for _, s in self.placed if s.placement == "triangular")
         return triangular_lattice(number, self.box.size) if number else None
 
     @property
     def pressing_acceleration(self) -> Vector:
-        """Largest acceleration that presses discs against walls or walls against discs, along x and y, length/time²."""
+        """Largest acceleration along x and along y that presses discs and walls together, length/time²."""
         gravity = self.properties.strongest_pull
         pull = list(gravity)
         for piston in self.pistons:
@@ -230,14 +230,18 @@ class Document(_DiscsAndEffects):
 
     @property
     def mean_free_time(self) -> float:
-        """Expected time between two collisions of a disc with discs or sides, time; infinite if nothing moves.
+        """Expected time between successive collisions of a disc with discs or sides, time; infinite if nothing moves.
 
-        The speed is the speed of a disc that starts with the mean speed and has fallen through half of the room.
+        It is estimated for the speed of a disc that starts at the mean speed and has fallen through half of the room.
         """
         return self.free_time_at(self.mean_speed)
 
     def free_time_at(self, speed: float) -> float:
-        """Expected time between two collisions of a disc, time; speed: mean speed before the fall, length/time."""
+        """Return the expected time between successive collisions of a disc, time.
+
+        Args:
+            speed: mean speed before the fall, length/time.
+        """
         n, (left, bottom, right, top), pull = self.number_of_discs, self.room, self.pressing_acceleration
         size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
@@ -250,7 +254,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def trial_time(self) -> float:
-        """Expected time between two trials of the Monte Carlo method, time; infinite if nothing moves."""
+        """Expected time between successive trials of the Monte Carlo method, time; infinite if nothing moves."""
         n, speed = self.number_of_discs, reference_speed(self.run, self.mean_speed)
         if n < 2 or speed == 0:
             return math.inf
@@ -259,7 +263,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def expected_end(self) -> float:
-        """Estimated time of the end of the run, from the rates of events at the start; infinite if nothing ends it."""
+        """Estimated end time of the run, from the initial event rates; infinite if no stop rule will be met."""
         run = self.run
         ends = [run.until or math.inf]
         if run.events is not None:
@@ -272,12 +276,12 @@ class Document(_DiscsAndEffects):
 
     @property
     def contact_duration(self) -> float:
-        """Duration after a collision during which a disc loses no energy, time; 0 in an elastic gas.
+        """Time after a collision during which further collisions of the disc are elastic; 0 in an elastic gas.
 
-        If a constant force presses a resting disc against the wall below it, the default limits its rate of hits to a
-        multiple of the collision rate of the gas. Without such a force the discs of a cluster separate as soon as their
-        collisions are elastic, and the default only has to end the collapse; no average can distinguish it from zero.
-        It is infinite if nothing moves.
+        If a constant force presses a resting disc against the wall below it, the default duration limits the disc's hit
+        rate to a multiple of the collision rate of the gas. Without such a force, the discs of a cluster separate as
+        soon as their collisions are elastic, so the default only has to end an inelastic collapse; it is so short that
+        averages are the same as for zero. The default is infinite if nothing moves.
         """
         if self.restitution is None or self.restitution.elastic:
             return 0.0
@@ -297,7 +301,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def resting_disc(self) -> RestingDisc | None:
-        """Motion of discs that have come to rest; None without a constant force or if collisions lose no energy."""
+        """Motion of discs that have come to rest; None if there is no constant force or collisions are elastic."""
         force = math.hypot(*self.pressing_acceleration)
         if self.restitution is None or self.restitution.elastic or force == 0:
             return None
@@ -308,5 +312,5 @@ class Document(_DiscsAndEffects):
 
     @property
     def collapse_risk(self) -> bool:
-        """Whether roughness slows discs down under a constant force, so that their collision rate may diverge."""
+        """Whether roughness dissipates energy under a constant force, so that the collision rate may diverge."""
         return any(self.pressing_acceleration) and loses(self.rotation) and self.thermostat is None

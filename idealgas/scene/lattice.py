@@ -1,4 +1,4 @@
-"""Triangular lattices in periodic boxes, and their strain."""
+"""Triangular lattices in periodic boxes, with the strain that is needed to fit them to the box."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import math
 from dataclasses import dataclass
 
 UNSTRAINED = math.sqrt(3) / 2
-"""Distance between rows divided by the distance between neighbours in a row, without strain."""
+"""Ratio of the distance between rows to the distance between neighbours in a row, in a lattice without strain."""
 
 
 @dataclass(frozen=True)
 class TriangularLattice:
     """Triangular lattice in a periodic box.
 
-    Every other row is shifted by half a spacing, so the number of rows is even.
+    Every second row is shifted by half a spacing, so the number of rows must be even.
 
     Attributes:
         size: width and height of the box, length.
-        axis: direction of the rows, 0 for x or 1 for y.
+        axis: direction of the rows: 0 for x, 1 for y.
         columns: number of sites per row.
         rows: number of rows.
     """
@@ -39,7 +39,7 @@ class TriangularLattice:
 
     @property
     def strain(self) -> float:
-        """Relative excess of the distance between rows over its value in an equilateral lattice."""
+        """Relative deviation of the distance between rows from its value in an equilateral lattice."""
         return self.height / (UNSTRAINED * self.spacing) - 1
 
     @property
@@ -49,16 +49,18 @@ class TriangularLattice:
 
     @property
     def unstrained(self) -> tuple[float, float]:
-        """Width and height of the box of the same area in which the lattice has no strain, length."""
+        """Width and height of the box of equal area in which this lattice would have no strain, length."""
         along = math.sqrt(self.size[0] * self.size[1] * self.columns / (UNSTRAINED * self.rows))
         sides = along, UNSTRAINED * along * self.rows / self.columns
         return sides if self.axis == 0 else sides[::-1]
 
 
 def triangular_lattice(number: int, size: tuple[float, float]) -> TriangularLattice | None:
-    """Return the lattice with a number of sites that has the smallest strain in a periodic box; None for an odd number.
+    """Return the least strained triangular lattice in a periodic box; None if the number of sites is odd.
 
-    size: width and height of the box, length.
+    Args:
+        number: number of sites.
+        size: width and height of the box, length.
     """
     lattices = [
         TriangularLattice(size, axis, number // rows, rows)

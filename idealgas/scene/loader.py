@@ -1,4 +1,4 @@
-"""Loading of scenes from TOML; all errors of a file are reported together."""
+"""Load scenes from TOML; all errors in a file are reported together."""
 
 from collections.abc import Sequence
 from os import PathLike
@@ -12,18 +12,18 @@ from idealgas.toml.text import TextOrigin, parse_document, read_text
 
 
 def load_scene(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from a TOML file and check it completely.
+    """Read a scene from a TOML file and check all of it.
 
     Args:
         path: path of the file.
-        overrides: changes, each as "table.key=value" with a TOML value, such as "run.until=100" or
-            "species.0.count=500"; without a value, the key is removed.
+        overrides: changes to the scene, each written as "table.key=value" with a TOML value, such as "run.until=100" or
+            "species.0.count=500". If the value is empty, the key is removed.
 
     Returns:
         The checked scene.
 
     Raises:
-        SceneError: the file cannot be read or the scene is invalid; the error has a line for each mistake.
+        SceneError: if the file cannot be read or the scene is invalid; the message has a line for each mistake.
     """
     return parse_scene(read_text(path), str(path), overrides)
 
@@ -36,20 +36,20 @@ def parse_scene(
     discs: InitialDiscs | None = None,
     changes: Sequence[SceneChange] = (),
 ) -> Scene:
-    """Make a scene from TOML text and check it completely, as `load_scene` does.
+    """Make a scene from TOML text and check all of it, as `load_scene` does.
 
     Args:
         text: TOML text of the scene.
-        name: file name in messages.
+        name: file name to be shown in messages.
         overrides: as in `load_scene`.
-        discs: discs from which the scene of a log starts.
-        changes: changes that a program made during the run.
+        discs: initial discs, if the scene was read from a log.
+        changes: changes that a program made to the scene during the run.
 
     Returns:
         The checked scene.
 
     Raises:
-        SceneError: the scene is invalid.
+        SceneError: if the scene is invalid.
     """
     text = text.replace("\r\n", "\n")
     document = parse_document(text, name)

@@ -1,4 +1,4 @@
-"""Checked scenes, and digests that identify equal runs and equal gases."""
+"""Scenes that have been checked, and digests that identify equal runs and equal gases."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ from idealgas.toml.text import TextOrigin
 
 
 class _SceneType(type(BaseModel)):  # type: ignore[misc]
-    """Metaclass of scenes: calling the class makes a checked scene, as `make_scene` does."""
+    """Metaclass of scenes; calling the class makes a checked scene, as `make_scene` does."""
 
     def __call__(cls, *, discs: Mapping[str, Any] | None = None, **tables: Any) -> "Scene":
         if discs is not None:
@@ -32,8 +32,8 @@ class Scene(Document, metaclass=_SceneType):
     """A checked scene: its numbers are in range, its discs fit into the box, and its run ends.
 
     `Scene(box=…, run=…)` takes the tables of a scene as dictionaries or as instances of their classes. The argument
-    `discs` is a dictionary of columns from which the scene starts; `idealgas.scene.start` describes the columns. It
-    raises SceneError for an invalid scene.
+    `discs` is a dictionary of columns with the discs from which the scene starts; `idealgas.scene.start` describes the
+    columns. An invalid scene raises SceneError.
     """
 
     _origin: TextOrigin = PrivateAttr(default_factory=TextOrigin)
@@ -53,7 +53,7 @@ class Scene(Document, metaclass=_SceneType):
         return self
 
     def resolved(self) -> Self:
-        """Return this scene with the defaults that follow from other tables."""
+        """Return this scene with explicit values for the defaults that depend on other tables."""
         update: dict[str, Any] = {}
         sides = [{} if piston.inner else {"side": piston.wall} for piston in self.piston]
         update["piston"] = tuple(
@@ -73,27 +73,28 @@ class Scene(Document, metaclass=_SceneType):
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """Return a line, with file and line number, for each issue that was detected after the check of the scene."""
+        """Return a line with file name and line number for each issue; for issues detected after the scene's check."""
         return self._origin.report(issues)
 
 
 MOST_NAMED = 6
-"""Largest number of different radii that the description of a gas lists."""
+"""Largest number of different radii that are listed in the description of a gas."""
 
 STATE = ("temperature", "position", "velocity")
-"""Keys of the initial state and temperature of a gas, outside the tables of discs; `gas_digest` ignores them."""
+"""Keys for the initial state and the temperature of a gas outside the tables of discs; `gas_digest` ignores them."""
 
 
 def draws_random_numbers(scene: Scene) -> bool:
-    """Whether a scene depends on its seed, in its initial state or during the run."""
+    """Return whether the initial state of a scene or its run depends on the seed."""
     drawn = scene.draws_velocities or any(s.count for _, s in scene.placed)
     return drawn or not scene.properties.isolated or scene.run.method == "monte_carlo"
 
 
 def run_digest(scene: Scene) -> str:
-    """Digest of everything that determines the motion; logs with the same digest contain the same run, or parts of it.
+    """Return the digest of everything that determines the motion of the discs.
 
-    The tables `scene` (except for the seed), `run` and `log` are left out.
+    Logs with the same digest contain the same motion, possibly of different length. The digest does not depend on the
+    tables `scene` (except for the seed), `run` and `log`.
     """
     tables = _tables(scene)
     if start := tables.get("start"):
@@ -103,7 +104,7 @@ def run_digest(scene: Scene) -> str:
 
 
 def gas_digest(scene: Scene) -> str:
-    """Digest of the discs, the box and the effects of a scene, without the initial state and temperature."""
+    """Return the digest of the discs, the box and the effects of a scene, ignoring initial state and temperature."""
     left_out = ("scene", "run", "log", "species", "disc", "start")
     tables = {name: _without_state(value) for name, value in _tables(scene).items() if name not in left_out}
     box = {side: "thermal" if "thermal" in value else value for side, value in tables["box"].items()}
@@ -112,7 +113,7 @@ def gas_digest(scene: Scene) -> str:
 
 
 def gas_kind(scene: Scene) -> str:
-    """Describe a gas by the sizes of its discs and its effects, without their number and the size of the box."""
+    """Describe a gas by the sizes of its discs and by its effects, ignoring the number of discs and the box size."""
     sizes = _sizes(scene)
     smallest, number = min(sizes), sizes.total()
     if len(sizes) > MOST_NAMED:
@@ -126,19 +127,19 @@ def gas_kind(scene: Scene) -> str:
 
 
 def is_mixture(scene: Scene) -> bool:
-    """Whether the discs of a scene differ in radius."""
+    """Return whether the discs of a scene have different radii."""
     return len(_sizes(scene)) > 1
 
 
 def describe_gas(scene: Scene) -> str:
-    """Describe the gas of a scene: number of discs, box, and kind of gas."""
+    """Describe the gas in a scene by the number of discs, the size of the box, and the kind of gas."""
     width, height = scene.box.size
     number = _discs(scene).total()
     return f"N = {number} in {width:.6g} × {height:.6g}, {gas_kind(scene)}"
 
 
 def _discs(scene: Scene) -> Counter[tuple[float, float]]:
-    """Number of discs by radius and mass."""
+    """Return the number of discs of each radius and mass."""
     discs: Counter[tuple[float, float]] = Counter()
     for size in scene.sizes:
         discs[size.radius, size.mass] += size.number
@@ -147,7 +148,7 @@ def _discs(scene: Scene) -> Counter[tuple[float, float]]:
 
 
 def _sizes(scene: Scene) -> Counter[float]:
-    """Number of discs by radius."""
+    """Return the number of discs of each radius."""
     sizes: Counter[float] = Counter()
     for (radius, _), count in _discs(scene).items():
         sizes[radius] += count
@@ -176,17 +177,17 @@ def make_scene(
     columns: Mapping[str, Any] | None = None,
     discs: InitialDiscs | None = None,
 ) -> Scene:
-    """Make the scene of a document.
+    """Make a checked scene from a document.
 
     Args:
         document: tables by name.
         origin: origin of the document.
-        errors: errors that are already known.
+        errors: errors that have already been detected.
         columns: columns of the discs from which the scene starts, by name.
-        discs: discs from which the scene starts, from the log of this scene.
+        discs: discs from which the scene starts, as stored in the log of this scene.
 
     Raises:
-        SceneError: there are errors in the document, or given errors.
+        SceneError: if the document has errors or `errors` is not empty.
     """
     try:
         origin.names = names_of(document)
@@ -200,7 +201,7 @@ def make_scene(
 
 
 def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
-    """Errors in single tables and, among the valid tables, errors between several tables."""
+    """Return the errors in single tables and the contradictions between tables that are valid in themselves."""
     findings = error.errors(include_url=False)
     if findings[0]["type"] == "issues":
         return findings[0]["ctx"]["issues"]
@@ -209,7 +210,7 @@ def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]
 
 
 def _valid_parts(document: dict[str, Any]) -> tuple[Scene, set[str]]:
-    """Valid tables of a document, with None for each invalid table, and the names of the invalid tables."""
+    """Return the tables of a document, with None for each invalid table, and the names of the invalid tables."""
     parts: dict[str, Any] = {}
     invalid = set()
     for name, field in Scene.model_fields.items():

@@ -1,4 +1,4 @@
-"""Solids: the areas without gas inside, or outside, closed curves of walls."""
+"""Solids: areas inside or outside closed curves of walls that the gas cannot enter."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Solids(NamedTuple):
     """Solids of a scene.
 
     Attributes:
-        walls: walls of the solids, by the solid side of their curves: "inside" or "outside".
-        area: area of the box that the solids and fixed discs cover, length²; open curves do not count.
-        loose: numbers of the walls whose curves are not closed, each with the loose end.
+        walls: walls of the solids, by which side of their curves is solid: "inside" or "outside".
+        area: area of the box that is covered by solids and fixed discs, length²; open curves do not contribute.
+        loose: number and loose end of each wall whose curve is not closed.
     """
 
     walls: dict[str, tuple[WallTable, ...]]
@@ -32,18 +32,23 @@ class Solids(NamedTuple):
     loose: tuple[tuple[int, Point], ...]
 
     def contain(self, points: np.ndarray) -> np.ndarray:
-        """Mask (M,) of the points (M, 2) that are inside a solid."""
+        """Return a mask (M,) that is true for points (M, 2) inside a solid."""
         inside = enclosed(points, self.walls["inside"])
         return inside | ~enclosed(points, self.walls["outside"]) if self.walls["outside"] else inside
 
 
 NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
-"""Solids of a scene without solids."""
+"""The value for a scene without solids."""
 
 
 @lru_cache(maxsize=4)
 def find_solids(walls: tuple[WallTable | None, ...], box_area: float) -> Solids:
-    """Find the solids that tables [[wall]] form in a box; walls: None for invalid tables; box_area: length²."""
+    """Find the solids that tables [[wall]] form in a box.
+
+    Args:
+        walls: the tables; None marks an invalid table.
+        box_area: area of the box, length².
+    """
     numbered = [(k, wall) for k, wall in enumerate(walls) if wall is not None and wall.solid is not None]
     kinds = {kind: tuple(wall for _, wall in numbered if wall.solid == kind) for kind in ("inside", "outside")}
     curves, loose = _curves(numbered)
@@ -53,7 +58,7 @@ def find_solids(walls: tuple[WallTable | None, ...], box_area: float) -> Solids:
         first, kind = curve[0][0], str(curve[0][0].solid)
         (x, y), curve_ids = first.start, {id(wall) for wall, _ in curve}
         low, right, high = rectangles[kind]
-        met = np.flatnonzero((low <= y) & (y <= high) & (x <= right))  # by a ray from the point to the right
+        met = np.flatnonzero((low <= y) & (y <= high) & (x <= right))  # walls that a ray to the right may meet
         other_walls = [wall for wall in (kinds[kind][k] for k in met) if id(wall) not in curve_ids]
         within = bool(enclosed(np.array([first.start]), other_walls)[0])
         areas[kind] += (-1 if within else 1) * abs(math.fsum(_swept(*part) for part in curve))
@@ -62,7 +67,7 @@ def find_solids(walls: tuple[WallTable | None, ...], box_area: float) -> Solids:
 
 
 def enclosed(points: np.ndarray, walls: Iterable[WallTable]) -> np.ndarray:
-    """Mask (M,) of the points (M, 2) that closed curves of walls enclose, by the even–odd rule."""
+    """Return a mask (M,) that is true for points (M, 2) enclosed by closed curves of walls, by the even–odd rule."""
     inside = np.zeros(len(points), bool)
     for wall in walls:
         x, y = (points - wall.start).T
@@ -71,7 +76,7 @@ def enclosed(points: np.ndarray, walls: Iterable[WallTable]) -> np.ndarray:
 
 
 def _rectangle(wall: WallTable) -> tuple[float, float, float]:
-    """Lower, right and upper edges of the rectangle around a wall."""
+    """Return the lower, right and upper edges of the bounding rectangle of a wall."""
     (_, low), (right, high) = bounds(wall.start, wall.end, wall.arc)
     return low, right, high
 
@@ -79,7 +84,11 @@ def _rectangle(wall: WallTable) -> tuple[float, float, float]:
 def _curves(
     walls: Sequence[tuple[int, WallTable]],
 ) -> tuple[list[list[tuple[WallTable, bool]]], tuple[tuple[int, Point], ...]]:
-    """Closed curves, each a list of walls and whether the curve follows each from start to end; and the loose ends."""
+    """Return the closed curves and the loose ends of walls.
+
+    A curve is a list of walls, each with a flag that says whether the curve runs from the start of the wall to its end.
+    A loose end is the number of a wall and the point at which no other wall, or more than one, continues it.
+    """
     at: dict[tuple[str | None, Point], list[int]] = defaultdict(list)
     known = dict(walls)
     for k, wall in walls:
@@ -102,7 +111,7 @@ def _curves(
 
 
 def _swept(wall: WallTable, forwards: bool) -> float:
-    """Area swept counterclockwise by the line from the origin to a point that moves along a wall, length²."""
+    """Return the area swept counterclockwise by the line from the origin to a point moving along a wall, length²."""
     (x0, y0), (x1, y1) = wall.start, wall.end
     area = (x0 * y1 - x1 * y0) / 2
     if arc := wall.arc:
@@ -112,29 +121,29 @@ def _swept(wall: WallTable, forwards: bool) -> float:
 
 @lru_cache(maxsize=4)
 def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]) -> float:
-    """Area of a box that is covered by fixed discs, length²; the discs may overlap each other and the sides.
+    """Return the area of a box that is covered by fixed discs, length²; discs may overlap each other and the sides.
 
-    By Green's theorem, an area is the integral of x dy along its boundary, counterclockwise. The boundary of the
-    covered part of the box consists of arcs of rims and of parts of the sides:
+    By Green's theorem, an area is the counterclockwise integral of x dy along its boundary. The boundary of the covered
+    area consists of arcs of the discs' rims and of segments of the sides:
 
         ┌──────────────────┐
-        │    ╭───╮         │   rims: the arcs that are in the box and not inside another disc;
+        │    ╭───╮         │   rims: arcs that are in the box and not inside another disc contribute;
         │   │   ╭┼──╮    ╭─┤
-        │   │   ││   │  │  │   right side: the parts that are inside discs, where x is the width of the box;
+        │   │   ││   │  │  │   right side: segments inside discs contribute, with x equal to the width of the box;
         │    ╰──┼╯   │   ╰─┤
-        │        ╰──╯      │   other sides: nothing, because x = 0 on the left, and dy = 0 at the bottom and the top.
+        │        ╰──╯      │   other sides: no contribution, as x = 0 on the left and dy = 0 at the bottom and top.
         └──────────────────┘
     """
     width, height = size
     x, y, r = _images_in_box(discs, size, periodic)
     arcs = [(k, *arc) for k, hidden in enumerate(_hidden(x, y, r, size)) for arc in _gaps(hidden, 2 * math.pi)]
-    if not arcs:  # discs that reach into a box, but have no rim in it, cover it completely
+    if not arcs:  # discs that reach into the box without any rim in it cover it completely
         return width * height if len(r) else 0.0
     owner, (start, end) = np.array([k for k, *_ in arcs]), np.array([arc for _, *arc in arcs]).T
     # The integral of (x + r cos φ) r cos φ dφ from start to end, divided by r.
     swept = x[owner] * (np.sin(end) - np.sin(start))
     swept += r[owner] / 2 * (end - start + (np.sin(2 * end) - np.sin(2 * start)) / 2)
-    half = np.sqrt(np.maximum(r**2 - (width - x) ** 2, 0.0))  # half of the chord that the right side cuts off
+    half = np.sqrt(np.maximum(r**2 - (width - x) ** 2, 0.0))  # half the chord that lies on the right side
     side = np.clip((y - half, y + half), 0.0, height)[:, half > 0].T.tolist()
     free = math.fsum(high - low for low, high in _gaps(side, height))
     return math.fsum((r[owner] * swept).tolist()) + width * (height - free)
@@ -143,7 +152,7 @@ def covered_area(discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool
 def _images_in_box(
     discs: tuple[FixedDisc, ...], size: Point, periodic: tuple[bool, bool]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates x and y and radii of all images of discs that reach into a box, sorted by x, each image once."""
+    """Return x, y and radius of all periodic images of discs that reach into a box, sorted by x, without duplicates."""
     shifts = ((-length, 0.0, length) if wraps else (0.0,) for length, wraps in zip(size, periodic, strict=True))
     moves = list(product(*shifts))
     x, y, r = images = np.array([(d.start[0] + dx, d.start[1] + dy, d.radius) for d in discs for dx, dy in moves]).T
@@ -153,17 +162,17 @@ def _images_in_box(
 
 
 def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[list[tuple[float, float]]]:
-    """Intervals of angle in which the rim of each disc is inside other discs or outside a box; they may be empty.
+    """Return the intervals of angle in which each disc's rim is inside another disc or outside the box.
 
-    Every partner and every side hides the part of the rim beyond a straight line: the line through the two points where
-    the two rims cross, or the side itself. If its distance from the centre is h in the direction θ, it hides all angles
-    within arccos(h/r) of θ:
+    Every overlapping disc and every side hides the part of the rim beyond a straight line, which is the line through
+    the two points where the rims cross, or the side itself. If the line is at distance h from the disc's centre, in
+    direction θ, it hides all angles within arccos(h/r) of θ. Intervals may be empty.
 
            ╭───┬╮
           │    │ │        r cos(φ - θ) > h
           │  · │ │ ──→ θ
-          │    │ │        For a partner of radius R at a distance d, h = (d + (r² - R²)/d)/2: the two
-           ╰───┴╯         triangles with the sides r and R have the height r² - h² = R² - (d - h)².
+          │    │ │        For another disc of radius R at distance d, h = (d + (r² - R²)/d)/2, because half
+           ╰───┴╯         the common chord has the squared length r² - h² = R² - (d - h)².
              └─┘
               h
     """
@@ -172,7 +181,7 @@ def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[li
     distance = np.hypot(dx, dy)
     within = distance <= r[partner] - r[disc]  # the whole disc is inside the partner
     chord = (distance + (r[disc] ** 2 - r[partner] ** 2) / np.where(within, 1.0, distance)) / 2
-    # The partners of all discs, followed by the right, upper, left and lower side for each disc.
+    # The overlapping partners of all discs, followed by the right, upper, left and lower sides for each disc.
     owner = np.concatenate((disc, *[np.arange(len(r))] * 4))
     towards = np.concatenate((np.arctan2(dy, dx), *(np.full(len(r), k * math.pi / 2) for k in range(4))))
     line = np.concatenate((np.where(within, -r[disc], chord), size[0] - x, size[1] - y, x, y))
@@ -181,27 +190,28 @@ def _hidden(x: np.ndarray, y: np.ndarray, r: np.ndarray, size: Point) -> list[li
     hidden: list[list[tuple[float, float]]] = [[] for _ in r]
     for k, first, last in zip(owner.tolist(), low.tolist(), (low + width).tolist(), strict=True):
         hidden[k].append((first, last))
-        hidden[k].append((0.0, last - 2 * math.pi))  # the part beyond a full turn, if there is one
+        hidden[k].append((0.0, last - 2 * math.pi))  # the part beyond a full turn, if any
     return hidden
 
 
 def _crossing(x: np.ndarray, y: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of discs and of the partners inside which a part of their rims is; the discs are sorted by x."""
+    """Return the indices of each disc and of a partner that covers part of its rim, for discs sorted by x."""
     indices = np.arange(len(r))
-    # Each disc with the discs behind it whose x differs by at most the largest diameter.
+    # Pair each disc with the later discs whose x differs by at most the largest diameter.
     number = x.searchsorted(x + 2 * r.max(initial=0.0), "right") - indices - 1
     low = np.repeat(indices, number)
     high = low + 1 + np.arange(len(low)) - np.repeat(np.cumsum(number) - number, number)
     disc, partner = np.concatenate((low, high)), np.concatenate((high, low))
     distance = np.hypot(x[partner] - x[disc], y[partner] - y[disc])
-    crosses = (distance < r[disc] + r[partner]) & (distance > r[disc] - r[partner])  # they overlap, no partner inside
+    # The two overlap, and the partner is not inside the disc.
+    crosses = (distance < r[disc] + r[partner]) & (distance > r[disc] - r[partner])
     return disc[crosses], partner[crosses]
 
 
 def _gaps(covered: Iterable[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:
-    """Yield the parts of the interval from 0 to a length that the given intervals do not cover.
+    """Yield the parts of the interval from 0 to `length` that are not covered by the given intervals.
 
-    Intervals that end before they begin are ignored.
+    Given intervals that end before they begin are ignored.
     """
     reached = 0.0
     for low, high in sorted(covered):

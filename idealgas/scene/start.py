@@ -1,10 +1,10 @@
-"""Discs from which a scene starts: columns by name, from a log, a file or a Python program.
+"""Read the discs from which a scene starts: columns by name, from a log, a file or a Python program.
 
 | column | unit | default |
 |---|---|---|
 | `position` (n, 2) | length | required; `x` and `y` in a .csv file |
 | `velocity` (n, 2) | length/time | 0; `vx` and `vy` in a .csv file |
-| `radius`, `mass` (n,) | length, mass | value in the species' table; without one, radius is required and mass is 1 |
+| `radius`, `mass` (n,) | length, mass | value in the species' table; if it has none, radius is required and mass is 1 |
 | `angular_velocity` (n,) | 1/time | 0 |
 | `species` (n,) | names | name of the only table [[species]], or "disc" |
 
@@ -37,7 +37,7 @@ COLUMNS = (*VECTORS, "radius", "mass", "angular_velocity", "species")
 
 
 class StartError(ValueError):
-    """A start is invalid: key of the table [start], what is wrong, the value, and what is allowed."""
+    """A start is invalid; `key` is the key of the table [start], and the other attributes are as in `Issue`."""
 
     def __init__(self, key: str, wrong: str, got: str, allowed: str) -> None:
         super().__init__(wrong)
@@ -53,10 +53,10 @@ def read_start(
         scene: the scene, with valid tables.
         folder: folder to which paths are relative.
         columns: columns from a Python program.
-        discs: discs of the log of this scene, of which the first are those from which it starts.
+        discs: discs stored in the log of this scene; the discs from which it starts come first.
 
     Raises:
-        StartError: the discs cannot be read, or are invalid.
+        StartError: if the discs cannot be read or are invalid.
     """
     start = scene.start
     assert start is not None
@@ -70,7 +70,7 @@ def read_start(
     update: dict[str, Any] = {}
     if columns is None:
         path = (folder / (start.source or "")).absolute()
-        # Imported here, because a log has a scene, which imports this module.
+        # Imported here because the log module imports scenes, which import this module.
         module = "idealgas.log.start" if start.log is not None else "idealgas.initial.files"
         columns, state_overlap = import_module(module).read_state(path, start.time)
         update = {given[0]: str(path), "overlap": state_overlap if start.overlap is None else start.overlap}
@@ -83,7 +83,10 @@ def read_start(
 
 
 def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) -> InitialDiscs:
-    """Check columns and make their discs, with radius and mass of their species. tables: tables [[species]] by name."""
+    """Check columns, and return their discs with the missing radii and masses filled in from the tables of species.
+
+    tables: tables [[species]] by name.
+    """
     if unknown := [name for name in columns if name not in COLUMNS]:
         raise StartError(key, "unknown column", str(unknown[0]), ", ".join(COLUMNS))
     if "position" not in columns:
@@ -129,7 +132,7 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
 
 
 def _numbers(name: str, values: Any, key: str) -> np.ndarray:
-    """Return a column of numbers, (n,) or (n, 2)."""
+    """Return a column as an array of numbers, (n,) or (n, 2)."""
     try:
         if np.iscomplexobj(values):
             raise TypeError
@@ -143,7 +146,7 @@ def _numbers(name: str, values: Any, key: str) -> np.ndarray:
 
 
 def _names(values: Any, n: int, default: str, key: str) -> list[str]:
-    """Name of the species of each disc."""
+    """Return the name of each disc's species."""
     if values is None or isinstance(values, str):
         return [values or default] * n
     names = [values] if isinstance(values, bytes) else list(values)

@@ -1,4 +1,4 @@
-"""Walls of a scene by number: the sides of the box are walls 0 to 3, followed by segments and inner pistons."""
+"""Walls of a scene in order of their numbers: the sides of the box (walls 0 to 3), segments, and inner pistons."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ if TYPE_CHECKING:
 
 
 ARROWS = dict(zip(SIDES, "→←↑↓", strict=True))
-"""Direction in which discs pass a wall, by the side from which they come."""
+"""Arrow in the direction in which discs pass a wall, by the side from which they come."""
 
 
 class NumberedWall(NamedTuple):
     """A wall of a scene.
 
     Attributes:
-        name: name in output.
-        start: one end, length.
-        end: the other end, length.
-        action: description of its action on discs.
-        absences: pairs of times from and until which the wall is absent.
-        radius: radius of a fixed disc, whose ends are its centre, length; 0 for other walls.
-        is_permeable: whether discs of some species pass the wall.
-        label: name in pictures, with an arrow if discs pass in one direction only.
-        arc: the arc; None for other walls.
-        moves: whether it is an inner piston, whose ends are those at the start.
+        name: name of the wall in output.
+        start: (x, y) of its first end, length.
+        end: (x, y) of its second end, length.
+        action: description of how the wall acts on discs.
+        absences: times at which each absence of the wall begins and ends.
+        radius: radius of a fixed disc, length, for which both ends are its centre; 0 for other walls.
+        is_permeable: whether discs of at least one species pass through the wall.
+        label: name of the wall in pictures, with an arrow if discs pass in one direction only.
+        arc: the arc; None if the wall is not an arc.
+        moves: whether the wall is an inner piston; its ends are then the ends at the start.
     """
 
     name: str
@@ -50,17 +50,17 @@ class NumberedWall(NamedTuple):
 
     @property
     def points(self) -> list[Point]:
-        """Corners of the polygonal line by which the wall is drawn."""
+        """Corners of the polygonal line that is drawn for the wall."""
         return drawn_points(self.start, self.end, self.arc)
 
     @property
     def is_gate(self) -> bool:
-        """Whether the wall opens at some time."""
+        """Whether the wall is absent at any time."""
         return bool(self.absences)
 
     @property
     def is_passable(self) -> bool:
-        """Whether discs pass the wall, at some time or if they are of some species."""
+        """Whether any disc can pass the wall, because the wall opens or because of the disc's species."""
         return self.is_gate or self.is_permeable
 
     def is_present(self, time: float) -> bool:
@@ -69,7 +69,7 @@ class NumberedWall(NamedTuple):
 
 
 def number_walls(scene: Scene) -> list[NumberedWall]:
-    """Return all walls in the order of their numbers."""
+    """Return all walls of a scene in the order of their numbers."""
     walls = []
     for name, ends, side in zip(SIDES, side_ends(scene.box.size), scene.box.sides, strict=True):
         action = side if isinstance(side, str) else side.action
@@ -79,7 +79,7 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         name = wall.name or f"wall {k}"
         label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
         if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs do not have this key
-            # Solids consist of many short walls, whose numbers would overlap in a picture.
+            # Solids consist of many short walls, whose labels would overlap in a picture.
             label = ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))
@@ -87,5 +87,5 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
 
 
 def walls_inside(scene: Scene) -> list[NumberedWall]:
-    """Return the walls at rest inside the box, in the order of the scene."""
+    """Return the walls inside the box that do not move, in the order of their numbers."""
     return [wall for wall in number_walls(scene)[FIRST_SEGMENT:] if not wall.moves]

@@ -1,4 +1,4 @@
-"""Checks between the tables of a scene."""
+"""Checks that the tables of a scene are consistent with each other."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 
 MOST_DISCS = 2_000_000
-"""Largest number of discs, which need 2 GB of memory."""
+"""Largest number of discs in a scene; a gas of this size needs 2 GB of memory."""
 
 MAX_THERMOSTAT_COLLISIONS = 1e10
-"""Largest number of thermostat collisions of a run, which take hours."""
+"""Largest number of thermostat collisions in a run; more would take many hours."""
 
 
 def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator[Issue]:
-    """Yield errors between the tables of a scene, and between the keys of a table.
+    """Yield the contradictions between the tables of a scene and between the keys of a table.
 
-    Tables in `invalid`, and None in an array of tables, already have errors and are left out.
+    Tables named in `invalid`, and tables replaced by None in an array, have errors of their own and are not checked.
     """
     if errors := list(_radius_issues(scene)) or list(_size_issues(scene)):
         yield from errors  # before checks that would take too long
@@ -48,7 +48,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         yield Issue((("species",),), "no discs", "nothing", "at least one [[species]] or [[disc]], or [start]")
     for i, disc in _valid(scene.disc):
         if disc.fixed and any(disc.velocity):
-            yield Issue((("disc", i, "velocity"), ("disc", i, "fixed")), "fixed", str(list(disc.velocity)), "[0, 0]")
+            keys = (("disc", i, "velocity"), ("disc", i, "fixed"))
+            yield Issue(keys, "a fixed disc cannot move", str(list(disc.velocity)), "[0, 0]")
     if mobile and scene.start is not None:
         yield Issue(
             (("disc", mobile[0]), ("start",)), "[[disc]] tables in addition to [start]", "[[disc]]", "[start] alone"
@@ -86,14 +87,14 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
 
 
 def _radius_issues(scene: Document) -> Iterator[Issue]:
-    """Check the distributions of radii."""
+    """Check the distributions from which radii are taken."""
     for i, s in _valid(scene.species):
         if wrong := wrong_radius(s.radius):
             yield Issue((("species", i, "radius"),), *wrong)
 
 
 def _size_issues(scene: Document) -> Iterator[Issue]:
-    """Check the numbers of species, walls and discs, whose arrays must fit into memory."""
+    """Check that there are not too many species, walls and discs for their arrays to fit in memory."""
     names = {s.name for s in scene.species if s is not None} | set(scene.explicit_discs.names)
     for key, what, number, most in (
         ("species", "species", len(names), MOST_SPECIES),
@@ -105,12 +106,12 @@ def _size_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _valid(items: Sequence[Item | None]) -> list[tuple[int, Item]]:
-    """Valid tables of an array with their indices; None marks invalid tables."""
+    """Return the valid tables of an array with their indices; None marks an invalid table."""
     return [(i, item) for i, item in enumerate(items) if item is not None]
 
 
 def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check for spins without rotation, and for a rotation that never changes a spin."""
+    """Check for spins without a table [rotation], and for rotation in which no spin ever changes."""
     rotation = scene.rotation
     for table, items in (("species", scene.species), ("disc", scene.disc)):
         for i, item in _valid(items):
@@ -134,14 +135,14 @@ def _spin_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 
 def _contact_issues(scene: Document) -> Iterator[Issue]:
-    """Check that the contact duration has a finite default."""
+    """Check that the default contact duration is finite."""
     if scene.has_discs and math.isinf(scene.contact_duration):
         keys: tuple[Key, ...] = (("restitution", "contact_duration"),)
         yield Issue(keys, "no default, because nothing moves at the start", "nothing", "a time > 0")
 
 
 def _thermostat_issues(scene: Document) -> Iterator[Issue]:
-    """Check the number of thermostat collisions."""
+    """Check that there will not be too many thermostat collisions."""
     thermostat, until = scene.thermostat, scene.run.until
     if thermostat is None or until is None:
         return

@@ -1,4 +1,4 @@
-"""Checks of the discs: their motion, and their room in the box and on lattices."""
+"""Checks of the discs: how they move, and whether they fit into the box and onto lattices."""
 
 from __future__ import annotations
 
@@ -23,27 +23,30 @@ if TYPE_CHECKING:
 
 
 RANDOM_PACKING = 0.65
-"""Largest packing fraction of random placement; see `idealgas.initial.placement`."""
+"""Largest packing fraction at which discs can be placed at random; see `idealgas.initial.placement`."""
 
 RESOLUTION = 1e-9
-"""Smallest radius in units of the longer side of the box, so that floats can distinguish a contact from a gap."""
+"""Smallest radius relative to the longer side of the box; at smaller radii, rounding would blur contacts and gaps."""
 
 PERIODIC_ONLY = ("triangular", "compressed")
-"""Placements that require a whole periodic box."""
+"""Placements that require a box with four periodic sides and fill all of it."""
 
 NARROWEST = 5.0
-"""Smallest width of a box for compression, in radii, so that no disc meets two images of another disc."""
+"""Smallest width of a box for compression, in units of the largest radius.
+
+It ensures that a disc never meets two periodic images of the same disc.
+"""
 
 
 def species_issues(scene: Document) -> Iterator[Issue]:
-    """Check that the names of species are unique, and that each has enough discs and exactly one kind of motion."""
+    """Check that species have unique names, enough discs, and exactly one kind of initial motion."""
     first: dict[str, int] = {}
     numbers = scene.explicit_discs.numbers
     for i, s in scene.placed:
         if s.name == EXPLICIT and EXPLICIT not in numbers:
             yield Issue((("species", i, "name"),), "name taken by the [[disc]] tables", '"disc"', "any other word")
         elif first.setdefault(s.name, i) != i:
-            yield Issue((("species", i, "name"),), "second species of this name", f'"{s.name}"', "a unique name")
+            yield Issue((("species", i, "name"),), "second species with this name", f'"{s.name}"', "a unique name")
         count, there = scene.species[i].count, numbers.get(s.name, 0)
         if there > count:
             yield Issue((("species", i, "count"), ("start",)), "fewer discs than are given", f"{count}", f">= {there}")
@@ -58,12 +61,12 @@ def species_issues(scene: Document) -> Iterator[Issue]:
         wanted = count if scene.draws_velocities else s.count
         if s.velocities is not None and needed and len(s.velocities) != wanted:
             keys = (("species", i, "velocities"), ("species", i, "count"))
-            yield Issue(keys, "not one velocity for each disc", str(len(s.velocities)), f"{wanted}, the value of count")
+            yield Issue(keys, "wrong number of velocities", str(len(s.velocities)), f"{wanted}, the value of count")
     yield from _given_species_issues(scene, first)
 
 
 def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[Issue]:
-    """Check that given discs have the radius and mass of their species, and that new velocities have a species."""
+    """Check that given discs have the radius and mass of their species, and a species if velocities are to be drawn."""
     discs = scene.explicit_discs
     for k, name in enumerate(discs.names):
         if name not in tables:
@@ -86,7 +89,7 @@ def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[I
 
 
 def permeable_issues(scene: Document) -> Iterator[Issue]:
-    """Check that there are discs of the species that pass a wall."""
+    """Check that each species named in `permeable_to` of a wall has discs."""
     known = dict.fromkeys((*(s.name for _, s in scene.placed), *scene.explicit_discs.names))
     for i, wall in enumerate(scene.wall):
         for name in (wall and wall.permeable_to) or ():
@@ -97,7 +100,7 @@ def permeable_issues(scene: Document) -> Iterator[Issue]:
 
 
 def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check that the discs lie in the space of the gas, are neither too large nor too small, and are not too many."""
+    """Check that the discs lie in the space available to the gas, and that their sizes and numbers are possible."""
     box, space, discs = scene.box, scene.room, scene.explicit_discs
     kinds = [(i, s) for i, s in scene.placed if s.count]
     outside = [*_regions_outside(scene, space, kinds), *_discs_outside(scene)]
@@ -134,7 +137,7 @@ def _regions_outside(scene: Document, space: Rectangle, kinds: list[tuple[int, S
 
 
 def _discs_outside(scene: Document) -> Iterator[Issue]:
-    """Check that given discs are in the space of the gas; at most MOST_OVERLAPS are reported."""
+    """Check that given discs lie in the space available to the gas; at most MOST_OVERLAPS are reported."""
     box, space, discs = scene.box, scene.room, scene.explicit_discs
     limits = _limits(scene)
     place, widest = _name_of(box, space), min(space[2] - space[0], space[3] - space[1])
@@ -162,7 +165,7 @@ def _discs_outside(scene: Document) -> Iterator[Issue]:
 
 
 def _limits(scene: Document) -> tuple[Key, ...]:
-    """Keys that determine the room of the gas."""
+    """Return the keys that determine the space available to the gas."""
     return (("box", "size"), *(("piston", k, "position") for k in range(len(scene.piston))))
 
 
@@ -171,7 +174,7 @@ def _name_of(box: Box, space: Rectangle) -> str:
 
 
 def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> Iterator[Issue]:
-    """Check the packing fractions of the regions and of the whole space."""
+    """Check the packing fraction in each region and in the whole space available to the gas."""
     whole, discs = scene.room, scene.explicit_discs
     for region in dict.fromkeys(s.region or whole for _, s in kinds):
         here = [(i, s) for i, s in kinds if region in (whole, s.region)]
@@ -196,12 +199,12 @@ def _crowding(scene: Document, name: str, kinds: list[tuple[int, Species]]) -> I
 
 
 def _area(species: Species) -> float:
-    """Area of all discs of a species, divided by pi, length²."""
+    """Return the total area of the discs of a species, divided by π, length²."""
     return sum(size.number * size.radius**2 for size in species.sizes)
 
 
 def placement_issues(scene: Document) -> Iterator[Issue]:
-    """Check the box of compressed discs and of triangular lattices."""
+    """Check that the box is suitable for compressed discs and for triangular lattices."""
     kinds = [(i, s) for i, s in scene.placed if s.count]
     special = [(i, s) for i, s in kinds if s.placement in PERIODIC_ONLY]
     for i, s in special:
@@ -226,7 +229,7 @@ def placement_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
-    """Check for compression in a box that is too narrow, or together with walls or discs that are not compressed."""
+    """Check that compressed discs have a wide enough box without walls, and that all other discs are compressed too."""
     key: Key = ("species", i, "placement")
     uncompressed = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
     uncompressed += ["[start]" if scene.start else "[[disc]]"] if len(scene.explicit_discs) else []
@@ -246,7 +249,7 @@ def _on_lattice(size: tuple[float, float], kinds: list[tuple[int, Species]]) -> 
     keys: tuple[Key, ...] = (("species", first, "count"), ("species", first, "placement"), ("box", "size"))
     lattice = triangular_lattice(number, size)
     if lattice is None:
-        yield Issue(keys, "no triangular lattice through periodic sides", f"{number} discs", "an even number of discs")
+        yield Issue(keys, "no triangular lattice fits a periodic box", f"{number} discs", "an even number of discs")
         return
     least = 2 * max(s.largest_radius for _, s in kinds)
     if lattice.nearest < least:

@@ -1,4 +1,4 @@
-"""Checks of given discs for overlaps with each other, with the sides of the box and with walls."""
+"""Checks for overlaps of individually given discs with each other, with the sides of the box and with walls."""
 
 from __future__ import annotations
 
@@ -21,41 +21,45 @@ if TYPE_CHECKING:
     from idealgas.scene.tables import Box
 
 ROUNDINGS = 16
-"""Number of rounding errors in a coordinate at a contact: of two positions, two flights, and the time of the event."""
+"""Allowance for rounding at a contact: errors of two positions, of two flights and of the time of the event."""
 
 MOST_OVERLAPS = 1_000
 """Largest number of overlaps that are reported."""
 
 FEW = 1024
-"""Number of discs up to which comparing all pairs takes less time than importing the search tree."""
+"""Largest number of discs for which comparing all pairs is faster than importing the search tree."""
 
 PART = 2048
-"""Number of discs all of whose pairs fit in memory."""
+"""Number of discs for which the list of all pairs fits in memory."""
 
 
 def rounding(extent: float, reach: np.ndarray | float) -> np.ndarray | float:
-    """Largest overlap (length) that can be due to rounding; for the engine such discs are in contact.
+    """Return the largest overlap that can be due to rounding, length; the engine treats such discs as touching.
 
-    extent: largest coordinate, length. reach: distance of the centres at contact, or the diameter of a disc at a wall,
-    length. The clock of an epoch adds a rounding error of the path of its fastest disc.
+    Besides the rounding of coordinates, it allows for the rounding of an epoch's clock, multiplied by the speed of the
+    fastest disc.
+
+    Args:
+        extent: largest coordinate, length.
+        reach: distance between the centres at contact, or the diameter of a disc at a wall, length.
     """
     return ROUNDINGS * 2.0**-53 * (extent + MAX_DISPLACEMENT * reach)
 
 
 def disc_keys(scene: Document, numbers: tuple[int, ...], *names: str) -> tuple[Key, ...]:
-    """Keys of given discs with these numbers: keys in their tables [[disc]], or the table [start]."""
+    """Return the keys of given discs with these numbers, in their tables [[disc]], or the key of the table [start]."""
     if scene.start is not None:
         return (("start",),)
     return tuple(("disc", n, name) for name in names for n in numbers)
 
 
 def label(scene: Document, number: int) -> str:
-    """Name of a given disc at the beginning of a message; empty if the key already names it."""
+    """Return the name of a given disc for the beginning of a message; empty if the key already names the disc."""
     return "" if scene.start is None else f"disc {number} "
 
 
 def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
-    """Report given discs that overlap, including overlaps through periodic sides; at most MOST_OVERLAPS pairs."""
+    """Check for given discs that overlap, also across periodic sides; at most MOST_OVERLAPS pairs are reported."""
     discs = scene.explicit_discs
     for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
         low, high = int(discs.index[a]), int(discs.index[b])
@@ -66,9 +70,14 @@ def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
 
 
 def overlapping(discs: InitialDiscs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
-    """Yield pairs of discs that overlap by more than rounding and the accepted overlap, and their distance.
+    """Yield the indices and the distance of discs that overlap by more than rounding errors and the accepted overlap.
 
-    At most MOST_OVERLAPS pairs are returned. box: None if it is invalid. accepted: length.
+    At most MOST_OVERLAPS pairs are returned.
+
+    Args:
+        discs: the discs.
+        box: the box; None if its table is invalid.
+        accepted: accepted overlap, length.
     """
     extent = max(box.size) if box else float(np.abs(discs.position).max(initial=0.0))
     owner, centre = images(discs.position, discs.radius, box)
@@ -84,7 +93,7 @@ def overlapping(discs: InitialDiscs, box: Box | None, accepted: float = 0.0) -> 
 
 
 def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[np.ndarray, np.ndarray]:
-    """Index (M,) and centre (M, 2) of every disc, and of its images that protrude into a periodic box."""
+    """Return the index (M,) and centre (M, 2) of every disc and of every periodic image that reaches into the box."""
     owner, centre = np.arange(len(radius)), position
     for axis in range(2):
         if box is not None and box.periodic[axis]:
@@ -99,12 +108,12 @@ def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[n
 def overlaps(
     centre: np.ndarray, radius: np.ndarray, extent: float, accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
-    """Yield the indices of two discs that overlap, the lower index first, and their distance.
+    """Yield the indices of each two discs that overlap, lower index first, and the distance between their centres.
 
     Args:
         centre: (M, 2), length.
         radius: (M,), length.
-        extent: largest coordinate, from which the rounding error follows, length.
+        extent: largest coordinate, which determines the rounding error, length.
         accepted: overlap that is accepted in addition to the rounding error, length.
     """
     for i, k in _near_pairs(centre, radius, accepted):
@@ -117,11 +126,12 @@ def overlaps(
 
 
 def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield pairs of discs that may overlap by more than is accepted, in parts; the caller stops at enough overlaps.
+    """Yield pairs of discs that may overlap by more than is accepted, in batches, so that the caller can stop early.
 
-    Discs are grouped by size, from one power of two to the next, so that a few large discs among many small ones cost
-    little. Two groups, or two halves of a group, are compared after the caller has seen the overlaps within each: if
-    these are few, few discs are near any disc, so a part never has too many pairs, even if all discs are in one place.
+    Discs are grouped by size, in powers of two, so that a few large discs among many small ones cost little. Two
+    groups, or two halves of a group, are compared only after the pairs within each have been yielded. If the caller
+    found few overlaps among those, every disc has few neighbours, so the next batch is small as well. Batches therefore
+    fit in memory even if all discs are in the same place.
     """
     if len(radius) <= FEW:
         yield np.triu_indices(len(radius), 1)
@@ -151,13 +161,13 @@ def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iter
     size = np.frexp(radius)[1]
     for level in np.unique(size):
         large, small = np.flatnonzero(size == level), np.flatnonzero(size < level)
-        yield from within(large[cKDTree(centre[large]).indices])  # in an order in which the halves are apart
+        yield from within(large[cKDTree(centre[large]).indices])  # in an order that separates the halves in space
         if len(small):
             yield between(large, small)
 
 
 def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable]) -> float:
-    """Deepest overlap of discs with each other, with sides or with walls, length; 0 if all overlaps are rounding."""
+    """Return the deepest overlap of discs with each other, with sides or with walls, length; 0 if within rounding."""
     radius = discs.radius
     depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
     depths += [radius[k] - distance for k, _, distance in wall_overlaps(discs, box, dict(enumerate(walls)))]
@@ -170,7 +180,7 @@ def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable]) -
 def wall_overlaps(
     discs: InitialDiscs, box: Box, walls: Mapping[int, WallTable], accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
-    """Yield the index of a disc, the number of a wall and their distance if they overlap by more than is accepted."""
+    """Yield disc index, wall number and distance for each disc that overlaps a wall by more than is accepted."""
     owner, centre = images(discs.position, discs.radius, box)
     slack = rounding(max(box.size), 2 * discs.radius) + accepted
     order = np.argsort(centre[:, 0], kind="stable")
@@ -188,7 +198,7 @@ def wall_overlaps(
 
 
 def discs_in_walls(scene: Document) -> Iterator[Issue]:
-    """Check for given discs that overlap a wall present at the start; at most MOST_OVERLAPS are reported."""
+    """Check for given discs that overlap a wall that is present at the start; at most MOST_OVERLAPS are reported."""
     pairs: dict[tuple[int, int], float] = {}
     box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_present(0.0)}
     walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
@@ -207,12 +217,12 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
 
 
 def _distance_to_ends(points: np.ndarray, wall: WallTable) -> np.ndarray:
-    """Distances of discs at points (M, 2) from the ends of a wall that they pass; infinite if they pass both ways."""
+    """Return the distances of points (M, 2) from the ends of a wall that discs pass; infinite if it lets both ways."""
     if wall.permeable_from is None:
         return np.full(len(points), np.inf)
     return np.min([np.hypot(*(points - end).T) for end in (wall.start, wall.end)], axis=0)
 
 
 def distance_to_wall(points: np.ndarray, wall: WallTable) -> np.ndarray:
-    """Distances of points (M, 2) from a wall, or from the rim of a fixed disc, length."""
+    """Return the distances of points (M, 2) from a wall, or from the rim of a fixed disc, length."""
     return np.asarray(np.hypot(*(points - nearest_points(points, wall.start, wall.end, wall.arc)).T) - wall.radius)

@@ -1,4 +1,4 @@
-"""Checks of pistons: their sides, positions and motion, walls in their range, and room for the gases between them."""
+"""Checks of pistons: their sides, positions and motion, walls within their reach, and room for the gases."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from idealgas.effects.piston import PistonTable
     from idealgas.scene.document import Document
 
-WAY = ", because a piston with a mass may compress the gas until the discs are closely packed"
+WAY = ", because a piston of finite mass may compress the gas until the discs are close-packed"
 
 CLOSE_PACKING = math.pi / math.sqrt(12)
 """Largest packing fraction of equal discs."""
 
 
 def piston_names(pistons: Sequence[PistonTable]) -> list[str]:
-    """Names of the pistons in messages: 'piston upper' or 'piston 0', or 'the piston' if there is only one."""
+    """Return the names of the pistons in messages: 'the piston' if there is only one, else 'piston NAME or NUMBER'."""
     return ["the piston"] if len(pistons) == 1 else [f"piston {p.name or k}" for k, p in enumerate(pistons)]
 
 
 def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check the pistons of a scene, if its tables are valid."""
+    """Check the pistons of a scene if all of its tables are valid."""
     if invalid or not scene.piston:
         return
     single = [issue for k in range(len(scene.piston)) for issue in _own_issues(scene, k)]
@@ -46,7 +46,7 @@ def issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
 
 
 def closed_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check whether the pistons leave room for the gas at the start."""
+    """Check that the pistons leave room for the gas at the start."""
     left, bottom, right, top = scene.room
     if left < right and bottom < top:
         return
@@ -59,18 +59,18 @@ def closed_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 
 
 def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check a single piston."""
+    """Check a piston on its own."""
     piston = scene.piston[k]
     if piston.inner and piston.side:
         got = f'side = "{piston.side}", inner = "{piston.inner}"'
-        yield Issue((("piston", k, "inner"), ("piston", k, "side")), "at a side and inner", got, "only one of them")
+        yield Issue((("piston", k, "inner"), ("piston", k, "side")), "both at a side and inner", got, "only one")
         return
     for name in sorted((SIDES[side] for side in sides_across(piston.axis)), key=lambda name: name != piston.wall):
         side, allowed = getattr(scene.box, name), "reflecting" if name == piston.wall else "reflecting or thermal"
         if side == PERIODIC or (name == piston.wall and side != "reflecting"):
             got = side if isinstance(side, str) else side.action.split(",")[0]
             keys: tuple[Key, ...] = (_place_key(scene, k), ("box", name))
-            yield Issue(keys, f"a piston that moves towards or from a {got} side", f"{name} {got}", f"{name} {allowed}")
+            yield Issue(keys, f"a piston moves towards or away from a {got} side", f"{name} {got}", f"{name} {allowed}")
     length = scene.box.size[piston.axis]
     start = piston.start(scene.box.size)
     if not 0 <= start <= length:
@@ -84,27 +84,27 @@ def _own_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _gravity_issues(scene: Document) -> Iterator[Issue]:
-    """Check that gravity is constant if there are pistons with a mass."""
+    """Check that gravity is constant if there are pistons of finite mass."""
     masses: list[Key] = [("piston", k, "mass") for k, piston in enumerate(scene.piston) if piston.mass is not None]
     if masses and scene.properties.later_accelerations:
         keys: tuple[Key, ...] = (("gravity", "acceleration"), *masses)
-        yield Issue(keys, "gravity in steps with a piston that has a mass", "steps", "a constant acceleration")
+        yield Issue(keys, "gravity changes in steps, but a piston has a mass", "steps", "a constant acceleration")
 
 
 def _place_key(scene: Document, k: int) -> Key:
-    """Key that determines at which side a piston is, or along which axis it moves."""
+    """Return the key that determines the side of a piston or the axis along which it moves."""
     return ("piston", k, "inner" if scene.piston[k].inner else "side")
 
 
 def _row_issues(scene: Document) -> Iterator[Issue]:
-    """Check that all pistons move along the same axis and are in order along it, with at most one at each side."""
+    """Check that all pistons move along one axis and are in order along it, with at most one piston at each side."""
     for k in range(1, len(scene.piston)):
         before, piston = scene.piston[k - 1 : k + 1]
         starts = [table.start(scene.box.size) for table in (before, piston)]
         if piston.axis != before.axis:
             keys: tuple[Key, ...] = (_place_key(scene, k), _place_key(scene, k - 1))
             got = f"{'xy'[before.axis]} and {'xy'[piston.axis]}"
-            yield Issue(keys, "pistons along two axes", got, "all of them along one")
+            yield Issue(keys, "pistons along two axes", got, "the same axis for all")
             return
         if piston.outward and piston.outward == before.outward:
             keys = (_place_key(scene, k), _place_key(scene, k - 1))
@@ -117,7 +117,7 @@ def _row_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _facing(piston: PistonTable) -> str:
-    """Name of the side opposite the piston."""
+    """Return the name of the side opposite the piston."""
     return SIDES[opposite(SIDES.index(piston.wall))]
 
 
@@ -135,28 +135,28 @@ def _motion_issues(piston: PistonTable, k: int) -> Iterator[Issue]:
         )
     elif piston.mass is not None and len(steps_of(piston.velocity)) > 1:
         key: Key = ("piston", k, "velocity")
-        yield Issue((key,), "steps of a piston with a mass", description(piston.velocity), "its velocity at the start")
+        yield Issue((key,), "velocity steps of a piston with a mass", description(piston.velocity), "a single velocity")
 
 
 def _depth(scene: Document, piston: PistonTable, position: float) -> float:
-    """Length of the gas at a position of the piston."""
+    """Return the length of the gas in front of a piston at a position, along the piston's axis."""
     return position if piston.outward > 0 else scene.box.size[piston.axis] - position
 
 
 def least_depth(scene: Document, axis: int) -> float:
-    """Smallest distance between two sides, or a piston and a side, with all discs in between."""
+    """Return the smallest possible distance between two sides, or a piston and a side, with all discs in between."""
     heights = sum(reach(scene.box.sides[side]) for side in sides_across(axis))
     return heights + max(scene.covered_area / CLOSE_PACKING / scene.box.size[1 - axis], 2 * scene.largest_radius)
 
 
 def _moving_keys(*numbers: int) -> tuple[Key, ...]:
-    """Keys that determine how far pistons of given velocity come."""
+    """Return the keys that determine how far pistons with prescribed velocities move."""
     pairs = ((("piston", k, "velocity"), ("piston", k, "position")) for k in numbers)
     return (*(key for keys in pairs for key in keys), ("run", "until"), ("box", "size"))
 
 
 def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check a piston of given velocity, which nothing stops; `chamber_issues` checks the gases on both sides of it."""
+    """Check a piston with prescribed velocity, which nothing stops; `chamber_issues` checks the gases beside it."""
     piston, keys = scene.piston[k], _moving_keys(k)
     velocities = [velocity for _, velocity in piston.velocity_steps if velocity]
     if not velocities:
@@ -178,9 +178,9 @@ def _forced_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def track(scene: Document, piston: PistonTable) -> list[tuple[float, float]]:
-    """Pairs of time and position of a piston of given velocity, at the start, at velocity changes and at the end."""
+    """Return (time, position) of a piston with prescribed velocity: at the start, at velocity changes, at the end."""
     until, place = scene.run.until, piston.start(scene.box.size)
-    if until is None:  # then it has no velocity
+    if until is None:  # the piston is then at rest
         return [(0.0, place)]
     steps = [(time, velocity) for time, velocity in piston.velocity_steps if time < until]
     points = [(0.0, place)]
@@ -191,12 +191,12 @@ def track(scene: Document, piston: PistonTable) -> list[tuple[float, float]]:
 
 
 def _when(scene: Document, time: float) -> str:
-    """Describe a time of a track."""
+    """Describe a time on a piston's track in words."""
     return "at the start" if not time else "at the end" if time == scene.run.until else f"at t = {time:g}"
 
 
 def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check that a piston with a mass is pressed against the gas or, if it is inner, not against a side."""
+    """Check that a piston of finite mass is pressed against the gas or, if it is inner, is not held against a side."""
     piston = scene.piston[k]
     if piston.inner:
         yield from _resting_issues(scene, k)
@@ -211,7 +211,7 @@ def _massive_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
-    """Check that gravity does not press an inner piston at rest against a side of the box."""
+    """Check that gravity does not press an inner piston that starts at rest against a side of the box."""
     piston, size = scene.piston[k], scene.box.size
     start, pull = piston.start(size), piston.acceleration(size, scene.properties.acceleration)
     if not piston.velocity and ((start == 0 and pull < 0) or (start == size[piston.axis] and pull > 0)):
@@ -220,7 +220,7 @@ def _resting_issues(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
-    """Check for walls that a piston may reach."""
+    """Check for walls that the piston may run into."""
     piston = scene.piston[k]
     if piston.inner or len(scene.piston) > 1:
         yield from _walls_in_range(scene, k)
@@ -241,15 +241,15 @@ def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _in_the_way(wall: Any, i: int, k: int) -> tuple[Key, ...]:
-    """Keys that involve wall i in the way of piston k."""
+    """Return the keys involved if wall i is in the way of piston k."""
     place: Key = getattr(wall, "place", ("wall", i))
     return (place, ("piston", k, "position"), ("piston", k, "velocity"), ("run", "until"))
 
 
 def _range(scene: Document, k: int) -> tuple[float, float]:
-    """Range of positions of a piston along its axis, including the space between an outer piston and its side.
+    """Return the range of positions of a piston along its axis; for an outer piston, including the space behind it.
 
-    A piston with a mass may come as far as the sides, or as the neighbouring pistons of given velocity.
+    A piston of finite mass may move as far as the sides or the nearest pistons with prescribed velocities.
     """
     piston, size = scene.piston[k], scene.box.size
     ways = [[place for _, place in track(scene, p)] if p.mass is None else [] for p in scene.piston]
@@ -262,7 +262,7 @@ def _range(scene: Document, k: int) -> tuple[float, float]:
 
 
 def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
-    """Check for walls in the range of a piston."""
+    """Check for walls within the range of a piston."""
     axis, (least, most) = scene.piston[k].axis, _range(scene, k)
     for i, wall in enumerate(scene.segments):
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
@@ -273,7 +273,7 @@ def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
 
 
 def _holes_between(scene: Document) -> Iterator[Issue]:
-    """Check that gas between two pistons cannot escape, because pistons without a disc between them could meet."""
+    """Check that gas between two pistons cannot escape, because pistons with no disc between them could meet."""
     axis, starts = scene.piston[0].axis, [piston.start(scene.box.size) for piston in scene.piston]
     for i, wall in enumerate(scene.wall):
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
@@ -284,9 +284,9 @@ def _holes_between(scene: Document) -> Iterator[Issue]:
 
 
 def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> Iterator[Issue]:
-    """Yield issues of neighbouring pistons without a disc between them, and of gases with too little room at some time.
+    """Check that there is a disc between neighbouring pistons, and that every gas always has enough room.
 
-    position: (N, 2) of all discs at the start, length. radii: (N,), length.
+    position: (N, 2), initial positions of all discs, length. radii: (N,), length.
     """
     if not scene.piston:
         return
@@ -303,9 +303,9 @@ def chamber_issues(scene: Document, position: np.ndarray, radii: np.ndarray) -> 
 
 
 def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]:
-    """Yield an issue for each pair of neighbouring obstacles that leave too little room for the gases between them.
+    """Check that neighbouring obstacles, as defined in `_given_places`, leave enough room for the gases between them.
 
-    gases: radii (n,) of the discs before, between and after the pistons, length. See `_given_places` for obstacles.
+    gases: radii (n,) of the discs in each chamber: before, between and after the pistons, length.
     """
     last, axis, across = len(scene.piston), scene.piston[0].axis, scene.box.size[1 - scene.piston[0].axis]
     sides = dict(zip((-1, last), sides_across(axis), strict=True))
@@ -327,9 +327,9 @@ def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]
 
 
 def _given_places(scene: Document) -> list[tuple[int, list[tuple[float, float]]]]:
-    """Numbers and tracks of the obstacles that never yield: sides of the box, -1 and K, and pistons of given velocity.
+    """Return numbers and tracks of the obstacles that never yield: sides and pistons with prescribed velocities.
 
-    A piston of given velocity at a side replaces the side.
+    The sides have the numbers -1 and K, where K is the number of pistons. A piston at a side replaces this side.
     """
     tables, length = scene.piston, scene.box.size[scene.piston[0].axis]
     tracks = [(k, track(scene, piston)) for k, piston in enumerate(tables) if piston.mass is None]
@@ -339,5 +339,5 @@ def _given_places(scene: Document) -> list[tuple[int, list[tuple[float, float]]]
 
 
 def _least_room(radius: np.ndarray, across: float) -> float:
-    """Smallest length of a chamber for discs of radii (n,), length; across: width of the chamber, length."""
+    """Return the smallest length of a chamber of width `across` that holds discs with radii (n,), length."""
     return max(math.pi * float(radius @ radius) / CLOSE_PACKING / across, 2 * float(radius.max()))

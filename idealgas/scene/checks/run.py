@@ -1,4 +1,4 @@
-"""Checks of the method and the stop rules of a run."""
+"""Checks of a run's method and stop rules."""
 
 from __future__ import annotations
 
@@ -23,26 +23,29 @@ OWNERS = {
     "dt": (TIME_DRIVEN, "steps"),
     "precision": (BRUTE_FORCE, "choice of precision"),
 }
-"""Method to which each of these keys belongs, and the feature that other methods do not have."""
+"""Method to which each of these keys belongs, and the feature that the other methods lack."""
 
 PLAIN = "float64"
-"""Precision of all methods by default."""
+"""Default precision of all methods."""
 
 MOST_SNAPSHOTS, MOST_STEPS, MOST_TRIALS = 1e7, 1e10, 1e10
-"""Largest numbers of snapshots, steps and trials of a run, which take hours even for a few discs."""
+"""Largest numbers of snapshots, steps and trials in a run; such runs take hours even with few discs."""
 
 MOST_EVENTS = 1e14
-"""Largest number of collisions in a run that is heated by a bath or side; they take more than a year."""
+"""Largest number of collisions in a run heated by a bath or a side; more would take over a year."""
 
 MOST_HEATING = 2.0**40
-"""Largest ratio of a later temperature to the temperatures and energies before it, as sums of energy have one unit."""
+"""Largest ratio of a later temperature to the temperatures and energies before it.
+
+The sums of energy are stored as multiples of one unit, which is chosen at the start and has to suit all temperatures.
+"""
 
 LONGEST = 2.0**52
-"""Number of mean free times after which a float cannot distinguish the times of two collisions."""
+"""Number of mean free times after which the times of successive collisions are no longer distinct as floats."""
 
 
 def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check for keys of other methods, and the requirements and limitations of the method."""
+    """Check that no keys of other methods are given, and that the method supports everything in the scene."""
     run = scene.run
     for key, (owner, feature) in OWNERS.items():
         if run.method != owner and (value := getattr(run, key)) is not None:
@@ -69,7 +72,10 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _precision_issues(scene: Document) -> Iterator[Issue]:
-    """Check for effects, which other precisions do not support; float32 supports reversals, which round to float64."""
+    """Check for effects, which are supported only in double precision.
+
+    The exception is steering in float32, because reversed velocities are the same in every precision.
+    """
     for place in _keys(scene):
         if place == ("steering",) and scene.run.precision == "float32":
             continue
@@ -78,7 +84,7 @@ def _precision_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _pressure_issues(scene: Document) -> Iterator[Issue]:
-    """Check for methods that do not record the momentum flow."""
+    """Check that the method and precision allow the momentum flow to be recorded."""
     run = scene.run
     got = f'method = "{run.method}"' if run.precision in (None, PLAIN) else f'precision = "{run.precision}"'
     if run.method in (MONTE_CARLO, TIME_DRIVEN) or run.precision not in (None, PLAIN):
@@ -87,13 +93,14 @@ def _pressure_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
-    """Check for a heat flow without pressure, or in gases with other sources of heat."""
+    """Check that the heat flow is recorded only with the pressure and in gases without sources of heat."""
     key: Key = ("log", "heat_flow")
     if not scene.log.pressure:
         wrong = "only recorded together with the momentum flow"
         yield Issue((key, ("log", "pressure")), wrong, "pressure = false", "pressure = true")
     if not all(scene.properties.periodic):
-        yield Issue((key, ("box",)), "walls take heat and momentum", "sides that reflect", "four periodic sides")
+        wrong = "walls exchange heat and momentum with the gas"
+        yield Issue((key, ("box",)), wrong, "sides that reflect", "four periodic sides")
     for effect in scene.active_effects:
         if not (effect.properties.uniform and effect.properties.conserves_motion):
             for place in effect.keys:
@@ -101,10 +108,10 @@ def _heat_flow_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check for effects that require positions, and for gases without collisions."""
+    """Check for effects that require disc positions, and for gases in which no collisions can occur."""
     for place in _keys(scene, "allows_monte_carlo"):
         got = f'method = "{MONTE_CARLO}"'
-        yield Issue((place, ("run", "method")), "not for discs without positions", got, "event_driven, brute_force")
+        yield Issue((place, ("run", "method")), "requires discs with positions", got, "event_driven, brute_force")
     if not {"species", "disc"} & invalid and scene.has_discs:
         if scene.number_of_discs < 2:
             yield Issue((("run", "method"),), "no pair to collide", "one disc", "two discs or more")
@@ -117,19 +124,19 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
 
 
 def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
-    """Check for a v_ref that is too small, because the run might not detect it before its end."""
+    """Check that v_ref is not too small, which the run itself might not detect before it ends."""
     for i, s in enumerate(scene.species) if scene.draws_velocities else scene.placed:
         still = s.velocities or s.count <= 1
         least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.largest_radius / scene.largest_radius
         if v_ref < least:
             keys = (("run", "v_ref"), *(("species", i, key) for key in ("speed", "temperature", "mass", "radius")))
             yield Issue(
-                keys, "slower than the discs at the start", f"{v_ref}", f">= {least:.6g}, preferably ten times as much"
+                keys, "slower than the discs at the start", f"{v_ref}", f">= {least:.6g}, preferably ten times this"
             )
 
 
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check for runs that are too long for the clock, and for too many snapshots, steps or trials."""
+    """Check that the run is not too long for the clock and has not too many snapshots, steps or trials."""
     run, end = scene.run, scene.expected_end
     if run.until is not None and LONGEST * scene.mean_free_time < end:
         got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
@@ -153,7 +160,7 @@ def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 
 
 def _heated_issues(scene: Document) -> Iterator[Issue]:
-    """Check for sides and heat baths so hot that sums of energy would lose digits, or that the run would take years."""
+    """Check that no side or heat bath is so hot that energy sums would lose digits or the run would take years."""
     run, properties = scene.run, scene.properties
     keys: list[Key] = []
     for effect in scene.active_effects:
@@ -165,13 +172,14 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
     before, later = max([scene.mean_kinetic_energy, *first]), max(properties.later_temperatures, default=0.0)
     if later > MOST_HEATING * before:
         got, allowed = f"{later:g} after {before:.3g}", f"at most {MOST_HEATING:.3g} times as hot"
-        yield Issue((*keys, ("run",)), "a step too large for the resolution of the energy account", got, allowed)
+        wrong = "temperature step too large for the precision of the energy account"
+        yield Issue((*keys, ("run",)), wrong, got, allowed)
         return
     lightest, hottest = (
         min([*(size.mass for size in scene.sizes), *scene.explicit_discs.mass.tolist()]),
         max(*first, later, 0.0),
     )
-    speed = math.sqrt(math.pi * hottest / (2 * lightest))  # the discs may be cold at the start
+    speed = math.sqrt(math.pi * hottest / (2 * lightest))  # as the discs may be cold at the start
     if run.until is None or speed <= scene.mean_speed:
         return
     events = scene.number_of_discs * run.until / scene.free_time_at(speed)
@@ -182,14 +190,14 @@ def _heated_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
-    """Yield the keys of all effects, or of the effects that lack a property."""
+    """Yield the keys of all effects, or only of the effects that lack a given property."""
     for effect in scene.active_effects:
         if missing is None or not getattr(effect.properties, missing):
             yield from effect.keys
 
 
 def endless_issues(scene: Document) -> Iterator[Issue]:
-    """Check for runs without a stop rule, or with stop rules that are never met."""
+    """Check that the run has a stop rule that will be met."""
     run = scene.run
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
     if run.until is not None or run.trials is not None:

@@ -15,21 +15,21 @@ if TYPE_CHECKING:
     from idealgas.scene.document import Document
 
 TOGETHER = tuple(effect.name for effect in EFFECTS if effect.shearable)
-"""Effects that a scene with sheared sides may have; none of them depends on the position along y."""
+"""Effects that can be combined with sheared sides; none of them depends on the position along y."""
 
 LEAST = 2.0
-"""Smallest width and height of the box, in diameters of the largest disc."""
+"""Smallest width and height of a box with sheared sides, in diameters of the largest disc."""
 
 
 def shear_issues(scene: Document) -> Iterator[Issue]:
-    """Check sheared sides of valid tables: compatible effects, and room for a disc beside its image."""
+    """Check that sheared sides are combined only with compatible effects and leave room for a disc beside its image."""
     if not scene.properties.shear:
         return
     top: Key = ("box", "top", "shear")
     for effect in scene.active_effects:
         if effect.name not in TOGETHER:
             allowed = ", ".join(name for name in TOGETHER if name != "sheared sides")
-            yield Issue((*effect.keys, top), "not between sheared sides", effect.name, allowed)
+            yield Issue((*effect.keys, top), "not supported between sheared sides", effect.name, allowed)
     if scene.log.pressure:
         keys: tuple[Key, ...] = (("log", "pressure"), top)
         yield Issue(keys, "not recorded between sheared sides", "pressure = true", "false")
@@ -40,7 +40,7 @@ def shear_issues(scene: Document) -> Iterator[Issue]:
 
 
 def vibration_issues(scene: Document) -> Iterator[Issue]:
-    """Check vibrating sides of valid tables: room for the discs, and no walls too close to a side."""
+    """Check that vibrating sides leave room for the discs and that no wall is too close to a vibrating side."""
     for axis in range(2):
         heights = {SIDES[side]: reach(scene.box.sides[side]) for side in sides_across(axis)}
         keys: tuple[Key, ...] = tuple(("box", name, "vibrating", "amplitude") for name, h in heights.items() if h)

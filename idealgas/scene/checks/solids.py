@@ -1,4 +1,4 @@
-"""Checks of solids: their curves must be closed and must not cross, and no given disc may be inside."""
+"""Checks of solids: their curves must be closed and must not cross, and no disc may start inside a solid."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 def solid_issues(scene: Document) -> Iterator[Issue]:
-    """Yield issues of solids, and of fixed discs that protrude into a solid or leave no area."""
+    """Check solids, and check for fixed discs that protrude into a solid or cover the whole box."""
     made = {k: wall for k, wall in enumerate(scene.wall) if wall is not None and wall.solid}
     fixed = scene.segments[len(scene.wall) :]
     if not made and not fixed:
         return
     solids = scene.solids
     for k, end in solids.loose:
-        allowed = f'an end of another wall with solid = "{scene.wall[k].solid}" there, and only one'
+        allowed = f'exactly one other wall with solid = "{scene.wall[k].solid}" that ends there'
         yield Issue((("wall", k, "solid"),), "curve not closed", f"an end at {list(end)}", allowed)
     if solids.loose:
         return
@@ -53,7 +53,10 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
 def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, WallTable]) -> Iterator[Issue]:
     """Check for fixed discs that protrude into a solid; at most MOST_OVERLAPS are reported.
 
-    solid: walls of solids by number.
+    Args:
+        scene: the scene.
+        fixed: the fixed discs.
+        solid: walls of solids, by number.
     """
     position, radius = np.array([disc.start for disc in fixed]), np.array([disc.radius for disc in fixed])
     reaches = scene.solids.contain(position)
@@ -72,7 +75,7 @@ def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, W
 
 
 def _crossing(scene: Document) -> tuple[int, int] | None:
-    """Numbers of two walls of solids that cross in the form in which they are drawn; None if there are none."""
+    """Return the numbers of two walls of solids that cross when drawn as polygonal lines; None if no walls cross."""
     parts = [
         (k, a, b)
         for k, wall in enumerate(scene.wall)
@@ -85,7 +88,7 @@ def _crossing(scene: Document) -> tuple[int, int] | None:
     left, right = np.minimum(start, end)[:, 0], np.maximum(start, end)[:, 0]
     for n in range(len(parts)):
         a, b = start[n], end[n]
-        later = slice(n + 1, int(left.searchsorted(right[n], "right")))  # parts that begin before part n ends
+        later = slice(n + 1, int(left.searchsorted(right[n], "right")))  # parts that begin before part n ends, along x
         apart = _side(a, b, start[later]) * _side(a, b, end[later])
         facing = _side(start[later], end[later], a) * _side(start[later], end[later], b)
         if (crossed := np.flatnonzero((apart < 0) & (facing < 0))).size:
@@ -95,6 +98,6 @@ def _crossing(scene: Document) -> tuple[int, int] | None:
 
 
 def _side(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Return 1 for points on the left of the lines from a to b, -1 for points on the right."""
+    """Return 1 for points to the left of the line from a to b, -1 for points to its right, and 0 for points on it."""
     along, away = b - a, point - a
     return np.sign(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])

@@ -63,7 +63,7 @@ SQUARE, BLOCK = ((2, 2), (4, 2), (4, 4), (2, 4)), ((2, 2), (8, 2), (8, 8), (2, 8
         pytest.param(solids(BLOCK, number=1310), None, id="free"),  # 0.643 of the 64 that a solid leaves
         pytest.param(solids(BLOCK, number=1340), r"for the box \(got packing fraction 0\.6578", id="free+"),
         pytest.param(HEAT + ', bottom = "periodic", top = "periodic" }\n' + GAS.format(20, 0.1), None, id="heat"),
-        pytest.param(HEAT + " }\n" + GAS.format(20, 0.1), "walls take heat and momentum", id="heat-"),
+        pytest.param(HEAT + " }\n" + GAS.format(20, 0.1), "walls exchange heat and momentum with the gas", id="heat-"),
         pytest.param(solids(SQUARE, ((4, 3), (6, 2), (6, 4))), None, id="a corner on a side"),
         pytest.param(solids(SQUARE, ((3.9, 3), (6, 2), (6, 4))), "curves that cross", id="a corner in it"),
         pytest.param(solids(SQUARE, ((4, 4), (6, 4), (6, 6))), "curve not closed", id="a corner on a corner"),
