@@ -1,4 +1,4 @@
-"""The event log: a single crash-safe HDF5 file that gives the exact state of the gas at any time."""
+"""The event log: a crash-safe HDF5 file from which the exact state of the gas at any time can be computed."""
 
 from idealgas.columns import Column
 from idealgas.log.errors import DamageError, LogError

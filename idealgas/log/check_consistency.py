@@ -12,9 +12,9 @@ from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 DRAWN = 1e-12
-"""Largest relative difference of radii that two systems draw from the same distribution.
+"""Largest relative difference between the radii that two computers obtain from the same distribution.
 
-Their mathematical libraries round logarithms differently.
+They can differ because mathematical libraries round logarithms differently.
 """
 
 
@@ -28,16 +28,16 @@ def check_scene(
     columns: Collection[str],
     pistons: int,
 ) -> None:
-    """Check that a scene has the discs, walls and effects of a log.
+    """Check that a scene has the same discs, walls and effects as a log.
 
     Args:
-        scene: scene of the log.
-        gas: discs at the start.
-        walls: walls in the log.
-        periodic: whether the box is periodic along x and along y.
-        gravity: acceleration, length/time².
+        scene: scene stored in the log.
+        gas: initial discs stored in the log.
+        walls: walls stored in the log.
+        periodic: whether the log's box is periodic along x and along y.
+        gravity: acceleration stored in the log, length/time².
         kinds: optional kinds of events that the log declares.
-        columns: names of the columns of events and checkpoints.
+        columns: names of the columns of the log's events and checkpoints.
         pistons: number of pistons in the log.
 
     Raises:

@@ -1,6 +1,6 @@
-"""Digests of a log, which depend only on its events and final state.
+"""Digests of logs, which depend only on the events and the final state.
 
-Compression, the time of writing and the number of threads do not matter.
+They do not depend on compression, the time of writing or the number of threads.
 """
 
 import hashlib
@@ -11,7 +11,7 @@ from idealgas.log.reader import Log
 
 
 def column_digests(log: Log) -> dict[str, str]:
-    """Return the SHA-256 of each event column by name, computed from the little-endian bytes of its values."""
+    """Return the SHA-256 of each event column, by name, computed from the little-endian bytes of the values."""
     hashes = {name: hashlib.sha256() for name in log.columns}
     for block in log.chunks(log.columns):
         for name in hashes:
@@ -22,8 +22,7 @@ def column_digests(log: Log) -> dict[str, str]:
 def digest(log: Log) -> str:
     """Return the digest of a log.
 
-    It is the SHA-256 of the list of the digests of all event columns and all arrays of the final state, in order of
-    their names.
+    It is the SHA-256 of a list of digests, one for each event column and each array of the final state, sorted by name.
 
     Raises:
         LogError: if the log has no events and was not closed.

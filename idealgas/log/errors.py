@@ -1,4 +1,4 @@
-"""Errors of a log, each with a one-line message."""
+"""Errors of logs; each has a message of one line."""
 
 import re
 from pathlib import Path
@@ -11,14 +11,14 @@ class LogError(UserError):
 
 
 class DamageError(LogError):
-    """A log has damaged bytes or invalid values, so that results must not be computed from it."""
+    """A log contains damaged bytes or invalid values, so results computed from it could be wrong."""
 
     def __init__(self, path: Path, what: str) -> None:
         super().__init__(f"{path}: damaged: {what}")
 
 
 def reason(error: Exception) -> str:
-    """Return the reason of a failed read on one line; messages of HDF5 have it in parentheses."""
+    """Return the reason for a failed read on one line; HDF5 gives the reason in parentheses at the end of a message."""
     if isinstance(error, UnicodeDecodeError):
         return "not UTF-8 text"
     system = isinstance(error, OSError) and error.strerror

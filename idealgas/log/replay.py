@@ -1,4 +1,4 @@
-"""Compute the state of the gas at any time from a checkpoint, the events after it, and the free flight of the discs."""
+"""Compute the state of the gas at any time from a checkpoint, the events that follow it, and free flight."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, overload
@@ -12,17 +12,17 @@ from idealgas.physics.motion import position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
 MOST_BOXES = 2.0**30
-"""Largest length of a free flight in box lengths; images are 32-bit integers."""
+"""Largest length of a free flight in box lengths, limited because images are 32-bit integers."""
 
 
 class LogState(NamedTuple):
-    """The state of all discs at one time, in order of id. All values of discs that have left the gas are nan.
+    """The state of all discs at one time, in order of id. The values of discs that have left the gas are nan.
 
     Attributes:
         time: time of the state.
-        position: (N, 2), positions, length; nan in a gas without positions.
+        position: (N, 2), positions, length; nan in a gas whose discs have no positions.
         velocity: (N, 2), velocities, length/time.
-        image: (N, 2), number of box lengths to add to a position to unwrap it; None without periodic sides.
+        image: (N, 2), number of box lengths to add to each position to unwrap it; None without periodic sides.
         angular_velocity: (N,), angular velocities, 1/time; None without rotation.
     """
 
@@ -34,11 +34,16 @@ class LogState(NamedTuple):
 
     @property
     def inside(self) -> np.ndarray:
-        """(N,) bool, whether each disc is still in the gas."""
+        """Whether each disc is still in the gas, (N,)."""
         return ~np.isnan(self.velocity[:, 0])
 
     def mean(self, values: np.ndarray, members: np.ndarray | bool = True) -> float:
-        """Return the mean of values (N,) over the discs in the gas, or over members among them; 0 if there are none."""
+        """Return the mean of values over the discs that are in the gas; 0 if there are none.
+
+        Args:
+            values: (N,), one value per disc.
+            members: (N,) mask of the discs to include; all by default.
+        """
         selected = values[self.inside & members]
         return float(selected.mean()) if len(selected) else 0.0
 
@@ -48,9 +53,9 @@ class Checkpoint(NamedTuple):
 
     Attributes:
         time: time of the state.
-        row: number of event rows before it.
-        epoch: number of epochs before it.
-        arrays: arrays by name, such as the values of each disc.
+        row: number of event rows before the state.
+        epoch: number of epochs before the state.
+        arrays: arrays by name, such as the columns with an entry for each disc.
         values: single numbers by name.
     """
 
@@ -75,9 +80,13 @@ class Checkpoints(Sequence[Checkpoint]):
     """The checkpoints of a log, each read from the file when it is indexed."""
 
     def __init__(self, file: LogFile, rows: int, check: Callable[[float, int], None]) -> None:
-        """Read the times and rows of the checkpoints in the first `rows` event rows.
+        """Read the times and rows of the checkpoints up to event row `rows`.
 
-        check: function of a time and a row that raises LogError if they are inconsistent.
+        Args:
+            file: the file of the log.
+            rows: number of valid event rows.
+            check: function that is called with the time and row of a checkpoint when it is read, and raises LogError if
+                they contradict each other.
         """
         self._file, self._check = file, check
         self.times = file.column("checkpoints/time")
@@ -114,11 +123,11 @@ class Checkpoints(Sequence[Checkpoint]):
 
 
 class Replay:
-    """The state of every disc after its last event, updated as event rows are followed.
+    """The state of every disc after its latest event, updated as event rows are read in order.
 
     Attributes:
         row: number of the next event row.
-        columns: columns of events that `follow` requires.
+        columns: event columns that `follow` requires.
     """
 
     def __init__(
@@ -140,7 +149,7 @@ class Replay:
         self._box, self._wrapped_axes, self._gravity_at = box, wrapped_axes, gravity_at
 
     def follow(self, block: Any) -> None:
-        """Update the states with a block of event rows."""
+        """Update the states with the next block of event rows."""
         self._time[block.disc] = block.time
         for name in self._state:
             self._record[name][block.disc] = getattr(block, name)
@@ -149,7 +158,7 @@ class Replay:
         self.row += len(block.time)
 
     def at(self, time: float) -> LogState:
-        """Return the state of all discs at a time between the last event row and the next one.
+        """Return the state of all discs at a time between the latest event row and the next one.
 
         Raises:
             ValueError: if a disc crosses more box lengths than an image can count.

@@ -1,4 +1,4 @@
-"""Start another scene from a state of a log: read its discs, or write the scene that continues from it."""
+"""Start a new scene from a state in a log: read the discs of the state, or write a scene that continues from it."""
 
 from collections import Counter
 from pathlib import Path
@@ -17,7 +17,7 @@ from idealgas.toml.dump import dump_document
 
 
 def read_state(path: Path, time: float | Literal["end"]) -> tuple[dict[str, Any], float]:
-    """Return the columns of the discs of a log at a time, and their deepest overlap beyond rounding, length.
+    """Return the columns of the discs in a log at a time, and their deepest overlap beyond rounding, length.
 
     Raises:
         StartError: if the log cannot be read or has no positions at this time.
@@ -39,8 +39,8 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
     state, discs, scene = log.state_at(time), log.discs, log.scene
     if (rate := scene.properties.shear) and not _in_step(time, rate, scene.box.size):
         width, height = scene.box.size
-        allowed = f"multiples of {width / (rate * height):.6g}, when images are above each other"
-        raise UserError(f"{log.path}: no start between sheared sides from t = {time:g} (allowed {allowed})")
+        allowed = f"multiples of {width / (rate * height):.6g}, at which the periodic images are aligned"
+        raise UserError(f"{log.path}: cannot start between sheared sides from t = {time:g} (allowed {allowed})")
     spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
     here = state.inside
     if not here.any():
@@ -58,20 +58,20 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
 
 
 def _in_step(time: float, rate: float, size: tuple[float, float]) -> bool:
-    """Return whether the image above a sheared box is ahead by whole widths of the box, except for rounding."""
+    """Return whether the periodic image above a sheared box is shifted by a whole number of box widths."""
     widths = rate * size[1] * time / size[0]
     return abs(widths - round(widths)) <= 1e-12 * max(widths, 1.0)
 
 
 def continued_scene(log: Log, time: float | Literal["end"], source: str) -> str:
-    """Return the TOML text of a scene that starts from a state of a log.
+    """Return the TOML text of a scene that starts from a state in a log.
 
-    Pistons and values that change in time continue as they are at the time of the state.
+    Pistons, and values that change with time, continue from their state at this time.
 
     Args:
         log: the log.
         time: time of the state.
-        source: path of the log that is written into the scene.
+        source: path of the log, as it is to be written into the scene.
 
     Raises:
         UserError: if the log does not contain the positions of the discs or pistons at this time.
@@ -98,6 +98,6 @@ def _sampled(log: Log, column: str, time: float) -> np.ndarray:
     if not len(times) or times[k] != time:
         nearest = f"; the nearest is t = {float(times[k])!r}" if len(times) else ""
         raise UserError(
-            f"{log.path}: the position of the piston is known only at samples, not at t = {time:g}{nearest}"
+            f"{log.path}: the position of the piston is stored only at samples, not at t = {time:g}{nearest}"
         )
     return values[k]

@@ -90,7 +90,7 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
     if unknown := [name for name in columns if name not in COLUMNS]:
         raise StartError(key, "unknown column", str(unknown[0]), ", ".join(COLUMNS))
     if "position" not in columns:
-        raise StartError(key, "no column position", ", ".join(columns) or "nothing", ", ".join(COLUMNS))
+        raise StartError(key, "no position column", ", ".join(columns) or "nothing", ", ".join(COLUMNS))
     arrays = {name: _numbers(name, values, key) for name, values in columns.items() if name != "species"}
     n = len(arrays["position"])
     if n == 0:
@@ -101,7 +101,7 @@ def _checked(columns: Mapping[str, Any], key: str, tables: Mapping[str, Any]) ->
     for name, array in arrays.items():
         if len(array) != n:
             raise StartError(
-                key, f"column {name} has a wrong length", f"{len(array)} rows", f"{n}, as in column position"
+                key, f"column {name} has the wrong length", f"{len(array)} rows", f"{n}, as in column position"
             )
     kinds = np.array(names)
     for name, default in (("radius", math.nan), ("mass", 1.0)):
@@ -138,11 +138,13 @@ def _numbers(name: str, values: Any, key: str) -> np.ndarray:
             raise TypeError
         array = np.array(values, float)
     except (TypeError, ValueError, OverflowError):
-        raise StartError(key, f"column {name} not of numbers", type(values).__name__, "an array of numbers") from None
+        raise StartError(key, f"column {name} is not numeric", type(values).__name__, "an array of numbers") from None
     shape = (len(array) if array.ndim else 1, *((2,) if name in VECTORS else ()))
     if (name not in VECTORS and array.ndim == 0) or array.shape == shape:
         return array
-    raise StartError(key, f"column {name} has a wrong shape", str(array.shape), "(n, 2)" if name in VECTORS else "(n,)")
+    raise StartError(
+        key, f"column {name} has the wrong shape", str(array.shape), "(n, 2)" if name in VECTORS else "(n,)"
+    )
 
 
 def _names(values: Any, n: int, default: str, key: str) -> list[str]:
@@ -151,5 +153,6 @@ def _names(values: Any, n: int, default: str, key: str) -> list[str]:
         return [values or default] * n
     names = [values] if isinstance(values, bytes) else list(values)
     if len(names) != n or not all(isinstance(name, str) and 0 < len(name) <= 255 for name in names):
-        raise StartError(key, "column species not of names", f"{len(names)} entries", f"{n} names")
+        wrong = "column species does not contain names"
+        raise StartError(key, wrong, f"{len(names)} entries", f"{n} names")
     return [str(name) for name in names]

@@ -1,1 +1,1 @@
-"""Reading of TOML files with line numbers, overrides, and error messages; independent of scenes."""
+"""TOML files: parsing with line numbers, overrides, and error messages, for documents of any model."""

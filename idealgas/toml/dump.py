@@ -1,4 +1,4 @@
-"""Writing of values and scenes as TOML."""
+"""Write values and scenes as TOML."""
 
 import json
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 
 def dump_document(document: BaseModel) -> str:
-    """Return the TOML text of a scene with all defaults. Loading it gives an equal scene, with identical floats."""
+    """Return a scene with all defaults as TOML text. Loading the text gives an equal scene with identical floats."""
     tables = []
     for name, value in document.model_dump(by_alias=True, exclude_none=True).items():
         if isinstance(value, Mapping):
@@ -19,7 +19,7 @@ def dump_document(document: BaseModel) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """Return the TOML text of a value on one line."""
+    """Return a value as TOML text on one line."""
     match value:
         case bool():
             return str(value).lower()

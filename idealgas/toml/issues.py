@@ -1,4 +1,4 @@
-"""Errors of a document, including errors of pydantic, in the form `table.key: what is wrong (got …; allowed …)`."""
+"""Errors in a document, including those reported by pydantic: `table.key: what is wrong (got …; allowed …)`."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,10 +12,10 @@ from idealgas.errors import UserError, did_you_mean
 from idealgas.toml.dump import toml_value
 
 Key = tuple[str | int, ...]
-"""Path of a key in the document, such as ("species", 0, "radius")."""
+"""Path of a key in a document, such as ("species", 0, "radius")."""
 
 LONGEST_VALUE = 60
-"""Largest number of characters of a value in a message."""
+"""Largest number of characters of a value that a message shows."""
 
 _WORDS = {
     "float_type": ("wrong type", "a number"),
@@ -38,13 +38,13 @@ _WORDS = {
 
 
 class Issue(NamedTuple):
-    """An error of a document.
+    """An error in a document.
 
     Attributes:
-        keys: the key that the message names, followed by other keys that are involved.
-        wrong: what is wrong.
-        got: the value.
-        allowed: what is allowed.
+        keys: the key that the message names, followed by any other keys involved.
+        wrong: description of what is wrong.
+        got: value in the document.
+        allowed: description of what is allowed.
     """
 
     keys: tuple[Key, ...]
@@ -53,7 +53,7 @@ class Issue(NamedTuple):
     allowed: str
 
     def line(self, names: Mapping[Key, str]) -> str:
-        """Return the issue as a line of a message; names: names that replace the numbers of tables, by key."""
+        """Return the issue as one line of a message, in which `names`, by key, replace the numbers of tables."""
         key = self.keys[0]
         steps = [str(names.get(key[: k + 1], step)) for k, step in enumerate(key)]
         return f"{'.'.join(steps)}: {self.wrong} (got {self.got}; allowed {self.allowed})"
@@ -66,7 +66,7 @@ class SceneError(UserError, ValueError):
     """A scene is invalid.
 
     Attributes:
-        errors: a line for each error.
+        errors: one line for each error.
     """
 
     def __init__(self, errors: Sequence[str]) -> None:
@@ -75,9 +75,13 @@ class SceneError(UserError, ValueError):
 
 
 def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
-    """Convert the errors that pydantic found in a document of a model to issues.
+    """Convert the errors that pydantic reports for a document to issues.
 
-    If an item of an array is invalid, it is not reported that the array has too few valid items.
+    An array is not reported as too short if one of its items is invalid, because pydantic does not count this item.
+
+    Args:
+        findings: the errors reported by pydantic.
+        model: the model of the document.
     """
     above = {finding["loc"][:n] for finding in findings for n in range(len(finding["loc"]))}
     return [
@@ -86,7 +90,7 @@ def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[
 
 
 def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
-    key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # tags of unions
+    key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # omits the tags of unions
     kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
         known = [name for table in _tables_at(key[:-1], model) for name in _keys(table)]
@@ -114,7 +118,7 @@ def _shown(value: Any) -> str:
 
 
 def _described(key: Key, model: type[BaseModel]) -> str:
-    """Description of a key in the model, or of the array that contains it."""
+    """Return the description of a key in the model; for an item of an array, the description of the array."""
     while isinstance(key[-1], int):
         key = key[:-1]
     name = str(key[-1])
@@ -123,17 +127,17 @@ def _described(key: Key, model: type[BaseModel]) -> str:
 
 
 def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
-    """Fields of a table by key."""
+    """Return the fields of a table by key."""
     return {field.alias or name: field for name, field in table.model_fields.items()}
 
 
 def table_at(key: Key, model: type[BaseModel]) -> type[BaseModel]:
-    """Model of the table at a key; if several kinds of tables are allowed, the first."""
+    """Return the model of the table at a key; if several kinds of tables are allowed, the first of them."""
     return _tables_at(key, model)[0]
 
 
 def _tables_at(key: Key, model: type[BaseModel]) -> list[type[BaseModel]]:
-    """Models of all kinds of tables that are allowed at a key."""
+    """Return the models of all kinds of tables that are allowed at a key."""
     models = [model]
     for name in key:
         if isinstance(name, str):

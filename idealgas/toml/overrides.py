@@ -1,4 +1,4 @@
-"""Changes to a document before it is checked, such as `--set table.key=value`."""
+"""Apply changes to a document before it is checked, such as `--set table.key=value`."""
 
 import re
 import tomllib
@@ -16,10 +16,14 @@ class OverrideError(ValueError):
 
 
 def apply(override: str, document: dict[str, Any]) -> Key:
-    """Set a key of a document, or remove it if the value is empty; return the key.
+    """Set a key of a document, or remove it if the value is empty, and return the key.
 
-    A table in an array is chosen by index or name (`species.0.count=10`, `species.argon.count=10`); for the only table
-    of an array this may be omitted (`species.count=10`).
+    A table in an array is selected by index or name (`species.0.count=10`, `species.argon.count=10`). If the array has
+    only one table, the index or name may be omitted (`species.count=10`).
+
+    Raises:
+        OverrideError: if the override is not an assignment, has no value where one is required, or names a key that
+            cannot exist.
     """
     key, node, text = find(override, document, missing=True)
     if text:
@@ -32,9 +36,15 @@ def apply(override: str, document: dict[str, Any]) -> Key:
 
 
 def find(override: str, document: dict[str, Any], missing: bool = False) -> tuple[Key, Any, str]:
-    """Return the key that an override sets, the table or array that contains it, and the text of the value.
+    """Return the key that an override sets, the table or array that contains the key, and the text of the value.
 
-    missing: whether to create tables that the document does not have.
+    Args:
+        override: assignment "table.key=value".
+        document: the document.
+        missing: whether to create tables that the document does not have.
+
+    Raises:
+        OverrideError: if the override is not an assignment or names a key that cannot exist.
     """
     path, equals, text = override.partition("=")
     names = [name.strip() for name in path.split(".")]
@@ -74,7 +84,7 @@ def _choices(node: Any) -> str:
 
 
 def _names(node: Any) -> dict[str, int]:
-    """Index of the first table of each name in an array of tables."""
+    """Return the index of the first table with each name in an array of tables."""
     names: dict[str, int] = {}
     for k, item in enumerate(node if isinstance(node, list) else ()):
         if isinstance(item, dict) and isinstance(name := item.get("name"), str) and _WORD.fullmatch(name):
@@ -83,12 +93,12 @@ def _names(node: Any) -> dict[str, int]:
 
 
 def names_of(document: Mapping[str, Any]) -> dict[Key, str]:
-    """Return the names by which `--set` can address tables in arrays, by key: {("species", 1): "heavy"}."""
+    """Return the names with which `--set` can select tables in arrays, by key: {("species", 1): "heavy"}."""
     return {(array, k): name for array, node in document.items() for name, k in _names(node).items()}
 
 
 def value_of(text: str) -> Any:
-    """Return the value of a TOML text, or the text itself if it is not TOML."""
+    """Return the value that a text represents in TOML, or the text itself if it is not a TOML value."""
     try:
         document = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Base class of all tables of a scene, types of numbers in them, and their JSON Schema."""
+"""The base class of all tables of a scene, the types of their numbers, and their JSON Schema."""
 
 import json
 from typing import Annotated, Any
@@ -7,14 +7,14 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 from pydantic_core import PydanticCustomError
 
 SMALLEST, LARGEST = 1e-60, 1e30
-"""Bounds on the absolute value of every number except 0, so that products of a few never underflow or overflow."""
+"""Bounds on the absolute value of every nonzero number, within which products of a few numbers are finite and not 0."""
 
 SCHEMA_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
-"""JSON Schema keywords for bounds, for which pydantic uses other names if the type has a validator."""
+"""JSON Schema keywords for bounds, by the names that pydantic writes instead if a type has a validator."""
 
 
 def _not_tiny(number: float) -> float:
-    """Return the number; raise an error if it is too close to 0."""
+    """Return the number. Raises an error if it is too close to 0."""
     if 0 < abs(number) < SMALLEST:
         raise PydanticCustomError("too_close_to_0", "", {"smallest": SMALLEST})
     return number
@@ -24,7 +24,7 @@ Real = Annotated[float, AfterValidator(_not_tiny)]
 
 
 def _whole(number: object) -> object:
-    """Convert a float without a fraction, such as 1e6, to an int; other values are returned unchanged."""
+    """Convert a float with an integer value, such as 1e6, to an int, and return any other value unchanged."""
     return int(number) if isinstance(number, float) and number.is_integer() else number
 
 
@@ -35,11 +35,11 @@ NotNegative = Annotated[Real, Field(ge=0, le=LARGEST)]
 Vector = Annotated[tuple[Number, Number], Field(strict=False)]
 Word = Annotated[str, Field(pattern=r"^[^\W\d][\w-]*$", max_length=255)]
 Rectangle = tuple[float, float, float, float]
-"""x0, y0, x1, y1."""
+"""Lower left and upper right corners: x0, y0, x1, y1."""
 
 
 class Table(BaseModel):
-    """A TOML table: immutable, with strict types and without unknown keys."""
+    """A TOML table: immutable, strictly typed, and without unknown keys."""
 
     model_config = ConfigDict(
         frozen=True,
@@ -55,9 +55,10 @@ def _key_of(table: type[Table]) -> str:
 
 
 def either(plain: Any, *tables: type[Table]) -> Any:
-    """Type of a value that is either plain or one of several kinds of tables, distinguished by their first keys.
+    """Return the type of a value that is either plain or one of several tables, distinguished by their first keys.
 
-    A table without a known key counts as the first kind, so that its error lists the keys.
+    A table that has none of these keys is validated as the first kind, so that the error message lists the allowed
+    keys.
     """
 
     def tag(value: Any) -> str:
@@ -77,7 +78,7 @@ def either(plain: Any, *tables: type[Table]) -> Any:
 
 
 def schema_text(model: type[BaseModel]) -> str:
-    """Return the JSON Schema of the documents of a model, as text, without the rules between tables."""
+    """Return the JSON Schema of a model as text; it does not contain the rules that connect several tables."""
     return json.dumps(_standard(model.model_json_schema(by_alias=True)), indent=1, ensure_ascii=False) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Reading of TOML files, and the line number of each key, which `tomllib` does not report."""
+"""Read TOML files, and determine the line number of each key, which `tomllib` does not report."""
 
 import os
 import re
@@ -17,13 +17,13 @@ from idealgas.system import STDIN
 from idealgas.toml.issues import Issue, Key, SceneError
 
 MOST_BYTES, MOST_TEXT = 2_000_000, 8_000_000
-"""Largest size of a TOML file, in bytes, and of a text, which may contain all defaults in addition, in characters."""
+"""Largest sizes of a TOML file, in bytes, and of a TOML text, in characters; a text may also contain all defaults."""
 
 MOST_LINES = 20
-"""Largest number of mistakes of a document that are reported individually."""
+"""Largest number of mistakes in a document that are reported individually."""
 
 MOST_PARTS = 32
-"""Largest number of parts of a dotted key. A scene needs 4; the time to parse a key grows with the square."""
+"""Largest number of parts in a dotted key. A scene needs 4; the parsing time grows with the square of the number."""
 
 _DOTTED = re.compile(rf"""(?<![\w"'.-])(?:(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 
@@ -76,7 +76,7 @@ def key_lines(text: str) -> dict[Key, int]:
 
 
 class _Scanner:
-    """Finds the keys of a valid TOML text; values are only skipped."""
+    """Scanner that records the line of every key of a valid TOML text and skips the values."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -131,7 +131,7 @@ class _Scanner:
         return parts
 
     def current(self, names: list[str]) -> Key:
-        """Path of a table, with the index of the latest table after each array of tables."""
+        """Return the path of a table, in which the name of each array is followed by the index of its latest table."""
         path: Key = ()
         for name in names:
             path = (*path, name)
@@ -163,13 +163,15 @@ class _Scanner:
 
 @dataclass
 class TextOrigin:
-    """Origin of a document. All origins compare equal, so that they do not matter when scenes are compared.
+    """The text and file from which a document was read.
+
+    All origins compare equal, so that they do not affect the comparison of scenes.
 
     Attributes:
         text: TOML text.
         name: name of the file.
-        overridden: overrides in the form in which they were written, by the key that they set.
-        above: key of the scene within the text.
+        overridden: overrides as the user wrote them, by the key that they set.
+        above: key of the table in the text that contains the scene; empty if the text is the scene.
         names: names of tables in arrays, by key.
     """
 
@@ -181,13 +183,13 @@ class TextOrigin:
 
     @property
     def folder(self) -> Path:
-        """Folder of the file, to which paths in the document are relative."""
+        """Folder of the file; paths in the document are relative to it."""
         return Path(self.name).parent
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """Return a line for each issue, in the order of the file; issues of overrides come last.
+        """Return a line for each issue, in the order of the file; issues caused by overrides come last.
 
-        If there are more than MOST_LINES, the last line gives the number of further issues.
+        If there are more than MOST_LINES lines, the last line states how many more issues there are.
         """
         lines: dict[str, tuple[bool, int]] = {}
         for issue in issues:
@@ -200,7 +202,10 @@ class TextOrigin:
         return [*texts[:MOST_LINES], *more]
 
     def _override(self, key: Key) -> str | None:
-        """Override that sets the key, or that sets another key of a table that the text does not contain."""
+        """Return the override that caused an issue with a key; None if the text of the file did.
+
+        This is an override that sets the key itself, or any key of a table that contains it but is not in the text.
+        """
         tables = [key[:n] for n in range(1, len(key) + 1)]
         absent = [table for table in tables if (*self.above, *table) not in self._lines][:1]
         set_by = self.overridden.items()
@@ -209,7 +214,7 @@ class TextOrigin:
         return next(chain(exact, around), None)
 
     def line(self, key: Key) -> int:
-        """Line number of the key or of the closest table that contains it; by default the first line."""
+        """Return the line number of a key, or of the innermost table that contains it; otherwise 1."""
         key = (*self.above, *key)
         return next((self._lines[key[:n]] for n in range(len(key), 0, -1) if key[:n] in self._lines), 1)
 

@@ -288,20 +288,20 @@ def test_a_scene_from_python(tmp_path):
 @pytest.mark.parametrize(
     ("discs", "message"),
     [
-        ({"velocity": [[1, 1]]}, "start.discs: no column position"),
+        ({"velocity": [[1, 1]]}, "start.discs: no position column"),
         ({"position": [[1, 1]], "radii": [1]}, "start.discs: unknown column (got radii"),
         (
             {"position": [1, 1, 1], "radius": 1},
-            "start.discs: column position has a wrong shape (got (3,); allowed (n, 2))",
+            "start.discs: column position has the wrong shape (got (3,); allowed (n, 2))",
         ),
         (
             {"position": [[1, 1]], "radius": [1, 2]},
-            "start.discs: column radius has a wrong length (got 2 rows; allowed 1",
+            "start.discs: column radius has the wrong length (got 2 rows; allowed 1",
         ),
-        ({"position": [["a", 1]], "radius": [1]}, "start.discs: column position not of numbers"),
+        ({"position": [["a", 1]], "radius": [1]}, "start.discs: column position is not numeric"),
         ({"position": [[1, 1]]}, "start.discs: column radius, disc 0: invalid number (got nan"),
         ({"position": [[1, 1], [2, 1]], "radius": 1}, "start: disc 1 overlaps disc 0"),
-        ({"position": [[1, 1]], "radius": 1, "species": [1]}, "start.discs: column species not of names"),
+        ({"position": [[1, 1]], "radius": 1, "species": [1]}, "start.discs: column species does not contain names"),
         ({"position": np.empty((0, 2)), "radius": 1}, "start.discs: no discs"),
     ],
 )
