@@ -155,7 +155,11 @@ def test_the_stress_heats_the_gas():
     assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
     assert result.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
     raised(
-        r"cannot start between sheared sides from t = 1 \(allowed multiples of 3.21", continued_scene, log, 1.0, "run.h5"
+        r"cannot start between sheared sides from t = 1 \(allowed multiples of 3.21",
+        continued_scene,
+        log,
+        1.0,
+        "run.h5",
     )
     assert "run.h5" in continued_scene(log, 9 / 2.8, "run.h5")
     for analysis in registry.analyses():

@@ -82,7 +82,10 @@ def test_the_same_bits_without_events_resumed_and_without_the_flow_of_heat(whole
             ("log.pressure=false",),
             "only recorded together with the momentum flow (got pressure = false; allowed pressure",
         ),
-        (("box.left=", "box.right="), "walls exchange heat and momentum with the gas (got sides that reflect; allowed four periodic"),
+        (
+            ("box.left=", "box.right="),
+            "walls exchange heat and momentum with the gas (got sides that reflect; allowed four periodic",
+        ),
         (("restitution.normal=0.9",), "changes velocities between collisions (got restitution; allowed heat_flow ="),
         (("rotation.roughness=0.5",), "changes velocities between collisions (got rotation; allowed heat_flow ="),
     ],

@@ -122,7 +122,7 @@ def test_the_new_log_needs_the_old_one_no_more(tmp_path):
             "box={left='periodic',right='periodic',bottom={shear=0.5},top={shear=0.5},size=[6,4]}",
             3.0,
             2.0,
-            r"from t = 2 \(allowed multiples of 3, when images",
+            r"from t = 2 \(allowed multiples of 3, at which the periodic images",
         ),
         (
             "box.size=[6,4]\npiston=[{side='right',mass=50,pressure=4}]\nlog.snapshot_every=0.75",

@@ -92,7 +92,7 @@ INSIDE = "disc = [{ position = [5, 5], radius = 0.5, velocity = [1, 0] }]"
 @pytest.mark.parametrize(
     ("text", "rest", "message"),
     [
-        (walls("inside", SIDES[:5]), "", 'wall.0.solid: curve not closed (got an end at [7.0, 5.0]; allowed exactly one'),
+        (walls("inside", SIDES[:5]), "", 'wall.0.solid: curve not closed (got an end at [7.0, 5.0]; allowed exactly'),
         (walls("inside", SIDES) + walls("inside", CROSS), "", "curves that cross (got wall 6; allowed curves"),
         (walls("inside", SIDES), INSIDE, "disc.0.position: in a solid (got [5.0, 5.0]; allowed a position outside)"),
         (walls("inside", SIDES).replace(" }", ", opens_at = 1 }", 1), "", 'a solid that opens (got "inside" and a'),
