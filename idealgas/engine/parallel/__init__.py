@@ -1,1 +1,1 @@
-"""Domain decomposition: several threads simulate slabs of one gas, with the same log for any number of threads."""
+"""Domain decomposition: several threads simulate slabs of one gas; the log is the same for any number of threads."""

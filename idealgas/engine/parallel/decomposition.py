@@ -1,6 +1,6 @@
 """Domain decomposition: several threads advance one gas, with the same result as one thread, bit for bit.
 
-Each thread processes the events of the discs in its slab, in slices of time. If events of a slice may have happened in
+Each thread processes the events of the discs in its slab, in slices of time. If events in a slice may have happened in
 the wrong order, the slice is aborted: all its changes are rolled back, and one thread repeats it.
 """
 
@@ -27,26 +27,26 @@ from idealgas.physics.absorbing import inside
 from idealgas.physics.periodic import periodic_axes
 
 SLICE_FRACTION = 0.8
-"""Planned events of a slice as a fraction of the events up to a limit; a slice that exceeds the limit is wasted."""
+"""Planned number of events in a slice over the number up to a limit; a slice that exceeds the limit is wasted."""
 
 TRIAL_FACTOR = 2
-"""Events of a slice that measures a mode, in units of the minimum of a slice.
+"""Number of events in a slice that measures the speed, in units of the smallest number in a shared slice.
 
-SERIAL_TRIAL or PARALLEL_TRIAL may require more events. The cost of a slice in addition to its events grows with the
-number of discs. On a busy machine a shared slice may take forty times as long as a serial slice.
+SERIAL_TRIAL or PARALLEL_TRIAL may require more events, because the overhead of a slice grows with the number of discs.
+On a busy machine, a slice of several threads may take forty times as long as a slice of one thread.
 """
 
 SERIAL_TRIAL, PARALLEL_TRIAL = 0.25, 0.5
-"""Events per disc of a slice that measures a mode, for one thread and for several."""
+"""Smallest number of events per disc in a slice that measures the speed, for one thread and for several."""
 
 MIN_RATE_EVENTS = 64
 """Smallest number of events from which a rate is measured."""
 
 PREDICTIONS_PER_EVENT = 6
-"""Number of predictions at the start of an epoch that take as long as an event."""
+"""Number of predictions at the start of an epoch that take as long as one event."""
 
 RATE_DIVISOR = 8
-"""Divisor of a rate that predicted far too many events."""
+"""Number by which the event rate is divided if it has predicted far too many events."""
 
 
 class DomainDecomposition:
@@ -66,7 +66,7 @@ class DomainDecomposition:
         self._built = True
         self._pending: PendingRows | None = None
         self._reaches_limit = False
-        self._reached = 0.0  # local time up to which all events have happened, not before the last event
+        self._reached = 0.0  # local time at the end of the last shared slice
         self._slabs: list[_Slab] = []
         self._rows: EventBatch | None = None
 
@@ -78,12 +78,12 @@ class DomainDecomposition:
     def advance(
         self, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> tuple[int, bool]:
-        """Process events up to the limits, see `advance_events`; rows that do not fit are left for the next calls."""
+        """Process events up to the limits (see `advance_events`); the next calls deliver rows that do not fit."""
         if self.pending:
             return self._deliver(batch)
         end, autotuner = self._slice_end(limits, batch, counters[0]), self._workers.autotuner
         if limits.events == 0:
-            self._run_threads(0.0, batch, FAILED)  # compiles
+            self._run_threads(0.0, batch, FAILED)  # only compiles
             return self._run_serial(limits, epoch_start, batch, counters)
         shared = end > 0.0 and (autotuner is None or autotuner.use_threads())
         started, before = time.perf_counter(), self._work_done(counters)
@@ -94,7 +94,7 @@ class DomainDecomposition:
             if autotuner is not None and not shared and autotuner.is_trial(shared):
                 limits = limits._replace(events=min(limits.events, self._trial_events(SERIAL_TRIAL)))
             rows, arrived = self._run_serial(limits, epoch_start, batch, counters)
-        # When the rate of events rises, as in a melting lattice, a slice is wasted although threads are not slow.
+        # If the rate of events rises, as in a melting lattice, slices are wasted although the threads are not slow.
         if autotuner is not None and aborted != STOP:
             autotuner.note(shared, self._work_done(counters) - before, time.perf_counter() - started)
         return rows, arrived
@@ -119,7 +119,7 @@ class DomainDecomposition:
         return until if (until - now) * events >= tuning.min_events else 0.0
 
     def _trial_events(self, per_disc: float) -> int:
-        """Number of events of a slice that measures a mode; per_disc: minimum per disc."""
+        """Number of events in a slice that measures the speed; per_disc: smallest number per disc."""
         least = max(TRIAL_FACTOR * self._workers.tuning.min_events, MIN_RATE_EVENTS)
         return max(least, int(per_disc * len(self._discs.record)))
 
@@ -147,10 +147,10 @@ class DomainDecomposition:
     def _run_slice(
         self, end: float, limits: Limits, epoch_start: float, batch: EventBatch | None, counters: np.ndarray
     ) -> str:
-        """Share a slice up to a local time; return why it was aborted and rolled back, or an empty string.
+        """Process a shared slice up to a local time; return why it was aborted and rolled back, or an empty string.
 
-        Like a transaction of a database, a slice happens completely or not at all: either everything that the threads
-        have done is accepted, or everything is undone, also if they are interrupted.
+        Like a database transaction, a slice happens completely or not at all: either everything that the threads have
+        done is accepted, or everything is undone, even if the threads are interrupted.
         """
         self._workers.counts["slices"] += 1
         self._save()
@@ -168,19 +168,19 @@ class DomainDecomposition:
         return why
 
     def _done(self, name: str) -> int:
-        """Number of events of a kind in the slice, of all threads; name: field of COUNTERS."""
+        """Number of events of one kind in the slice, summed over the threads; name: field of COUNTERS."""
         return sum(int(slab.counters[0][name]) for slab in self._slabs)
 
     def _exceeds(self, limits: Limits) -> str:
         """Return STOP if the slice reached a limit on the number of events, otherwise an empty string.
 
-        The threads do not check these limits: which event reaches the limit depends on the order of all their events.
+        The threads cannot check these limits, because which event reaches a limit depends on the order of all events.
         """
         exceeds = self._done("events") >= limits.events or self._done("disc_collisions") >= limits.collisions
         return STOP if exceeds else ""
 
     def _merge_rows(self, epoch_start: float) -> str:
-        """Prepare the rows of all threads for delivery; return the reason if their order is undefined."""
+        """Prepare the rows of all threads for delivery; return the reason if their order is undefined, otherwise ""."""
         if self._rows is not None:
             try:
                 order = time_order(self._rows.time, [slab.filled for slab in self._slabs])
@@ -286,7 +286,8 @@ class _Slab:
     ) -> None:
         """Process the slab's events up to a time limit.
 
-        rows: memory for the events, with local times; None without a log. unpredicted: whether an epoch begins.
+        rows: memory for the rows of events, with local times; None without a log. unpredicted: whether an epoch has
+        begun whose events have not been predicted yet.
         """
         self.counters[:] = np.zeros(1, COUNTERS)
         clear_sums(self.effects)
@@ -298,5 +299,5 @@ class _Slab:
 
 
 def _build(state: EventDrivenState, low: int, high: int) -> None:
-    """Build the scheduler of the discs in the rows from `low` to before `high`; empty if nothing is predicted yet."""
+    """Build the scheduler of the discs in rows `low` to `high` - 1; it is empty if no event has been predicted yet."""
     build(state.tree, state.prediction, state.cells.link, low, low if state.unpredicted[0] else high)

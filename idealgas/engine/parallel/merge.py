@@ -23,7 +23,7 @@ def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
             they were processed, which is not the order of time if a clock was set back.
 
     Returns:
-        (rows,) i8.
+        The indices (rows,), i8.
 
     Raises:
         TiedRowsError: simultaneous rows are not adjacent rows of the same slab, so their order is undefined.
@@ -37,11 +37,11 @@ def time_order(time: np.ndarray, filled: Sequence[int]) -> np.ndarray:
 
 @njit
 def merge(time, filled, sorted_rows, place, head, order):
-    """Merge the rows of all slabs into `order`, see `time_order`; return False if their order is undefined.
+    """Merge the rows of all slabs into `order` (see `time_order`); return False if their order is undefined.
 
-    filled: (slabs,) i8. sorted_rows: i8 of the same length as `time`, overwritten with each slab's sorted rows. place:
-    (slabs,) i8 and head: (slabs,) f8, overwritten with the position in `sorted_rows` of each slab's next row, and its
-    time.
+    filled: (slabs,) i8. The other arrays are overwritten. sorted_rows: i8 of the same length as `time`, the sorted rows
+    of each slab. place: (slabs,) i8, position in `sorted_rows` of each slab's next row. head: (slabs,) f8, time of this
+    row.
     """
     slabs = filled.shape[0]
     room = time.shape[0] // slabs
@@ -66,7 +66,7 @@ def merge(time, filled, sorted_rows, place, head, order):
 
 @inline
 def insertion_sort(time, start, stop, sorted_rows):
-    """Sort the rows from `start` to before `stop` by time; insertion is fast, as nearly all rows are in order."""
+    """Sort the rows `start` to `stop` - 1 by time; insertion sort is fast because nearly all rows are in order."""
     for row in range(start, stop):
         at = row
         while at > start and time[U(sorted_rows[U(at - 1)])] > time[U(row)]:
@@ -77,7 +77,7 @@ def insertion_sort(time, start, stop, sorted_rows):
 
 @inline
 def gather_scalars(to, rows, order):
-    """Copy a scalar column of the rows in the given order, if the batch has it."""
+    """Copy a scalar column of the rows in the given order, if the batch has this column."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k)] = rows[U(order[U(k)])]
@@ -85,7 +85,7 @@ def gather_scalars(to, rows, order):
 
 @inline
 def gather_vectors(to, rows, order):
-    """Copy a column with two components of the rows in the given order, if the batch has it."""
+    """Copy a column with two components of the rows in the given order, if the batch has this column."""
     if to is not None:
         for k in range(order.shape[0]):
             to[U(k), 0] = rows[U(order[U(k)]), 0]
@@ -94,7 +94,7 @@ def gather_vectors(to, rows, order):
 
 @njit
 def gather_rows(rows, order, epoch_start, batch):
-    """Copy rows with local times into a batch in the given order; epoch_start: time."""
+    """Copy rows with local times into a batch in the given order; epoch_start: time at the start of the epoch."""
     for k in range(order.shape[0]):
         batch.time[U(k)] = epoch_start + rows.time[U(order[U(k)])]
     gather_scalars(batch.disc, rows.disc, order)
@@ -110,7 +110,7 @@ class PendingRows:
     """Rows that have not been delivered yet."""
 
     def __init__(self, rows: EventBatch, order: np.ndarray, epoch_start: float) -> None:
-        """Begin with rows with local times and their order; epoch_start: time."""
+        """Begin with all rows, which have local times, and their order; epoch_start: time at the start of the epoch."""
         self._rows, self._order, self._epoch_start = rows, order, epoch_start
         self._next = 0
 

@@ -27,13 +27,14 @@ class Tuning(NamedTuple):
     """Parameters of the threads that only change their speed.
 
     Attributes:
-        min_rows: smallest number of rows of a slab.
-        min_discs: smallest number of discs of a slab.
-        min_events: smallest number of events of a slice that several threads share.
-        max_events: number of events that suffice for a slice, however many discs there are; they take some seconds.
-        buffer: number of rows for which a slab has memory.
-        lead: number of rows that the fastest disc may cross in the time by which interior events may be ahead.
-        autotune: whether one thread continues alone while that is faster, as on a busy machine.
+        min_rows: smallest number of rows of cells in a slab.
+        min_discs: smallest number of discs in a slab.
+        min_events: smallest number of events in a slice that several threads share.
+        max_events: number of events that suffices for a slice, however many discs there are; it takes a few seconds.
+        buffer: number of event rows for which a slab has memory.
+        lead: number of rows of cells that the fastest disc can cross in the time by which interior events may be ahead
+            of the neighbouring slabs.
+        autotune: whether one thread continues alone as long as this is faster, for example on a busy machine.
     """
 
     min_rows: int = 32
@@ -85,9 +86,10 @@ def choose_threads(threads: int | None, rows: int, n: int, far: str, tuning: Tun
 
 
 def slab_edges(discs_in_row: np.ndarray, slabs: int) -> list[int]:
-    """First row of each slab, and the row after the last slab: equal shares of the discs, at least MIN_ROWS rows each.
+    """Return the first row of each slab, and the row after the last slab.
 
-    discs_in_row: (R,) number of discs in each row of cells, including the ring.
+    The slabs have about equal numbers of discs, and at least MIN_ROWS rows each. discs_in_row: (R,) number of discs in
+    each row of cells, including the ring around the box.
     """
     last = len(discs_in_row) - 1
     share = np.cumsum(discs_in_row) / max(discs_in_row.sum(), 1)
@@ -102,7 +104,8 @@ def slab_edges(discs_in_row: np.ndarray, slabs: int) -> list[int]:
 def make_subdomains(edges: list[int], ring: bool, lead: float) -> list[Subdomain]:
     """Return the slabs between the edges.
 
-    ring: whether the last slab and the first are neighbours. lead: how far interior events may be ahead, time.
+    ring: whether the last slab and the first are neighbours. lead: time by which interior events may be ahead of the
+    neighbouring slabs.
     """
     slabs = len(edges) - 1
     words = aligned(lines(slabs) * LINE, np.dtype("i8"))

@@ -1,12 +1,12 @@
 """Subdomains of several threads: their clocks and locks, and the migration of discs between them.
 
 The box is decomposed into slabs of rows of cells. A thread owns the discs whose cells lie in its slab, and schedules
-their events. Events in the interior of a slab happen at once. A *halo event* is an event with a disc in one of the HALO
-rows at an interface of two slabs. It waits until the clock of the neighbour, which is the time of the neighbour's next
-event, is later. It then takes the lock of the interface; while it holds the lock, it may change the neighbour's disc in
-the first row beyond, or let a disc migrate. A thread never changes the scheduler of another thread: it sends the disc
-as a message, and the new owner schedules the disc, which may set that thread's clock back. `synchronization` decides
-when an event may happen.
+their events. Events in the interior of a slab need no lock. A *halo event* is an event with a disc in one of the HALO
+rows next to an interface of two slabs. It waits until the clock of the neighbour, which is the time of the neighbour's
+next event, is later. Its thread then locks the interface; until it releases the lock, it may change a disc of the
+neighbour in the first row beyond the interface, or let a disc migrate. A thread never changes the scheduler of another
+thread: it sends the disc as a message, and the new owner schedules the disc and may have to set its clock back.
+`synchronization` decides when an event may happen.
 """
 
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from idealgas.engine.parallel.atomics import LINE, add, exchange, load, store, w
 from idealgas.jit import inline, noinline
 
 HALO = 4
-"""Rows at an interface with halo events. An event in row r reads rows r - 2 to r + 2 and writes r - 1 to r + 1."""
+"""Rows with halo events on each side of an interface. An event in row r reads r - 2 to r + 2, writes r - 1 to r + 1."""
 
 SAFE_DEPTH = HALO - 3
 """Row, counted from the interface, up to which a halo event shares no row with events of the interior."""
@@ -30,7 +30,7 @@ LOW, HIGH, FOREIGN = 1, 2, 4
 """Location of a halo event: at the lower interface, at the upper one, or with a partner owned by another thread."""
 
 DONE, ABORTED = -1, -2
-"""Instead of the index of a disc: no events are left up to the limit, or the slice is aborted."""
+"""Returned instead of the index of a disc: no events are left up to the limit, or the slice is aborted."""
 
 VIOLATION, TIE, FULL, CLOCK, FAILED = range(1, 6)
 """Reasons why a slice is aborted: causality is violated, events at an interface are simultaneous, a limit is reached, a
@@ -51,7 +51,7 @@ PRIVATE = np.dtype(
         ("message_interior", "f8"), ("message_halo", "f8"),  # `interior` and `halo` when the last message was received
         ("low", "f8"), ("high", "f8"),  # latest event at each interface since the last message
         ("last", "f8"),  # last event since the last message
-        ("row_time", "f8"), ("unchecked", "i8"),  # latest event with rows; number still to be checked after a message
+        ("row_time", "f8"), ("unchecked", "i8"),  # latest event with rows; events still to check after a message
         ("simultaneous", "i8"),  # consecutive events at the time of the last one
         ("locked", "i8"), ("idle", "i8"),  # interfaces that are locked; whether no event is left up to the limit
         ("migrations", "i8"), ("clock_resets", "i8"), ("crossed_messages", "i8"),  # statistics
@@ -73,7 +73,7 @@ class Subdomain(NamedTuple):
         above: number of the upper interface; -1 at a side of the box.
         rank_below: number of the slab below.
         rank_above: number of the slab above.
-        lead: how far interior events may be ahead of the neighbours' clocks, time; this limit makes violations rare.
+        lead: time by which interior events may be ahead of the neighbours' clocks; this limit makes violations rare.
         private: (1,) PRIVATE, used by this thread only.
         words: i8, shared by all threads: FLAG, ACTIVE, then the lines of slabs, of interfaces and of messages.
         times: f8, the same memory as `words`.

@@ -1,13 +1,13 @@
 """Synchronization of threads: the loop in which a thread waits until the next event of its slab may happen.
 
-The result must be that of one thread, which processes all events in order of time. This is achieved in two ways: an
-event waits until it seems to be the first of all events with which it does not commute, and it is then checked that
-this is so. Waiting makes violations rare, but only the check is relied upon: an event that comes too late has written
-nothing yet, its thread raises a flag, the slice is rolled back, and one thread repeats it.
+The result must be the same as with one thread, which processes all events in order of time. This is achieved in two
+steps: an event waits until it appears to be the first of all events with which it does not commute, and then this is
+checked. Waiting makes violations rare, but the result relies only on the check: an event that comes too late has not
+written anything yet; its thread raises a flag, the slice is rolled back, and one thread repeats the slice.
 
-Events that commute. An event writes the records, predictions and lists of one row of cells or of two adjacent rows:
-those of its discs, or those between which a disc crosses. It then predicts the events of these discs again, and for
-that reads the rows beside them. Two events therefore commute if at least one row lies between the rows that they write.
+Events that commute. An event writes the records, predictions and lists of one row of cells or of two adjacent rows: the
+rows of its discs, or the rows between which a disc crosses. It then predicts the next events of these discs, for which
+it reads the rows next to them. Two events therefore commute if at least one row lies between the rows that they write.
 In the slab above an interface, with HALO = 4:
 
     row
@@ -17,21 +17,21 @@ In the slab above an interface, with HALO = 4:
      2 │              halo events that write rows 0 and 1 only (SAFE_DEPTH) commute with events of the interior
      1 │
      0 │ ──────────
-    ═══╪═══════════   interface: whoever processes a halo event holds its lock
+    ═══╪═══════════   interface: a thread that processes a halo event holds its lock
     -1 │ halo of the  written by events of the slab below: rows 0 and below, because only discs of the two rows
     -2 │ neighbour    at the interface may collide across it, or cross it
 
 Events of the interior commute with all events of other threads: rows 1 and 2 lie between them. Halo events at different
-interfaces commute, because a slab has at least MIN_ROWS rows. What does not commute is checked by `is_in_order`.
+interfaces commute, because a slab has at least MIN_ROWS rows. `is_in_order` checks events that do not commute.
 
 Clocks. The clock of a slab is the time of its next event. Loads acquire and stores release (see `atomics`): a thread
-that reads the clock of a neighbour also sees everything that the neighbour did before it set the clock. A value that is
-out of date is an earlier time; it may make a thread wait for a moment in vain, but not proceed too early. Only when a
-slab receives a disc, its clock may be set back, and an event of its neighbour may already have happened that should
-have waited.
+that reads the clock of a neighbour also sees everything that the neighbour did before it set the clock. An outdated
+value is an earlier time; it may make a thread wait longer than necessary, but never proceed too early. A clock is set
+back only when its slab receives a disc that has an earlier event; an event of the neighbour that should have waited may
+then have happened already.
 
-Threads do not wait for each other in a circle: of all next events, the earliest has no earlier clock to wait for; locks
-are never held while waiting, except by a thread that sends a disc, and threads that wait receive discs all the time.
+Threads cannot deadlock: the earliest of all next events has no earlier clock to wait for; no thread holds a lock while
+it waits, except a thread that sends a disc; and threads that wait continue to receive discs.
 """
 
 import numpy as np
@@ -79,7 +79,7 @@ def is_owned(state, i, sub):
 
 @inline
 def count_simultaneous(time, now, events_at_this_time, sub):
-    """Time of the latest event, after an event at `time`, and the number of consecutive events at that time."""
+    """Count an event at `time`; return the time of the latest event, and the number of consecutive events then."""
     check_rows(time, sub)
     if time < now:  # the clock was set back
         return now, events_at_this_time
@@ -88,10 +88,10 @@ def count_simultaneous(time, now, events_at_this_time, sub):
 
 @inline
 def check_rows(time, sub):
-    """Note an event with rows; abort if it is simultaneous with the previous one and a disc was received in between.
+    """Note the time of an event with rows; abort if it is that of the previous one and a disc was received in between.
 
-    If that disc takes part in the event, the order of the two events is undefined, and the merge cannot detect it
-    because their rows are adjacent.
+    If the received disc takes part in the event, the order of the two events is undefined, and the merge cannot detect
+    this because their rows are adjacent.
     """
     private = sub.private[0]
     if private.unchecked > 0:
@@ -184,7 +184,7 @@ def is_misplaced(record, state, i, where, sub):
 
 @inline
 def order_to_neighbour(state, i, time, rank, sub):
-    """Order of a halo event of disc i relative to all events of a neighbour that are still to come.
+    """Order of a halo event of disc i relative to all future events of a neighbour.
 
     Both discs of a pair across an interface predict the same event; the slab with the smaller rank processes it.
     """
@@ -202,7 +202,7 @@ def order_to_neighbour(state, i, time, rank, sub):
 
 @inline
 def order_to_neighbours(state, i, time, where, sub):
-    """Order of a halo event of disc i relative to all events to come of the neighbours that it involves."""
+    """Order of a halo event of disc i relative to all future events of the neighbours that it involves."""
     low = high = FIRST
     if sub.below >= 0 and where & (LOW | FOREIGN):
         low = order_to_neighbour(state, i, time, sub.rank_below, sub)
@@ -224,11 +224,11 @@ def earliest_clock(sub):
 
 @inline
 def is_in_order(ids, state, i, time, where, sub):
-    """Whether no event that had to wait for disc i's event has already happened; notes that this event happens now.
+    """Note disc i's event and return True, or return False if an event that should have waited for it has happened.
 
     Proof: Let B be disc i's event, and A an event that has happened although it does not commute with B and is not
     earlier. As explained above, A is an event of the same slab or a halo event at an interface of B. Within a slab,
-    events happen in order of time, unless the slab receives a disc between A and B. So there are these cases:
+    events happen in order of time, unless the slab receives a disc between A and B. This leaves four cases:
 
         B            A                             happened too early if
         interior     interior event of this slab   A came before the last message, and B is not later
@@ -237,8 +237,8 @@ def is_in_order(ids, state, i, time, where, sub):
         halo event   halo event, same interface    B is not later than the latest event there, of either thread
 
     The times on the right are known: `message_interior` and `message_halo` are the times of the latest events before
-    the last message, and the time of the latest event at an interface stands beside its lock, which this thread holds.
-    Simultaneous halo events are in order if both are events of this slab and it has received no disc in between.
+    the last message, and the time of the latest event at an interface is stored next to its lock, which this thread
+    holds. Simultaneous halo events are in order if both are events of this slab and it received no disc in between.
     """
     private = sub.private[0]
     if not where & (LOW | HIGH):
@@ -265,7 +265,7 @@ def is_in_order(ids, state, i, time, where, sub):
 
 @inline
 def clock_advances(time, sub):
-    """Whether this thread's clock advances, or stands still for fewer than MAX_SIMULTANEOUS events; notes the event."""
+    """Note an event; return whether the clock advances, or stands still for fewer than MAX_SIMULTANEOUS events."""
     private = sub.private[0]
     if time <= private.last:
         private.simultaneous += 1
@@ -280,15 +280,14 @@ def may_happen(record, ids, state, i, time, sub):
     """Whether disc i's event, the next event of this slab, may happen now.
 
     Returns 1 if it may, with its interfaces locked, 0 if not, or ABORTED. An event of the interior may happen unless it
-    is far ahead of the neighbours. A halo event is announced, so that a neighbour may see that both are the same event;
-    when it seems to be the first, its interfaces are locked, and it is decided again. Before the lock was taken, the
-    neighbour may still have collided with the partner or moved it, or sent a disc. Afterwards it cannot: all this needs
-    the lock.
+    is far ahead of the neighbours. A halo event is announced, so that a neighbour can see whether both have predicted
+    the same event. Once the event appears to be the first, its interfaces are locked, and the decision is repeated:
+    before it was locked out, the neighbour may still have collided with the partner, moved it, or sent a disc.
     """
     private = sub.private[0]
     where = 0
     if is_halo_event(ids, state, i, sub):
-        # 1. Announce the event: the disc and the time come before the clock, which the neighbour reads first.
+        # 1. Announce the event: store the disc and the time before the clock, which the neighbour reads first.
         where = location_of(ids, state, i, sub)
         store(sub.words, clock_word(sub.rank) + 2, i)
         store(sub.times, clock_word(sub.rank) + 1, time)
@@ -296,7 +295,7 @@ def may_happen(record, ids, state, i, time, sub):
         # 2. Wait for earlier events of the neighbours, and for the locks.
         if order_to_neighbours(state, i, time, where, sub) == LATER or not try_lock(sub, where):
             return 0
-        # 3. Decide again under the locks.
+        # 3. Decide again while holding the locks.
         order = LATER
         if not has_message(sub) and location_of(ids, state, i, sub) == where:
             order = order_to_neighbours(state, i, time, where, sub)
@@ -309,7 +308,7 @@ def may_happen(record, ids, state, i, time, sub):
             return abort(sub, VIOLATION)
     else:
         publish_clock(sub, time)
-        if time > private.horizon:  # the neighbours' clocks are read only when they may matter
+        if time > private.horizon:  # the neighbours' clocks are read only if they may matter
             private.horizon = earliest_clock(sub) + sub.lead
             if time > private.horizon:
                 return 0

@@ -21,8 +21,8 @@ class Workers:
 
     Attributes:
         counts: numbers of shared slices, of aborted slices by reason, and of migrations and their side effects.
-        rate: rates of all events and of collisions of two discs in the last slice, 1/time; None before the first.
-        autotuner: choice between several threads and one; None to always use several threads.
+        rate: rates of all events and of collisions of two discs in the last slice, 1/time; None before the first slice.
+        autotuner: choice between several threads and one thread; None to always use several threads.
     """
 
     def __init__(self, tuning: Tuning = DEFAULT_TUNING) -> None:
@@ -49,7 +49,7 @@ class Workers:
         return self._rows
 
     def run(self, work: Callable[[int], None], number: int, abort_slice: Callable[[], None]) -> None:
-        """Call work(0) to work(number - 1) in parallel, the first in this thread and each of the others in its own."""
+        """Call work(0) to work(number - 1) in parallel: work(0) in this thread, and each of the others in its own."""
         self._pool = self._pool or ThreadPoolExecutor(number - 1, "slab")
         futures = [self._pool.submit(work, k) for k in range(1, number)]
         try:
