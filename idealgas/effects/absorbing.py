@@ -8,7 +8,7 @@ from idealgas.effects.properties import Properties
 
 
 def _hole(side: float) -> str:
-    """Table `[[wall]]` of a hole that is removed at t = 5, in a square box; side: side length of the box."""
+    """`[[wall]]` table of a hole that is removed at t = 5 in a square box with the given side length."""
     return f"[[wall]]\nfrom = [{side / 2}, 9.5]\nto = [{side / 2 + 20}, 9.5]\nabsorbing = true\nopens_at = 5\n"
 
 

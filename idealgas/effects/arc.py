@@ -9,11 +9,14 @@ from idealgas.physics import arc as law
 from idealgas.physics.arc_geometry import Arc
 
 FLATTEST = 100.0
-"""Largest radius of an arc in units of the box's longer side; rounding errors of contacts grow in this ratio."""
+"""Largest radius of an arc in units of the box's longer side; rounding errors of contacts grow with this radius."""
 
 
 def make_arcs(arcs_of_walls: list[Arc | None]) -> np.recarray:
-    """Return (W,) ARC for all walls inside the box; arcs_of_walls: the arc of each wall, None for a straight wall."""
+    """Return the arcs (W,) ARC of all W walls inside the box.
+
+    arcs_of_walls: the arc of each wall, None for a straight wall.
+    """
     arcs = aligned(len(arcs_of_walls), law.ARC)
     for k, arc in enumerate(arcs_of_walls):
         if arc is not None:
@@ -22,7 +25,7 @@ def make_arcs(arcs_of_walls: list[Arc | None]) -> np.recarray:
 
 
 def _circle(side: float) -> str:
-    """Table `[[wall]]` of a circle in a square box; side: side length of the box."""
+    """`[[wall]]` table of a circle in a square box with the given side length."""
     low, high, middle = 0.1 * side, 0.9 * side, 0.5 * side
     return f"[[wall]]\nfrom = [{low}, {middle}]\nto = [{low}, {middle}]\nvia = [{high}, {middle}]\n"
 

@@ -1,7 +1,7 @@
-"""The effects of a scene as a single argument of the engines: a field per effect, None if the scene does not have it.
+"""All effects of a scene as a single argument of the engines, with one field per effect; absent effects are None.
 
-In compiled code a field is always passed to a function before it is compared with None, because numba removes
-`if gravity is not None` only from a function whose argument is None. Absent effects therefore produce no machine code.
+In compiled code a field is always passed to a function before it is compared with None, because numba removes `if
+gravity is not None` only in a function whose argument is None. Absent effects therefore produce no machine code.
 """
 
 import math
@@ -24,12 +24,12 @@ ENERGIES = ("wall_energy", "dissipated", "bath_energy", "step_energy")
 """Fields that are sums of energies."""
 
 FIELDS = (*(effect.field for effect in EFFECTS), *ENERGIES, "flow", "schedule")
-"""Fields of the bundle: all effects, the sums over a run, and the changes in time."""
+"""Fields of the bundle: all effects, the sums over a run, and the scheduled changes."""
 
 if TYPE_CHECKING:
 
     class Effects(tuple):
-        """Parameters and state of all effects; mypy cannot see the fields, which follow from the list of effects."""
+        """Parameters and state of all effects; mypy cannot see the fields, which are derived from `EFFECTS`."""
 
         def __new__(cls, **fields: Any) -> "Effects":
             """Create a bundle with these fields; all other fields are None."""
@@ -49,19 +49,19 @@ else:
 
     Attributes:
         wall_energy: (walls,) SUM, energy that each wall gave to discs, mass length²/time²; None if no wall gives any.
-        dissipated: (1 + walls,) SUM, energy dissipated in collisions of two discs, then in hits of each wall that is
+        dissipated: (1 + walls,) SUM, energy dissipated in collisions of two discs, then in hits on each wall that is
             not thermal, mass length²/time²; None if nothing is dissipated. For a wall at rest, `wall_energy` is minus
             this energy.
         bath_energy: (1,) SUM, energy that the heat bath gave to discs, mass length²/time²; None without a heat bath.
-        step_energy: (1,) SUM, energy given when a potential or velocities are changed, mass length²/time²; None if
-            they are not.
+        step_energy: (1,) SUM, energy gained when a potential or velocities are changed, mass length²/time²; None if
+            neither can happen.
         flow: accumulated momentum flow of the gas; None if it is not recorded.
-        schedule: changes in time, each as (time, index of the effect, item, value), in order; None without changes.
+        schedule: scheduled changes (time, index of the effect, item, value) in order of time; None without changes.
     """
 
 
 def for_kernels(effects: Effects) -> Effects:
-    """Return the effects without the fields that kernels do not need, and without gravity while it is zero.
+    """Return the effects without the fields that kernels do not need, and without gravity if it is currently zero.
 
     The periodic sides receive the shear, which moves their images.
     """
@@ -71,7 +71,7 @@ def for_kernels(effects: Effects) -> Effects:
 
 
 def present(effects: Effects) -> Iterator[tuple[Effect[Any], Any]]:
-    """Yield the effects that a bundle has, with their states."""
+    """Yield the effects that are present in a bundle, each with its state."""
     for effect in EFFECTS:
         if (state := getattr(effects, effect.field)) is not None:
             yield effect, state
@@ -84,18 +84,24 @@ def begin_epoch(effects: Effects, time: float, length: float) -> None:
 
 
 def end_epoch(effects: Effects, length: float) -> None:
-    """Finish an epoch: let the local times of all effects count from its end; length: duration of the epoch."""
+    """Finish an epoch: let the local times of all effects count from the end of the epoch.
+
+    length: duration of the epoch, time.
+    """
     for effect, state in present(effects):
         effect.end_epoch(state, length)
 
 
 def next_change(effects: Effects, time: float) -> float:
-    """Earliest time after the given time at which a value changes; infinite if none does."""
+    """Earliest scheduled change after the given time; infinite if there is none."""
     return next((later for later, *_ in effects.schedule or () if later > time), math.inf)
 
 
 def changed(effects: Effects, after: float, until: float) -> Effects:
-    """Return the effects with all changes in `after` < time <= `until`; `step_energy` is not updated."""
+    """Return the effects after all scheduled changes at times with `after` < time <= `until`.
+
+    `step_energy` is not updated.
+    """
     for time, effect, item, value in effects.schedule or ():
         if after < time <= until:
             field = EFFECTS[effect].field
@@ -104,7 +110,7 @@ def changed(effects: Effects, after: float, until: float) -> Effects:
 
 
 def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[str, float]:
-    """Energies that the effects add, by field of `idealgas.run.energy.Energy`, mass length²/time²."""
+    """Energies that the effects contribute, mass length²/time², by field of `idealgas.run.energy.Energy`."""
     if effects.gravity is not None:
         position = unwrapped(gas.position, effects.periodic)
         if effects.absorbing is not None:
@@ -118,27 +124,30 @@ def energy_parts(effects: Effects, gas: Gas, local_time: float = 0.0) -> dict[st
 
 
 def inner_energy(effects: Effects, gas: Gas) -> float:
-    """Energy of the discs at time 0 that collisions may turn into kinetic energy, mass length²/time²."""
+    """Energy of the discs at time 0 that collisions may convert into kinetic energy, mass length²/time²."""
     return sum(effect.energy(state, gas, 0.0) for effect, state in present(effects) if effect.energy_is_inner)
 
 
 def counted(effects: Effects) -> tuple[Column, ...]:
-    """Columns of the event counts that these effects add."""
+    """Columns for the counts of the events that these effects cause."""
     return tuple(COUNTED[effect.events] for effect, _ in present(effects) if effect.events is not None)
 
 
 def disc_state(effects: Effects) -> Arrays:
-    """Arrays with an entry per disc that checkpoints store for the effects; times count from the checkpoint."""
+    """Arrays of the effects with an entry for each disc, for checkpoints; their times count from the checkpoint."""
     return {column: values for effect, state in present(effects) for column, values in effect.disc_state(state).items()}
 
 
 def disc_constants(effects: Effects) -> Arrays:
-    """Values per disc that the log stores once, in addition to motion, radius and mass."""
+    """Values for each disc that the log stores only once, in addition to motion, radius and mass."""
     return {column: values for effect, state in present(effects) for column, values in effect.constants(state).items()}
 
 
 def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
-    """Values of the effects that do not belong to a disc, for checkpoints and samples; local_time: time."""
+    """Values of the effects that do not belong to individual discs, for checkpoints and samples.
+
+    local_time: local time at which the values are computed.
+    """
     return {
         column: value
         for effect, state in present(effects)
@@ -147,7 +156,10 @@ def whole_state(effects: Effects, local_time: float = 0.0) -> Values:
 
 
 def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray]) -> None:
-    """Set the effects to the state of a checkpoint; arrays: its columns by name."""
+    """Set the effects to the state of a checkpoint.
+
+    arrays: columns of the checkpoint by name.
+    """
     for column, values in disc_state(effects).items():
         values[:] = arrays[column.name]
     for effect, state in present(effects):
@@ -155,7 +167,7 @@ def restore_effects(effects: Effects, arrays: Mapping[str, np.ndarray]) -> None:
 
 
 def with_own_sums(effects: Effects) -> Effects:
-    """Return the same effects with separate sums, set to 0, so that the sums of several threads can be added."""
+    """Return the same effects with separate sums, set to 0, for a thread whose sums are added to the others later."""
     sums = {name: None if (total := getattr(effects, name)) is None else total.copy() for name in ENERGIES}
     separate = effects._replace(flow=stress.copy_of(effects.flow), **sums)
     clear_sums(separate)
@@ -173,7 +185,10 @@ def clear_sums(effects: Effects) -> None:
 
 
 def add_sums_of(effects: Effects, part: Effects) -> None:
-    """Add the sums and numbers of collisions of another bundle of the same effects, whose buffer is empty."""
+    """Add the sums and numbers of collisions of another bundle of the same effects to those of `effects`.
+
+    part: the other bundle, whose buffer must be empty.
+    """
     for total, sums in zip(_sums(effects), _sums(part), strict=True):
         add_sums(total, sums)
     for number, counts in zip(_counts(effects), _counts(part), strict=True):
@@ -181,7 +196,7 @@ def add_sums_of(effects: Effects, part: Effects) -> None:
 
 
 def _sums(effects: Effects) -> list[np.ndarray]:
-    """Return all arrays of SUM."""
+    """Return all arrays of type SUM."""
     arrays = [] if effects.flow is None else stress.sums_of(effects.flow)
     return [*arrays, *(sums for name in ENERGIES if (sums := getattr(effects, name)) is not None)]
 

@@ -21,8 +21,8 @@ class Tables(NamedTuple):
     """The part of a scene that an effect uses.
 
     Attributes:
-        table: table of the effect, None if absent; for an effect with an array of tables, a tuple with None for invalid
-            tables.
+        table: table of the effect, None if absent; for an effect with an array of tables, a tuple in which
+            invalid tables are None.
         size: width and height of the box, length.
         sides: kinds of the left, right, bottom and top side; empty while the table of the box is invalid.
         walls: wall segments, with None for invalid tables, followed by fixed discs.
@@ -43,7 +43,7 @@ class GasAtStart(NamedTuple):
         acceleration: acceleration of the discs at time 0, summed over the effects, length/time².
         angular_velocity: (N,) angular velocities given in the scene, 1/time; 0 if not given.
         spin_temperature: (N,) temperature of the spins, energy; 0 for discs whose spins are not drawn at random.
-        later_accelerations: accelerations from later times on, length/time².
+        later_accelerations: accelerations after each later step, length/time².
     """
 
     gas: Gas
@@ -62,8 +62,8 @@ class BenchmarkSample(NamedTuple):
 
     Attributes:
         name: suffix to the name of the effect, if it has several samples.
-        box: function that returns the keys of `[box]` from the length of the box's sides.
-        tables: function that returns further tables from this length.
+        box: function that returns additional keys of `[box]` for a given side length of the box.
+        tables: function that returns further tables for a given side length of the box.
     """
 
     name: str = ""
@@ -72,11 +72,11 @@ class BenchmarkSample(NamedTuple):
 
 
 class Later(NamedTuple):
-    """The instant of a log from which another scene continues.
+    """The time in a log from which a new scene continues.
 
     Attributes:
         time: time at which the clock of the new scene starts.
-        species: names of the species that have discs then.
+        species: names of the species that still have discs at this time.
         sampled: function sampled(column) that returns the value of a column of the samples at this time.
     """
 
@@ -88,8 +88,8 @@ class Later(NamedTuple):
 class Effect(ABC, Generic[State]):
     """An effect. A subclass defines its tables, its state in a run and its columns in the log; its law is in `physics`.
 
-    The state consists of arrays and numbers, which `make` returns and the engine changes. Most methods take it as their
-    first argument. Methods that an effect does not override leave the gas unchanged.
+    The state consists of arrays and numbers, which `make` returns and the engine changes. Most methods take the state
+    as their first argument. Methods that an effect does not override leave the gas unchanged.
 
     Attributes:
         name: name in output and messages.
@@ -99,14 +99,14 @@ class Effect(ABC, Generic[State]):
         many: whether the scene has an array of such tables.
         description: description of the table for the JSON Schema.
         side: kind of side of the box: a word, or a table with a single key.
-        side_text: form in which such a side is written.
-        energy_part: field of `idealgas.run.energy.Energy` for `energy`; empty if the effect adds no energy.
+        side_text: how such a side is written in a scene.
+        energy_part: field of `idealgas.run.energy.Energy` that contains `energy`; empty if the effect adds no energy.
         energy_column: column of this energy in the samples; None if the samples do not contain it.
-        energy_is_inner: whether this energy belongs to the discs and collisions may turn it into kinetic energy.
-        events: kind of events that only this effect causes, which are counted; None if it causes none.
+        energy_is_inner: whether this energy belongs to the discs and collisions may convert it into kinetic energy.
+        events: kind of event that only this effect causes and that is counted; None if there is none.
         shearable: whether the effect is the same everywhere, so that the gas may be sheared.
         samples: additions to the scene of the benchmark.
-        sample_together: addition to the scene with all effects; the first of the samples if None.
+        sample_together: addition to the benchmark scene with all effects; the first entry of `samples` if None.
     """
 
     name: ClassVar[str]
@@ -127,14 +127,14 @@ class Effect(ABC, Generic[State]):
 
     @abstractmethod
     def properties(self, tables: Tables) -> Properties | None:
-        """Return the properties of a gas with these tables, or sides of the box; None if they change nothing."""
+        """Return the properties of a gas with these tables or sides of the box; None if they do not change the gas."""
 
     def check(self, tables: Tables) -> Iterable[Issue]:
-        """Return issues of the table that depend on the box or the walls; called if the scene has the effect."""
+        """Return issues with the table that depend on the box or the walls; called only if the scene has the effect."""
         return ()
 
     def continued(self, table: Any, later: Later) -> Any:
-        """Return the table, or tuple of tables, of a scene that continues from a later time."""
+        """Return the table, or tuple of tables, for a scene that continues from a later time."""
         return table.after(later.time) if hasattr(table, "after") else table
 
     def exists(self, tables: Tables, start: GasAtStart) -> bool:
@@ -150,41 +150,50 @@ class Effect(ABC, Generic[State]):
         return self.make(tables, start) if self.exists(tables, start) else None
 
     def disc_state(self, state: State) -> Arrays:
-        """Return the arrays of the state with an entry for each disc, which checkpoints store.
+        """Return the arrays of the state that have an entry for each disc, which checkpoints store.
 
-        Arrays that are columns of events are also in event rows and snapshots.
+        Arrays whose columns are also columns of events are stored in event rows and snapshots too.
         """
         return {}
 
     def constants(self, state: State) -> Arrays:
-        """Return the values for each disc that the log stores once, at the start."""
+        """Return the values for each disc that the log stores only once, at the start."""
         return {}
 
     def values(self, state: State, local_time: float) -> Values:
-        """Return the values that do not belong to a disc, at a local time, which checkpoints and samples store."""
+        """Return the values at a local time that do not belong to individual discs, for checkpoints and samples."""
         return {}
 
     def restore(self, state: State, arrays: Mapping[str, np.ndarray]) -> None:
-        """Set the state to the values of a checkpoint, by name, except for arrays with an entry for each disc."""
+        """Set the state to the values of a checkpoint, except for arrays with an entry for each disc.
+
+        arrays: columns of the checkpoint by name.
+        """
 
     def energy(self, state: State, gas: Gas, local_time: float) -> float:
-        """Return the energy that the effect adds, at a local time; under gravity the positions are unwrapped."""
+        """Return the energy that the effect contributes at a local time, mass length²/time².
+
+        With gravity, the positions in `gas` are unwrapped.
+        """
         return 0.0
 
     def gives_energy(self, state: State) -> bool:
-        """Whether walls give energy to discs, or take it."""
+        """Whether walls exchange energy with discs because of this effect."""
         return False
 
     def own_walls(self, state: State) -> tuple[int, ...]:
-        """Numbers of the walls whose energy is part of the energy account, so that they add none from outside."""
+        """Numbers of the walls whose own energy is in the energy account, so that they supply none from outside."""
         return ()
 
     def driving_speed(self, state: State, gas: Gas) -> float:
-        """Estimated increase of the mean speed of the discs, length/time, for epoch lengths and units of sums."""
+        """Estimated increase in the mean speed of the discs due to the effect, length/time.
+
+        The lengths of epochs and the units of sums depend on this estimate.
+        """
         return 0.0
 
     def driving_energy(self, state: State, gas: Gas) -> float:
-        """Largest energy that the effect can give to a disc on its way across the box."""
+        """Largest energy that the effect can give to a disc while the disc crosses the box, mass length²/time²."""
         return 0.0
 
     def begin_epoch(self, state: State, time: float, length: float) -> None:
@@ -194,18 +203,18 @@ class Effect(ABC, Generic[State]):
         """Let local times count from the end of the epoch; length: duration of the epoch."""
 
     def reverse(self, state: State) -> None:
-        """Reverse the velocities in the state, at the start of an epoch."""
+        """Reverse the velocities in the state; called at the start of an epoch."""
 
     def schedule(self, tables: Tables, start: GasAtStart) -> Iterable[Change]:
-        """Return the changes in time of values of the state, after time 0."""
+        """Return the scheduled changes of values in the state, after time 0."""
         return ()
 
     def change(self, state: State, item: int, value: float) -> State:
-        """Return the state with a new value of an item."""
+        """Return the state with a new value for an item, as in `schedule`."""
         return state
 
     def find(self, tables: Tables) -> ActiveEffect | None:
-        """Return the keys that turn the effect on and its properties; None if the scene does not have the effect."""
+        """Return the keys that turn the effect on, and its properties; None if the scene does not have the effect."""
         keys: tuple[Key, ...]
         if self.many:
             tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.table) if table is not None)

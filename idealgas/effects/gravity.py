@@ -62,18 +62,21 @@ class GravityEffect(Effect[law.Gravity]):
             yield Issue((key,), "no acceleration", str(list(steps[0])), "a nonzero acceleration, or no [gravity]")
 
     def exists(self, _: Tables, start: GasAtStart) -> bool:
-        """Other effects may accelerate the discs too."""
+        """Return whether any effect accelerates the discs, because effects other than `[gravity]` may do so too."""
         return any(start.acceleration) or bool(start.later_accelerations)
 
     def make(self, _: Tables, start: GasAtStart) -> law.Gravity:
-        """Return the acceleration summed over all effects, which is what moves the discs."""
+        """Return the acceleration of the discs, summed over all effects."""
         return law.Gravity(*start.acceleration)
 
     def driving_speed(self, gravity: law.Gravity, gas: Gas) -> float:
         return math.sqrt(math.hypot(*gravity) * sum(gas.box))
 
     def energy(self, gravity: law.Gravity, gas: Gas, _: float) -> float:
-        """Potential energy; its decrease along periodic sides is the work of gravity on the flowing gas."""
+        """Return the potential energy.
+
+        Along periodic sides, the decrease in this energy is the work done by gravity on the flowing gas.
+        """
         return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 
     def schedule(self, tables: Tables, _: GasAtStart) -> Iterator[Change]:

@@ -13,20 +13,24 @@ from idealgas.toml.issues import Issue
 
 
 def _to_left(wall: Any) -> float:
-    """Positive if the side from which a wall lets discs pass is on its left, seen from start to end; else negative."""
+    """Return a positive number if the side from which a wall lets discs pass is on the left of the wall.
+
+    Left and right are as seen from start to end. The number is negative for the right, and 0 if the wall is parallel to
+    the direction of passage.
+    """
     outward = OUTWARD[SIDES.index(wall.permeable_from)]
     return (wall.end[0] - wall.start[0]) * outward[1] - (wall.end[1] - wall.start[1]) * outward[0]
 
 
 def _passage(wall: Any) -> int:
-    """Sides from which a wall is open for the discs to which it is permeable."""
+    """Sides from which a wall lets those discs pass to which it is permeable."""
     if wall.permeable_from is None:
         return law.OPEN
     return law.FROM_LEFT if _to_left(wall) > 0 else law.FROM_RIGHT
 
 
 def _door(x: float, height: float) -> str:
-    """Table of a wall from the bottom up to a height (length), which all discs pass from the left."""
+    """`[[wall]]` table of a wall from the bottom up to a height (length) that lets all discs pass from the left."""
     return f'[[wall]]\nfrom = [{x}, 0]\nto = [{x}, {height}]\npermeable_from = "left"\n'
 
 
@@ -43,7 +47,7 @@ class PermeableEffect(Effect[law.Permeable]):
         return Properties(one_way=any(wall.permeable_from for wall in walls)) if walls else None
 
     def check(self, tables: Tables) -> Iterator[Issue]:
-        """Yield issues of walls without the side `permeable_from`, and of gates that let discs pass from one side."""
+        """Yield issues of walls without a side `permeable_from`, and of gates that let discs pass from one side."""
         for i, wall in enumerate(tables.walls):
             if wall is None or wall.permeable_from is None:
                 continue

@@ -28,41 +28,43 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Number, Positive, Rectangle, Word
 
 NAME = "piston"
-"""Name of an inner piston among the walls, unless the scene gives it another."""
+"""Default name of an inner piston among the walls."""
 
 
 class PistonTable(SteppedTable):
     """`[[piston]]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
 
-    It moves at a given velocity, or it has a mass and is accelerated by gravity along its axis. A piston that replaces
-    a side is pressed against the gas by the external pressure. At a side of the box it is reflected.
+    It either moves at a prescribed velocity or has a finite mass and is accelerated by gravity along its axis. An
+    external pressure pushes a piston that replaces a side against the gas. At a side of the box a piston is reflected.
     """
 
     in_steps = ("velocity", "pressure")
 
     side: Literal["left", "right", "bottom", "top"] | None = Field(
-        default=None, description="the side that it replaces; right if absent and not inner"
+        default=None, description="side of the box that the piston replaces; right if absent and not inner"
     )
     inner: Literal["x", "y"] | None = Field(
-        default=None, description="axis along which it moves inside the box, between two gases; replaces side"
+        default=None, description="axis along which an inner piston moves between two gases; used instead of side"
     )
     position: Number | None = Field(
         default=None,
-        description="coordinate at the start, length; if absent, at its side or, if inner, in the middle",
+        description="initial coordinate, length; if absent, that of its side or, if inner, the middle of the box",
     )
     velocity: NumberInSteps | None = Field(
         default=None,
-        description="length/time along the axis, or steps [[0, v], [t, v], …]; with a mass, velocity at the start",
+        description="velocity along the axis, length/time, or steps [[0, v], [t, v], …]; with a mass, initial velocity",
     )
-    mass: Positive | None = Field(default=None, description="mass > 0; requires pressure unless it is inner")
+    mass: Positive | None = Field(default=None, description="mass > 0; requires pressure unless the piston is inner")
     pressure: NotNegativeInSteps | None = Field(
         default=None, description="external pressure, force per length of the piston, or steps [[0, P], [t, P], …]"
     )
-    name: Word | None = Field(default=None, description='unique word for the log, if inner; "piston" if absent')
+    name: Word | None = Field(
+        default=None, description='unique name of an inner piston in the log, a word; "piston" if absent'
+    )
 
     @property
     def axis(self) -> int:
-        """0 if it moves along x, 1 along y."""
+        """0 if the piston moves along x, 1 if it moves along y."""
         return axis_of(SIDES.index(self.wall)) if self.inner is None else "xy".index(self.inner)
 
     @property
@@ -72,16 +74,19 @@ class PistonTable(SteppedTable):
 
     @property
     def outward(self) -> float:
-        """Direction from the gas to the piston along its axis: +1 or -1; 0 if it is inner."""
+        """Direction from the gas to the piston along its axis, +1 or -1; 0 for an inner piston."""
         return sum(OUTWARD[SIDES.index(self.wall)]) if self.inner is None else 0.0
 
     def outward_from(self, position: Any, size: tuple[float, float]) -> np.ndarray:
-        """Direction (N,) from each disc to the piston, +1 or -1; position: (N, 2) of the discs at the start, length."""
+        """Direction (N,) along the axis from each disc to the piston, +1 or -1.
+
+        position: (N, 2) initial positions of the discs, length. size: width and height of the box, length.
+        """
         above = np.asarray(position)[:, self.axis] > self.start(size)
         return np.where(above, -1.0, 1.0) if self.inner else np.full(len(above), self.outward)
 
     def stop(self, size: tuple[float, float]) -> float:
-        """Coordinate of the side of the box that it replaces, length."""
+        """Coordinate of the side of the box that the piston replaces, length."""
         return size[self.axis] if self.outward > 0 else 0.0
 
     def start(self, size: tuple[float, float]) -> float:
@@ -97,11 +102,11 @@ class PistonTable(SteppedTable):
 
     @property
     def velocity_steps(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of a time and the given velocity (length/time) that holds from this time on."""
+        """Pairs of a time and the prescribed velocity (length/time) that holds from this time on."""
         return steps_of(self.velocity)
 
     def room(self, size: tuple[float, float]) -> Rectangle:
-        """Rectangle that the gas may fill at the start: the box, up to a piston in it that is not inner."""
+        """Rectangle that the gas may fill at the start: the box, bounded by the piston if this is an outer piston."""
         low, high = [0.0, 0.0], list(size)
         if self.inner is None and 0 <= (start := self.start(size)) <= size[self.axis]:
             (high if self.outward > 0 else low)[self.axis] = start
@@ -127,15 +132,15 @@ class PistonTable(SteppedTable):
 
     @property
     def times(self) -> tuple[float, ...]:
-        """Times after 0 at which its pressure or velocity changes."""
+        """Times after 0 at which the external pressure or the velocity changes."""
         return tuple(time for time, _ in (*steps_of(self.pressure)[1:], *self.velocity_steps[1:]))
 
 
 @dataclass(frozen=True)
 class InnerPiston(PermanentWall):
-    """An inner piston among the walls inside the box, at its position at the start.
+    """An inner piston among the walls inside the box, at its initial position.
 
-    Its left face is on the side of smaller coordinates.
+    The left face of the piston is on the side of smaller coordinates.
     """
 
     start: Point
@@ -147,7 +152,10 @@ class InnerPiston(PermanentWall):
 
 
 def inner_pistons(tables: Sequence[PistonTable | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
-    """Return the inner pistons among the tables, which are None if invalid; size: width and height of the box."""
+    """Return the inner pistons among the tables; invalid tables are None.
+
+    size: width and height of the box, length.
+    """
     pistons = []
     for k, table in enumerate(tables):
         if table is not None and table.inner is not None:
@@ -158,7 +166,7 @@ def inner_pistons(tables: Sequence[PistonTable | None], size: tuple[float, float
 
 
 def _columns(number: int) -> tuple[Column, Column]:
-    """Columns of the positions and velocities of a number of pistons."""
+    """Columns of the positions and velocities of the given number of pistons."""
     places = Column("piston_position", "f8", (number,), "length")
     return places, Column("piston_velocity", "f8", (number,), "length/time")
 
@@ -200,7 +208,7 @@ class PistonEffect(Effect[np.ndarray]):
         )
 
     def check(self, tables: Tables) -> Iterator[Issue]:
-        """Yield issues of names of pistons that are taken or have no effect."""
+        """Yield issues of pistons whose names are taken or have no effect."""
         walls = [wall for wall in tables.walls if wall is not None and not isinstance(wall, InnerPiston)]
         taken = {wall.name: "a wall" for wall in walls} | dict.fromkeys(SIDES, "a side of the box")
         for k, piston in enumerate(tables.table):
@@ -264,13 +272,13 @@ class PistonEffect(Effect[np.ndarray]):
         law.end_epoch(piston, length)
 
     def reverse(self, pistons: np.ndarray) -> None:
-        """Reverse the velocities of pistons with a mass; a given velocity remains."""
+        """Reverse the velocities of pistons of finite mass; prescribed velocities remain."""
         for record in pistons:
             if record.m > 0:
                 record.v = reversed_velocity(record.v)
 
     def schedule(self, tables: Tables, start: GasAtStart) -> Iterator[Change]:
-        """Yield the changes of the acceleration of piston k (item 2 k) and of its given velocity (item 2 k + 1)."""
+        """Yield the changes of the acceleration (item 2 k) and the prescribed velocity (item 2 k + 1) of piston k."""
         for k, table in enumerate(tables.table):
             for time, _ in steps_of(table.pressure)[1:]:
                 yield Change(time, 2 * k, table.acceleration(tables.size, start.acceleration, time))

@@ -1,4 +1,4 @@
-"""Properties that effects give to a gas; analyses and checks depend on the properties of a scene, not on effects."""
+"""Properties that effects give to a gas; analyses and checks depend on these properties, not on the effects."""
 
 import operator
 from collections.abc import Callable
@@ -21,12 +21,15 @@ def _first_not_none(a: Any, b: Any) -> Any:
 
 
 def _merge(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return the entries of a, with entries of b instead of None or False."""
+    """Return the entries of a; those that are None or False are replaced by the entries of b."""
     return tuple(y if x is None else x or y for x, y in zip_longest(a, b))
 
 
 def _property(default: Any, combine: Callable[[Any, Any], Any]) -> Any:
-    """Field with a property of the plain box; combine: function that combines the property for two effects."""
+    """Dataclass field for a property of the gas.
+
+    default: value for the plain box. combine: function that combines the values of two effects.
+    """
     return field(default=default, metadata={"combine": combine})
 
 
@@ -34,23 +37,23 @@ def _property(default: Any, combine: Callable[[Any, Any], Any]) -> Any:
 class Properties:
     """Properties of a gas. The defaults are those of the plain box: smooth elastic discs in a reflecting box.
 
-    Attributes that are True by default, and true for a scene if true for each of its effects:
+    Attributes that are True by default. A scene has such a property if all of its effects have it:
         uniform: in equilibrium the gas is the same everywhere in the box.
         straight_flight: discs move on straight lines between events.
-        elastic: the motion along the line of centres, or normal to a wall, neither loses nor gains energy.
+        elastic: collisions do not change the energy of the motion along the line of centres, or normal to a wall.
         fixed_walls: all walls remain at their positions.
-        allows_monte_carlo: the effect has a meaning for discs without positions.
+        allows_monte_carlo: the effect is defined for discs without positions.
         allows_time_steps: the time-driven method can simulate the effect.
         constant_restitution: discs collide with constant coefficients of restitution and roughness.
         is_scalable: the box may grow or shrink around the gas, because nothing in it has a fixed position.
 
-    Attributes that are False by default, and true for a scene if true for any of its effects:
-        driven: a wall that moves at a given velocity does work on the gas.
+    Attributes that are False by default. A scene has such a property if any of its effects has it:
+        driven: a wall that moves at a prescribed velocity does work on the gas.
         dissipative: energy is lost when discs collide with discs or walls.
         collisions_give_energy: discs gain energy when they collide.
         has_rough_walls: walls exert tangential forces.
         drives_discs: discs at rest are set in motion.
-        varies: a temperature, pressure, velocity or acceleration changes in time.
+        varies: a temperature, pressure, velocity or acceleration changes with time.
         vibrates: a side vibrates.
         one_way: discs pass a wall in one direction only.
         escapes: discs leave the gas.
@@ -58,15 +61,15 @@ class Properties:
     Attributes:
         inertia: moment of inertia of a disc in units of mass * radius²; None if discs do not spin.
         periodic: whether the sides along x and along y are periodic.
-        acceleration: acceleration of all discs between events at the start, length/time².
-        later_accelerations: accelerations from later times on, length/time².
-        emits: temperature of each thermal wall at the start, by number; None for walls that reflect.
-        bath: temperature at the start of a heat bath that gives discs new velocities anywhere; None without a bath.
-        thermostat_rate: rate of the collisions of a disc with the heat bath, 1/time.
-        shear: rate at which sides shear the gas, 1/time.
+        acceleration: initial acceleration of all discs between events, length/time².
+        later_accelerations: accelerations after each later step, length/time².
+        emits: initial temperature of each thermal wall, by number of the wall; None for walls that reflect.
+        bath: initial temperature of the heat bath, which gives discs new velocities anywhere; None without a bath.
+        thermostat_rate: rate at which each disc collides with the heat bath, 1/time.
+        shear: shear rate imposed by sheared sides, 1/time.
         later_temperatures: later temperatures of walls and heat bath.
-        last_wall_removed_at: time from which on there is no wall inside the box; infinite if there always is one.
-        changes: times at which a value changes in a step, or a gate opens or closes.
+        last_wall_removed_at: time after which there is no wall inside the box; infinite if there is always one.
+        changes: times at which a value changes stepwise, or a gate opens or closes.
     """
 
     uniform: bool = _property(True, operator.and_)
@@ -100,7 +103,7 @@ class Properties:
 
     @property
     def collisions_conserve_energy(self) -> bool:
-        """Whether collisions of discs with discs or walls neither take energy from the discs nor give them any."""
+        """Whether collisions of discs with discs or walls neither take energy from the discs nor add any."""
         return not (self.dissipative or self.collisions_give_energy)
 
     @property
@@ -142,13 +145,13 @@ class Properties:
 
     @property
     def free_fall_axes(self) -> tuple[bool, bool]:
-        """Whether gravity acts along x, and along y, between periodic sides, where nothing ends the fall."""
+        """Whether gravity acts along x, and along y, between periodic sides, where nothing stops the fall."""
         x, y = (on and g != 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
         return x, y
 
     @property
     def frictionless(self) -> bool:
-        """Whether no friction acts along periodic sides; smooth walls exert no tangential force."""
+        """Whether no friction acts on the gas along periodic sides; smooth walls exert no tangential force."""
         return self.empty and self.bath is None and (all(self.periodic) or not self.has_rough_walls)
 
     @property
@@ -160,7 +163,7 @@ class Properties:
         return x and not self.shear, y
 
     def __and__(self, properties: "Properties") -> "Properties":
-        """Return the properties of a gas with the effects of both."""
+        """Return the properties of a gas that has the effects of both."""
         pairs = ((entry, getattr(self, entry.name), getattr(properties, entry.name)) for entry in fields(self))
         return Properties(**{entry.name: entry.metadata["combine"](first, second) for entry, first, second in pairs})
 

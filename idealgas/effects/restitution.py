@@ -22,17 +22,17 @@ class RestitutionTable(Table):
     collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).
     """
 
-    normal: Real = Field(default=1.0, ge=0, le=1, description="coefficient of restitution of two discs, 0 to 1")
+    normal: Real = Field(default=1.0, ge=0, le=1, description="coefficient of restitution for two discs, 0 to 1")
     wall: Real = Field(
-        default=1.0, ge=0, le=1, description="coefficient of restitution of a disc with a wall or piston, 0 to 1"
+        default=1.0, ge=0, le=1, description="coefficient of restitution for a disc and a wall or piston, 0 to 1"
     )
     contact_duration: Positive | None = Field(
-        default=None, description="time > 0; if absent, 0.05 of the mean free time, or far less without a force"
+        default=None, description="time > 0; if absent, 0.05 mean free times, or far less if no constant force acts"
     )
 
     @property
     def elastic(self) -> bool:
-        """Whether collisions do not lose energy."""
+        """Whether collisions conserve energy."""
         return self.normal == 1 and self.wall == 1
 
 

@@ -17,16 +17,18 @@ INERTIA = Column("inertia", "f8", (), "mass length^2")
 class RotationTable(Table):
     """`[rotation]`: discs have a spin, which a tangential coefficient of restitution couples to their motion.
 
-    The coefficient ranges from -1 (smooth) to 1 (perfectly rough); at these two values energy is conserved. A piston is
+    The coefficient ranges from -1 (smooth) to 1 (perfectly rough); at these two values energy is conserved. Pistons are
     smooth.
     """
 
     inertia: Real = Field(
         default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
     )
-    roughness: Real = Field(default=1.0, ge=-1, le=1, description="tangential coefficient of two discs, -1 to 1")
+    roughness: Real = Field(
+        default=1.0, ge=-1, le=1, description="tangential coefficient of restitution for two discs, -1 to 1"
+    )
     wall_roughness: Real = Field(
-        default=-1.0, ge=-1, le=1, description="tangential coefficient of a disc with a wall, -1 to 1"
+        default=-1.0, ge=-1, le=1, description="tangential coefficient of restitution for a disc and a wall, -1 to 1"
     )
 
 

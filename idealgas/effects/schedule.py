@@ -1,7 +1,7 @@
-"""Values that change in time: a number or vector, or steps [[t, value], …] that begin at time 0.
+"""Values that may change with time: a number or vector, or steps [[t, value], …] that begin at time 0.
 
-All changes of a scene form a single list, the schedule. An epoch ends at each change, so that changes are exact for
-every method.
+All changes of a scene form a single list, the schedule. An epoch ends at each change, so that every method applies the
+changes exactly at their times.
 """
 
 from bisect import bisect_right
@@ -16,15 +16,15 @@ from pydantic_core import PydanticCustomError
 from idealgas.toml.table import NotNegative, Number, Positive, Table, Vector
 
 REFLECTING = "reflecting"
-"""Value of a step in which a thermal wall reflects."""
+"""Value of a step during which a thermal wall reflects."""
 
 
 class Change(NamedTuple):
-    """A new value of an effect from a time on.
+    """A value in the state of an effect that changes at a given time.
 
     Attributes:
-        time: time since the start of the run.
-        item: number of the value in the state of the effect.
+        time: time of the change since the start of the run.
+        item: index of the value in the state of the effect.
         value: the new value.
     """
 
@@ -52,7 +52,7 @@ def _is_list_of_lists(value: Any) -> str:
 
 
 def _in_steps(number: Any, value: Any = None, kind: Callable[[Any], str] = _is_list) -> Any:
-    """Type of a value that may change in time.
+    """Type of a value that may change with time.
 
     number: type of a constant value. value: type of a value in a step; the same as `number` if None. kind: function
     that distinguishes steps from a constant value.
@@ -88,7 +88,10 @@ def times_key(times: Sequence[float]) -> Any:
 
 
 def without_past(times: Any, time: float) -> Any:
-    """Return the value of a key of times for a scene whose clock starts at a later time; None if all are past."""
+    """Return the value of a key of times for a scene whose clock starts at a later time.
+
+    Times count from the start of the new clock; past times are removed. The result is None if all times are past.
+    """
     return times_key([t - time for t in as_times(times) if t > time])
 
 
@@ -105,12 +108,12 @@ else:
 
 
 def steps_of(value: Any) -> tuple[tuple[float, Any], ...]:
-    """Pairs of a time and the value that holds from this time on; a number or a vector holds from time 0 on."""
+    """Pairs of a time and the value that holds from this time on; a constant value holds from time 0 on."""
     return value if _is_list_of_lists(value) == "(steps)" else ((0.0, value),)
 
 
 def value_at(value: Any, time: Any) -> Any:
-    """Value at a time, or array of the values at an array of times."""
+    """Value that holds at a time, or array of the values that hold at an array of times."""
     times, values = zip(*steps_of(value), strict=True)
     if np.ndim(time):
         return np.array(values)[np.searchsorted(times, time, "right") - 1]
@@ -118,22 +121,25 @@ def value_at(value: Any, time: Any) -> Any:
 
 
 def changes_of(value: Any, item: int) -> Iterator[Change]:
-    """Return the changes, after time 0, of a value that may be in steps; item: its number in the effect's state."""
+    """Return the changes, after time 0, of a value that may have steps.
+
+    item: index of the value in the state of the effect.
+    """
     return (Change(time, item, value) for time, value in steps_of(value)[1:])
 
 
 def description(value: Any) -> str:
-    """Describe values and times of steps in words."""
+    """Describe in words the values of steps and the times from which they hold."""
     texts = [x if isinstance(x, str) else f"{x:g}" for _, x in steps_of(value)]
     later = (f"{text} from t = {time:g}" for text, (time, _) in zip(texts[1:], steps_of(value)[1:], strict=True))
     return ", ".join((texts[0], *later))
 
 
 class SteppedTable(Table):
-    """A table with values that may be in steps."""
+    """A table with values that may have steps."""
 
     in_steps: ClassVar[tuple[str, ...]]
-    """Keys of the values that may be in steps."""
+    """Keys of the values that may have steps."""
 
     def after(self, time: float) -> Self:
         """Return the table for a scene whose clock starts at a later time."""

@@ -1,4 +1,4 @@
-"""Sheared sides: bottom and top are periodic, and the images above and below the box move along x."""
+"""Sheared sides: bottom and top are periodic, and the periodic images above and below the box move along x."""
 
 from collections.abc import Iterator
 
@@ -16,10 +16,13 @@ from idealgas.toml.table import Positive, Table
 class ShearedSide(Table):
     """`{ shear = rate }`: bottom or top of a box in uniform shear flow along x, between periodic left and right sides.
 
-    The image above moves with the velocity rate * height of the box (Lees & Edwards, J. Phys. C 5, 1921 (1972)).
+    The periodic image above the box moves along x at velocity rate * height of the box (Lees & Edwards, J. Phys. C 5,
+    1921 (1972)).
     """
 
-    shear: Positive = Field(description="shear rate > 0, 1/time: mean velocity along x per length along y")
+    shear: Positive = Field(
+        description="shear rate > 0, 1/time: change in the mean velocity along x per length along y"
+    )
 
     @property
     def action(self) -> str:
@@ -28,7 +31,7 @@ class ShearedSide(Table):
 
 
 class ShearEffect(Effect[law.Shear]):
-    """Sheared sides: bottom and top are periodic, and the images above and below the box move along x."""
+    """Sheared sides: bottom and top are periodic, and the periodic images above and below the box move along x."""
 
     name = "sheared sides"
     field = "shear"
@@ -60,7 +63,7 @@ class ShearEffect(Effect[law.Shear]):
         )
 
     def check(self, tables: Tables) -> Iterator[Issue]:
-        """Yield issues unless bottom and top have the same shear rate and the other sides are periodic."""
+        """Yield issues unless bottom and top have the same shear rate and the left and right sides are periodic."""
         left, right, bottom, top = tables.sides
         across: tuple[Key, ...] = tuple(("box", name) for name in SIDES[:2])
         if left != PERIODIC or right != PERIODIC:

@@ -15,11 +15,11 @@ from idealgas.toml.table import Table
 class SteeringTable(Table):
     """`[steering]`: velocities are changed from outside, at given times or by a Python program (`idealgas.open_run`).
 
-    When all velocities and spins are reversed, an elastic gas retraces its path.
+    After all velocities and spins are reversed, an elastic gas retraces its path.
     """
 
     reversed_at: Times | None = Field(
-        default=None, description="time > 0, or times, at which all velocities and spins are reversed"
+        default=None, description="time > 0, or list of times, at which all velocities and spins are reversed"
     )
 
     def after(self, time: float) -> "SteeringTable":
@@ -49,7 +49,7 @@ class SteeringEffect(Effect[tuple[float, ...]]):
             yield Issue((("steering", "reversed_at"),), "not in order", str(list(times)), "increasing times > 0")
 
     def exists(self, tables: Tables, start: GasAtStart) -> bool:
-        """Steps of gravity steer the discs too."""
+        """Return whether the discs are steered, either by `[steering]` or by steps of gravity."""
         return tables.table is not None or bool(start.later_accelerations)
 
     def make(self, tables: Tables, start: GasAtStart) -> tuple[float, ...]:

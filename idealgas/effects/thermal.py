@@ -1,4 +1,4 @@
-"""Thermal walls: sides and segments that re-emit the discs that hit them at the temperature of the wall."""
+"""Thermal walls: sides and segments that re-emit discs with velocities drawn at the temperature of the wall."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -16,7 +16,7 @@ EMISSIONS = Column("emissions", "u8")
 
 
 class ThermalSide(SteppedTable):
-    """`{ thermal = T }`: a side that re-emits the discs that hit it at the temperature T."""
+    """`{ thermal = T }`: a side at temperature T, which re-emits the discs that hit it."""
 
     in_steps = ("thermal",)
 
@@ -31,13 +31,13 @@ class ThermalSide(SteppedTable):
 
 
 def _temperatures(tables: Tables) -> tuple[Any, ...]:
-    """Temperature of each wall by its number, sides of the box first; None for walls that reflect."""
+    """Temperature of each wall by its number, starting with the sides of the box; None for walls that reflect."""
     of_sides = (side.thermal if isinstance(side, ThermalSide) else None for side in tables.sides)
     return *of_sides, *(None if wall is None else wall.temperature for wall in tables.walls)
 
 
 def _number(temperature: Any) -> float:
-    """Temperature as the law requires it, negative for a wall that reflects."""
+    """Temperature in the form that the law requires: negative for a wall that reflects."""
     return temperature if isinstance(temperature, float) else -1.0
 
 
@@ -46,7 +46,7 @@ def _hot(*names: str) -> str:
 
 
 class ThermalEffect(Effect[law.Thermal]):
-    """Thermal walls: sides and segments that re-emit the discs that hit them at the temperature of the wall."""
+    """Thermal walls: sides and segments that re-emit discs with velocities drawn at the temperature of the wall."""
 
     name = "thermal walls"
     field = "thermal"

@@ -17,14 +17,14 @@ from idealgas.toml.table import Positive
 NEXT_THERMOSTAT_COLLISION = Column("next_thermostat_collision", "f8", (), "time")
 """Time of a disc's next collision with the bath, counted from the checkpoint."""
 THERMOSTAT_COLLISION_NUMBER = Column("thermostat_collision_number", "u8")
-"""Number of a disc's next collision with the bath, from 0."""
+"""Index of a disc's next collision with the bath, from 0."""
 
 
 class ThermostatTable(SteppedTable):
-    """`[thermostat]`: a heat bath gives each disc a new velocity at random times, wherever it is.
+    """`[thermostat]`: a heat bath gives each disc a new velocity at random times, wherever the disc is.
 
-    The velocity, and the spin of a disc that has one, are drawn from the distribution at the bath's temperature
-    (Andersen, J. Chem. Phys. 72, 2384 (1980)).
+    The velocity, and the spin of a disc that has one, are drawn from the equilibrium distribution at the bath's
+    temperature (Andersen, J. Chem. Phys. 72, 2384 (1980)).
     """
 
     in_steps = ("temperature",)
@@ -32,7 +32,7 @@ class ThermostatTable(SteppedTable):
     temperature: PositiveInSteps = Field(
         description="temperature > 0 of the heat bath, energy, or steps [[0, T], [t, T], …]"
     )
-    rate: Positive = Field(description="rate of thermostat collisions of each disc > 0, 1/time")
+    rate: Positive = Field(description="rate > 0 at which each disc collides with the heat bath, 1/time")
 
 
 class ThermostatEffect(Effect[law.Thermostat]):

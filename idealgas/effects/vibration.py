@@ -13,10 +13,10 @@ from idealgas.toml.table import Positive, Table
 
 
 class Vibration(Table):
-    """Motion of a vibrating side, between the side of the box and twice the amplitude inside the box."""
+    """Motion of a vibrating side, between the side of the box and a height of twice the amplitude inside the box."""
 
     amplitude: Positive = Field(description="length > 0: half the distance between the extreme positions")
-    frequency: Positive = Field(description="periods per time > 0, 1/time")
+    frequency: Positive = Field(description="number of periods per unit time > 0, 1/time")
 
 
 class VibratingSide(Table):
@@ -31,7 +31,7 @@ class VibratingSide(Table):
 
 
 def reach(side: object) -> float:
-    """Largest height of a side inside the box, length."""
+    """Largest height that a side reaches inside the box, length."""
     return 2 * side.vibrating.amplitude if isinstance(side, VibratingSide) else 0.0
 
 

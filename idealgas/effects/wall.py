@@ -21,21 +21,21 @@ from idealgas.toml.issues import Issue, Key
 from idealgas.toml.table import Vector, Word
 
 SHORTEST = 1e-9
-"""Shortest wall in units of the box's longer side; the ends of a shorter wall are not distinct in double precision."""
+"""Shortest wall in units of the box's longer side; double precision cannot separate the ends of a shorter wall."""
 
 
 class WallTable(SteppedTable):
     """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
 
-    A gate is present until `opens_at`, and again from `closes_at` on; with `closes_at` alone it is absent until then.
-    Lists of times open and close it repeatedly; if `opens_at` begins with 0, it is absent at the start. If a gate
-    closes on a disc, the disc remains on the side of its centre: it may leave, and it bounces if it moves closer. A
-    disc that gravity keeps from leaving the gate bounces at its current depth.
+    A gate is present until `opens_at`, and again from `closes_at` on. If only `closes_at` is given, the gate is absent
+    until then. Lists of times open and close the gate repeatedly; if `opens_at` begins with 0, the gate is absent at
+    the start. If a gate closes on a disc, the disc remains on the side of its centre: it may leave, and it bounces if
+    it moves closer. A disc that gravity keeps from leaving the gate bounces at its current depth.
 
-    Discs of the species `permeable_to` pass a wall as if it were absent. With `permeable_from` they pass from that side
-    only: beyond the wall a disc bounces when it touches the wall or, as long as it still overlaps the wall, when its
-    centre comes back to the wall; the ends are solid. A wall that is `absorbing` removes discs from the gas where
-    another wall would reflect them.
+    Discs of the species `permeable_to` pass a wall as if it were absent. If `permeable_from` is given, they pass from
+    that side only. Beyond the wall, a disc bounces when it touches the wall or, while it still overlaps the wall, when
+    its centre returns to the wall; the ends are solid. An `absorbing` wall removes discs from the gas where another
+    wall would reflect them.
     """
 
     in_steps = ("temperature",)
@@ -44,10 +44,11 @@ class WallTable(SteppedTable):
     start: Vector = Field(alias="from", description="[x, y] of one end, length")
     end: Vector = Field(alias="to", description="[x, y] of the other end, length")
     via: Vector | None = Field(
-        default=None, description="[x, y] of a point of the arc between them; for a circle, opposite to both, length"
+        default=None,
+        description="[x, y] of a point on the arc between the ends, length; for a circle, the point opposite its start",
     )
     solid: Literal["inside", "outside"] | None = Field(
-        default=None, description="side without gas: inside or outside of the closed curve of walls with this key"
+        default=None, description="side without gas: inside or outside the closed curve of walls that have this key"
     )
     temperature: WallTemperature | None = Field(
         default=None, description="temperature of a thermal wall, as for a thermal side; reflecting if absent"
@@ -55,13 +56,15 @@ class WallTable(SteppedTable):
     opens_at: Times | None = Field(default=None, description="time > 0, or times, at which it is removed")
     closes_at: Times | None = Field(default=None, description="time > 0, or times, at which it is inserted")
     permeable_to: Annotated[tuple[Word, ...], Field(strict=False, min_length=1)] | None = Field(
-        default=None, description="species that pass the wall; all if only `permeable_from` is given"
+        default=None, description="species that can pass the wall; all if only `permeable_from` is given"
     )
     permeable_from: Literal[SIDES] | None = Field(  # type: ignore[valid-type]
-        default=None, description="side of the wall from which they pass; both if absent"
+        default=None, description="side of the wall from which these species can pass; both sides if absent"
     )
     absorbing: bool = Field(default=False, description="whether it is a hole: discs that touch it leave the gas")
-    name: Word | None = Field(default=None, description="unique word for the log; if absent, its number is used")
+    name: Word | None = Field(
+        default=None, description="unique name in the log, a word; if absent, the number of the wall is used"
+    )
 
     @property
     def arc(self) -> Arc | None:
@@ -109,7 +112,7 @@ class WallTable(SteppedTable):
         return self.after(time).model_copy(update=update)
 
     def for_species(self, species: Container[str]) -> "WallTable":
-        """Return the wall for a gas of these species only; if none of them passes it, it is closed to all discs."""
+        """Return the wall for a gas of these species only; if none of them may pass, no disc may pass the wall."""
         if self.permeable_to is None:
             return self
         names = tuple(name for name in self.permeable_to if name in species)
@@ -122,7 +125,7 @@ class WallTable(SteppedTable):
 
 
 class PermanentWall:
-    """A wall that is not declared in `[[wall]]`: always present, straight, not thermal and not permeable."""
+    """A wall that is not declared in `[[wall]]`; it is always present, straight, not thermal and not permeable."""
 
     temperature = permeable_from = arc = None
     absences = ()
@@ -142,7 +145,7 @@ class FixedDisc(PermanentWall):
     """A fixed disc: a wall around a point.
 
     Attributes:
-        number: number of its table `[[disc]]`.
+        number: number of its `[[disc]]` table.
         start: centre, length.
         radius: length.
     """
@@ -158,7 +161,7 @@ class FixedDisc(PermanentWall):
 
     @property
     def place(self) -> Key:
-        """Key that makes the disc fixed."""
+        """Key that declares the disc as fixed."""
         return ("disc", self.number, "fixed")
 
     @property
@@ -173,7 +176,10 @@ class FixedDisc(PermanentWall):
 
 
 def wall_issues(size: tuple[float, float], i: int, wall: WallTable) -> Iterator[Issue]:
-    """Yield issues of wall i, except for its name; size: width and height of the box, length."""
+    """Yield issues of wall i, except for its name.
+
+    size: width and height of the box, length.
+    """
     keys: tuple[Key, ...] = (("wall", i, "from"), ("wall", i, "to"))
     ends = f"{list(wall.start)} to {list(wall.end)}"
     length = math.dist(wall.start, wall.end)
@@ -222,7 +228,7 @@ def make_segments(
     """Return wall segments (S,) SEGMENT.
 
     start, end: (S, 2) end points, length. active: whether each segment is present. radius: radius of fixed discs, which
-    are segments of length 0.
+    are segments of length 0; 0 for walls.
     """
     segments = aligned(len(start), law.SEGMENT)
     segments.x, segments.y = start.T
@@ -235,7 +241,7 @@ def make_segments(
 
 
 def _polygon(side: float, corners: int, height: float) -> str:
-    """Tables `[[wall]]` of a regular polygon with the radius 4, whose centre is at a height in the box."""
+    """`[[wall]]` tables of a regular polygon of radius 4 whose centre is at the given height in the box."""
     turn = [2 * math.pi * k / corners for k in range(corners + 1)]
     points = [[side / 2 + 4.0 * math.cos(a), height + 4.0 * math.sin(a)] for a in turn]
     return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
@@ -270,7 +276,7 @@ class WallEffect(Effect[np.recarray]):
         )
 
     def check(self, tables: Tables) -> Iterator[Issue]:
-        """Yield issues of single walls, and of names that are taken."""
+        """Yield issues of individual walls, and of names that are taken."""
         first: dict[str, int] = {}
         for i, wall in enumerate(tables.table):
             if wall is None:
@@ -286,7 +292,7 @@ class WallEffect(Effect[np.recarray]):
                 taken = "the piston" if wall.name == "piston" else "a side of the box"
                 yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
             elif wall.name is not None and first.setdefault(wall.name, i) != i:
-                yield Issue((("wall", i, "name"),), "second wall of this name", f'"{wall.name}"', "a unique name")
+                yield Issue((("wall", i, "name"),), "second wall with this name", f'"{wall.name}"', "a unique name")
 
     def continued(self, table: tuple[WallTable, ...], later: Later) -> tuple[WallTable, ...]:
         walls = (wall.later(later.time) for wall in table)
