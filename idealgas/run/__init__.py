@@ -1,1 +1,1 @@
-"""Running scenes: from a scene to a finished log. This is the only package that imports scene, engine and log."""
+"""Running scenes: from a scene to a finished log. Only this package imports all three of scene, engine and log."""

@@ -1,4 +1,4 @@
-"""Digests of short runs, which are identical on every machine."""
+"""Digests of the logs of short runs; a digest is the same on every machine."""
 
 import tempfile
 from pathlib import Path
@@ -13,7 +13,7 @@ EVENTS = 20_000
 
 
 def scene_digest(path: Path) -> str:
-    """Return the digest of a log with the first events of a scene.
+    """Return the digest of a log that contains the first events of a scene.
 
     Raises:
         UserError: the scene cannot be read or run.

@@ -1,4 +1,4 @@
-"""Effects in a run: their states at time 0, and exact sums, which are stored in checkpoints and rounded in samples."""
+"""Effects in a run: their states at time 0, and their sums, which are exact in checkpoints and rounded in samples."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ from idealgas.state import MOST_PAIRED, Gas
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
 LEAST_SHARE = 2.0**-40
-"""Smallest ratio of the typical energy to the largest energy that effects may add; keeps sums far below 2^100 units."""
+"""Smallest ratio of the typical energy to the largest energy that effects may add, so that sums stay < 2^100 units."""
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:
@@ -38,7 +38,10 @@ Schedule = tuple[tuple[float, int, int, float], ...]
 
 
 def make_schedule(scene: Scene, gas: Gas) -> Schedule | None:
-    """Return the changes in time of all effects, in order: time, index of the effect, item of its state, value."""
+    """Return the scheduled changes of all effects, in order of time; None if there are none.
+
+    Each change is a tuple of its time, the index of the effect, the item of its state, and the new value.
+    """
     return _schedule(scene, _start(scene, gas))
 
 
@@ -55,7 +58,7 @@ def _schedule(scene: Scene, start: GasAtStart) -> Schedule | None:
 
 
 def _spins(scene: Scene, gas: Gas) -> tuple[np.ndarray, np.ndarray]:
-    """Angular velocity (N,), 1/time, and temperature of the spin (N,), energy, of each disc; 0 if not given."""
+    """Return the angular velocity (N,), 1/time, and the spin temperature (N,), energy, of each disc; 0 if not given."""
     given = 0 if scene.draws_velocities else len(scene.explicit_discs)
     velocity, temperature = np.zeros(len(gas)), np.zeros(len(gas))
     velocity[:given] = scene.explicit_discs.angular_velocity[:given]
@@ -70,8 +73,8 @@ def with_sums(
 ) -> Effects:
     """Return the effects at time 0 with all sums of a run.
 
-    gives_energy: whether walls give energy to discs, or take it. loses_energy: whether collisions lose energy.
-    inner_energy: energy of the discs that collisions may turn into kinetic energy, mass length²/time².
+    gives_energy: whether walls give energy to discs or take energy from them. loses_energy: whether energy is lost in
+    collisions. inner_energy: energy of the discs that collisions may convert to kinetic energy, mass length²/time².
     """
     potentials_change = any(EFFECTS[k].energy_part for _, k, *_ in effects.schedule or ())
     speed, walls = _speed(scene, gas, effects, inner_energy), len(number_walls(scene))
@@ -117,7 +120,7 @@ def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
 
 
 def _speed(scene: Scene, gas: Gas, effects: Effects, inner_energy: float) -> float:
-    """Typical speed of the discs, length/time: at the start, or the speed that effects may cause if it is larger."""
+    """Typical speed of the discs, length/time: the larger of the initial speed and the speed that effects may cause."""
     mass = float(gas.mass.mean())
     hottest = max(scene.properties.temperatures, default=0.0)
     start = math.sqrt(2 * gas.kinetic_energy / (len(gas) * mass))
@@ -160,7 +163,7 @@ def _counts(effects: Effects) -> Iterator[tuple[Column, np.ndarray]]:
 
 
 def _exact(column: Column, sums: np.ndarray) -> Column:
-    """Column of checkpoints: three integers per sum, see `stored`."""
+    """Return the column of checkpoints, with three integers per sum; see `stored`."""
     return Column(f"{column.name}_sum", "i8", (len(sums), 3), column.unit)
 
 
@@ -177,7 +180,7 @@ def observed_sums(effects: Effects) -> Values:
 
 
 def _shaped(array: np.ndarray, column: Column) -> np.ndarray:
-    """Return values in the shape of a column; if a collision flow has no separate sum yx, it equals xy."""
+    """Return values in the shape of a column; if a collision flow has no separate yx component, yx equals xy."""
     if column.shape and len(array) < column.shape[0]:
         array = np.append(array, array[TENSOR.index("xy")])
     return array.reshape(column.shape)

@@ -1,4 +1,4 @@
-"""Energy account of a run: parts of the energy, and their balance, which is conserved."""
+"""Energy account of a run: the terms of the energy, and their balance, which is conserved."""
 
 from typing import NamedTuple
 
@@ -10,16 +10,16 @@ from idealgas.state import Gas
 
 
 class Energy(NamedTuple):
-    """Parts of the energy, mass length²/time².
+    """Terms of the energy, mass length²/time².
 
     Attributes:
         kinetic: kinetic energy of the discs.
         rotational: rotational energy of the discs.
         potential: potential energy of the discs.
-        piston: kinetic and potential energy of the pistons with a mass.
-        given: energy that walls, a heat bath, and changes of potentials or velocities gave to the discs, minus the
-            losses at walls. Pistons with a mass are not included, because their energy is counted separately.
-        lost: energy lost in collisions between discs, and in collisions with pistons with a mass.
+        piston: kinetic and potential energy of the pistons of finite mass.
+        given: energy given to the discs by walls, by a heat bath, and by changes in potentials or velocities, minus the
+            losses at walls. Pistons of finite mass are not included, because their energy is counted separately.
+        lost: energy lost in collisions between discs, and in collisions of discs with pistons of finite mass.
     """
 
     kinetic: float
@@ -41,7 +41,7 @@ class Energy(NamedTuple):
 
     @property
     def scale(self) -> float:
-        """Largest absolute value of a part, to which an energy drift is compared."""
+        """Largest absolute value of a term; an energy drift is given relative to this value."""
         return max(map(abs, self))
 
 

@@ -31,7 +31,7 @@ from idealgas.scene.walls import number_walls
 from idealgas.state import Gas
 
 TOTALS = tuple(Column(name, "i8") for name in ("events", "disc_collisions", "wall_hits", "trials"))
-"""Columns of the numbers that every run counts from time 0 on."""
+"""Columns of the numbers that every run counts from time 0."""
 
 DIAGNOSTICS = (
     Column("kinetic_energy", "f8", unit="energy"),
@@ -66,7 +66,7 @@ def layout_of(
 
 
 def totals(effects: Effects) -> tuple[Column, ...]:
-    """Columns of the numbers that a run with these effects counts from time 0 on."""
+    """Columns of the numbers that a run with these effects counts from time 0."""
     return *TOTALS, *bundle.counted(effects)
 
 
@@ -77,19 +77,19 @@ def row_columns(effects: Effects, has_positions: bool = True) -> tuple[Column, .
 
 
 def disc_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
-    """Arrays with an entry per disc that a checkpoint stores; times count from the checkpoint."""
+    """Return the arrays with an entry per disc that a checkpoint stores; times count from the checkpoint."""
     motion = {POSITION: gas.position, VELOCITY: gas.velocity} if has_positions else {VELOCITY: gas.velocity}
     return motion | bundle.disc_state(effects)
 
 
 def snapshot_state(gas: Gas, effects: Effects, has_positions: bool) -> Arrays:
-    """Arrays with an entry per disc that a snapshot stores, which are also columns of events."""
+    """Return the arrays with an entry per disc that a snapshot stores; they are also columns of events."""
     state = disc_state(gas, effects, has_positions)
     return {column: values for column, values in state.items() if column in EVENT_COLUMNS}
 
 
 def write_steered(batch: EventBatch, discs: np.ndarray, simulation: Simulation) -> None:
-    """Write a row for each of the discs, whose velocities were changed at the start of the epoch."""
+    """Write a row for each of the given discs, whose velocities were changed at the start of the epoch."""
     rows = batch.rows(0, len(discs))
     rows.time[:], rows.disc[:], rows.partner[:], rows.kind[:] = simulation.time, discs, OUTSIDE, Kind.STEERED
     for column, values in snapshot_state(simulation.gas, simulation.effects, True).items():
@@ -97,7 +97,7 @@ def write_steered(batch: EventBatch, discs: np.ndarray, simulation: Simulation) 
 
 
 def whole_state(effects: Effects) -> Values:
-    """Values without an entry per disc that a checkpoint stores at the start of an epoch, including exact sums."""
+    """Return the values without an entry per disc that a checkpoint stores, including exact sums."""
     return bundle.whole_state(effects) | exact_sums(effects)
 
 
@@ -110,7 +110,7 @@ def restore(gas: Gas, effects: Effects, checkpoint: Checkpoint) -> Gas:
 
 
 def observed(gas: Gas, effects: Effects, local_time: float = 0.0) -> Values:
-    """Values that a sample contains in addition to the diagnostics: energies, values of the effects, and sums."""
+    """Return what a sample contains in addition to the diagnostics: energies, values of the effects, and sums."""
     energy = energy_of(gas, effects, local_time)
     sample: Values = {Column("energy", "f8", (), "energy"): energy.gas}
     parts = {effect.energy_part: effect.energy_column for effect, _ in bundle.present(effects)}

@@ -38,7 +38,7 @@ class Progress:
         share: fraction done, 0 to 1.
         time: time of the last event.
         events: number of events so far.
-        notice: a line for the user, which is given only once; usually empty.
+        notice: a line for the user, which appears only once; usually empty.
     """
 
     share: float
@@ -61,7 +61,7 @@ def stop_of(scene: Scene, n: int) -> Stop:
 
 
 class RunHistory(NamedTuple):
-    """Past of a run.
+    """History of a run up to the point at which it begins or is resumed.
 
     Attributes:
         start_energy: energy account at time 0.
@@ -96,7 +96,7 @@ class LoggedRun:
         compiled_before: float,
         on_events: Callable[[EventBatch], None] | None = None,
     ) -> None:
-        """Begin with a simulation and its log; compiled_before: `compile_seconds` before these were made."""
+        """Begin with a simulation and its log; compiled_before: value of `compile_seconds` before these were made."""
         self._scene = scene
         self._simulation = simulation
         self._log = log
@@ -139,7 +139,7 @@ class LoggedRun:
             before = time.perf_counter()
             alone = simulation.method.threads.serial_events if self._log.behind else 0  # leave a core to the log
             self._slice(alone or self._slice_events)
-            if simulation.paused and self._scene.log.snapshot_every:  # not at the largest representable time
+            if simulation.paused and self._scene.log.snapshot_every:  # without snapshots, only LATEST is a pause
                 self._snapshot()
             if (disc := self._stall.stuck()) >= 0:
                 self._log.close()
@@ -162,7 +162,7 @@ class LoggedRun:
         self._seconds += time.perf_counter() - started
 
     def _begin(self, least: int) -> None:
-        """Store the start of a new run, and compile before the clock starts; least: events of the first slice."""
+        """Store the start of a new run, and compile before the time is measured; least: fewest events in a slice."""
         self._slice_events = max(4096, least)
         if not self._begun:
             if self._scene.log.snapshot_every:
@@ -192,7 +192,7 @@ class LoggedRun:
         self._write(batch, self._simulation.advance(self._goal, batch, events, self._next_snapshot))
 
     def _write(self, batch: EventBatch, rows: int) -> None:
-        """Write the first rows of a buffer of the log."""
+        """Write the first `rows` rows of a buffer of the log."""
         self._log.write(rows)
         if self._on_events is not None and rows:
             self._on_events(batch.rows(0, rows))
@@ -203,7 +203,7 @@ class LoggedRun:
         return self._snapshots * every if every else LATEST
 
     def _snapshot(self) -> None:
-        """Store a snapshot of the discs, and a sample unless an epoch begins at this time, which stores one anyway."""
+        """Store a snapshot of the discs, and also a sample, unless an epoch that begins now stores one anyway."""
         simulation, time = self._simulation, self._next_snapshot
         gas, effects = simulation.state()
         state = by_name(snapshot_state(gas, effects, simulation.method.has_positions))

@@ -1,4 +1,4 @@
-"""Resuming a run from the last checkpoint of its log, with the same events, bit for bit, as an uninterrupted run."""
+"""Resuming a run from the last checkpoint of its log, with bit for bit the same events as in an uninterrupted run."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ from idealgas.scene import Scene, parse_scene
 from idealgas.state import Gas
 from idealgas.toml.dump import dump_document
 
-REPLAYED_ROWS = 4096  # number of rows after the checkpoint that the program must reproduce before it resumes
+REPLAYED_ROWS = 4096  # number of rows after the checkpoint that must be reproduced before the run is resumed
 
 STOP_RULES = ("until", "events", "collisions_per_disc", "trials")
 """Keys of [run] that end a run; only these keys may change when a run is resumed."""
@@ -37,10 +37,10 @@ def resume(
     on_progress: Callable[[Progress], None] = lambda progress: None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Summary:
-    """Continue a run that was interrupted or killed, or that should end later, from the last checkpoint of its log.
+    """Continue an interrupted or killed run from the last checkpoint of its log, or extend a run to a later end.
 
-    The log then contains, bit for bit, the events of an uninterrupted run. The events of a complete log remain
-    unchanged, and its summary is returned.
+    The log then contains, bit for bit, the events of an uninterrupted run. If the log is already complete, its events
+    remain unchanged, and its summary is returned.
 
     Args:
         path: path of the log, to which events are appended.
@@ -55,8 +55,8 @@ def resume(
 
     Raises:
         SceneError: an override is invalid.
-        LogError or OutputError: the log is being written, this program or the changed scene does not reproduce its
-            events, the log is already past the new end, or it cannot be written.
+        LogError or OutputError: another process is writing the log, this program or the changed scene does not
+            reproduce its events, the log is already past the new end, or the log cannot be written.
     """
     compiled_before = compile_seconds()
     with open_log(path) as log:
@@ -74,7 +74,7 @@ def resume(
             simulation = _simulation_at(log, last, scene)
             past = _history_of(log, last, scene)
     if done is not None:
-        if unclosed:  # the disk failed at the very last write
+        if unclosed:  # the disk failed during the very last write
             recover(path)
         return done
     with LogWriter.resume(
@@ -84,9 +84,9 @@ def resume(
 
 
 def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
-    """Return the text of the scene with the new end, and this scene with the changes that a program made."""
+    """Return the text of the scene with the new end, and this scene with the changes made by a Python program."""
     if (made_with := log.attributes["trajectory"]) != TRAJECTORY:
-        versions = f"made with version {made_with} of the laws of motion, this program has version {TRAJECTORY}"
+        versions = f"made with version {made_with} of the laws of motion; this program has version {TRAJECTORY}"
         raise LogError(f"{log.path}: cannot be resumed: {versions}")
     before, given, name = log.scene, log.initial_discs, f"{log.path}: scene"
     requested = scene = parse_scene(log.scene_text, name, overrides, discs=given)
@@ -102,7 +102,7 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
 
 
 def _check_end(log: Log, scene: Scene) -> None:
-    """Raise LogError if the run would have to end before the log does, or at a number that is already reached."""
+    """Raise LogError if the new end is before the end of the log, or at a number that has already been reached."""
     run, n = scene.run, len(log.discs)
     stop, time = stop_of(scene, n), log.end_time
     events, collisions, trials = log.counts.values()
@@ -148,14 +148,14 @@ def _check_columns(log: Log, layout: LogLayout) -> None:
         known = {column.name: (column.dtype, column.shape) for column in columns}
         for column in log.stored(table):
             if known.get(column.name) != (column.dtype, column.shape):
-                raise DamageError(log.path, f"{table}/{column.name}: not of a run of this scene")
+                raise DamageError(log.path, f"{table}/{column.name}: does not belong to a run of this scene")
 
 
 def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation) -> None:
     """Raise LogError unless this program reproduces the first events after the last checkpoint."""
     first = 0 if last is None else last.row
     batch = empty_batch(REPLAYED_ROWS + 2, row_columns(simulation.effects, simulation.method.has_positions))
-    an_event = 1 if simulation.method.has_positions else 2  # fewest rows per event, as the next event may be an error
+    an_event = 1 if simulation.method.has_positions else 2  # fewest rows per event; one event more might raise an error
     events = min(REPLAYED_ROWS, (len(log) - first) // an_event)
     rows = min(simulation.advance(Stop(), batch, events), len(log) - first)
     for stored in log.chunks(None, first, first + rows):
@@ -164,7 +164,7 @@ def _check_reproduces(log: Log, last: Checkpoint | None, simulation: Simulation)
             differs = (getattr(again, name) != getattr(stored, name)).reshape(len(stored.time), -1).any(axis=1)
             if differs.any():
                 row = first + int(differs.argmax())
-                why = f"{name} in event row {row} differs with this program on this machine"
+                why = f"this program on this machine computes a different {name} in event row {row}"
                 raise LogError(f"{log.path}: cannot be resumed: {why}")
         first += len(stored.time)
 

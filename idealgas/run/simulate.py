@@ -33,7 +33,7 @@ from idealgas.toml.dump import dump_document
 
 
 def method_of(scene: Scene, start: Gas, v_ref: float | None = None) -> Method:
-    """Make the method of a scene; start: discs at time 0; v_ref: raised reference speed of a resumed run."""
+    """Make the method of a scene; start: discs at time 0; v_ref: reference speed of a resumed run, if it was raised."""
     run = scene.run
     if run.method == "brute_force":
         return PreciseBruteForce(run.precision) if run.precision in ("float32", "double-double") else BruteForce()
@@ -67,7 +67,7 @@ def simulate(
     interrupted: Callable[[], bool] = lambda: False,
     on_events: Callable[[EventBatch], None] | None = None,
 ) -> Summary:
-    """Run a scene to the end specified in its table [run], and write its log.
+    """Run a scene to the end specified in its [run] table, and write its log.
 
     The first run with a set of effects compiles machine code, which takes several seconds and is cached on disk.
 
@@ -77,8 +77,8 @@ def simulate(
         force: whether to overwrite an existing log.
         command: command of the run, which is stored in the log.
         on_progress: function that is called several times per second with the `Progress` of the run.
-        interrupted: function that is called equally often. Once it returns True, the run ends after its last event, and
-            `completed` is False in the summary. The log can then be read and resumed, as after Ctrl-C
+        interrupted: function that is called equally often. Once it returns True, the run stops after its latest event,
+            and `completed` is False in the summary. The log can then be read and resumed, as after Ctrl-C
             (KeyboardInterrupt).
         on_events: function that is called with the next rows of the log, in order; the run waits until it returns, and
             the rows are valid only until then.
@@ -107,8 +107,8 @@ def open_run(
 ) -> Iterator[SteeredRun]:
     """Begin a run that a Python program advances and steers; `simulate` describes the arguments and errors.
 
-    At the end of the context the log is closed: as complete if the run has reached the end of its scene, otherwise as
-    after an interruption.
+    At the end of the context the log is closed. It is complete if the run has reached the end of its scene; otherwise
+    it can be read and resumed, as after an interruption.
     """
     compiled_before = compile_seconds()
     gas = make_gas(scene)
@@ -133,7 +133,7 @@ def open_run(
 
 
 def warm_up(scene: Scene) -> float:
-    """Compile the machine code for a scene and return the time in seconds, which is short if the code was cached.
+    """Compile the machine code for a scene and return the time taken in seconds, which is short if code was cached.
 
     The scene is run up to its first event, and the log is deleted. Raises the same errors as `simulate`.
     """

@@ -1,4 +1,4 @@
-"""Detection of runs that make no progress: epochs without events, and a few discs with most of the events."""
+"""Detection of runs that make no progress, because there are no events or a few discs have nearly all events."""
 
 import math
 from dataclasses import replace
@@ -13,39 +13,40 @@ from idealgas.physics.collision_rates import disc_collisions_per_length
 from idealgas.state import Gas
 
 EMPTY_EPOCHS = 10_000
-"""Consecutive epochs without an event after which a run without `until` stops, unless this may happen by chance."""
+"""Number of consecutive epochs without an event after which a run without `until` stops, unless this may be chance."""
 
 EXPECTED = 10_000
-"""Number of pair collisions, expected by kinetic theory, whose absence cannot be due to chance.
+"""Number of pair collisions expected from kinetic theory whose complete absence cannot be due to chance.
 
-A run that only pair collisions can end also stops when this number was expected and none occurred.
+A run that only pair collisions can end also stops when this number was expected and no collision occurred.
 """
 
 HOPELESS = 1e-9
-"""Expected number of collisions per epoch below which it is pointless to wait, because no disc moves past another."""
+"""Expected collisions per epoch below which it is pointless to wait, because the discs hardly move past each other."""
 
 QUIET_SAMPLES = 64
 """Number of consecutive epochs without an event that are sampled; later epochs without an event are not sampled."""
 
 STUCK = 1000
-"""Largest number of collisions of a disc per contact duration, averaged over at least one; above it the disc is stuck.
+"""Largest number of collisions of a disc per contact duration, above which the disc is stuck.
 
-A disc at rest has 1/e collisions per contact duration. Between walls, or under an arch of other discs, gaps may be so
-small that all collisions count as contacts at rest; these are elastic, so the disc keeps its speed.
+The number is an average over at least one contact duration. A disc at rest has 1/e collisions per contact duration.
+Between walls, or under an arch of other discs, gaps may be so small that all collisions count as contacts at rest;
+these are elastic, so the disc keeps its speed.
 """
 
 OVERDUE = 8
-"""Ratio of the events in an epoch to the planned number above which the busiest discs are determined."""
+"""The busiest discs are determined if an epoch has more than this multiple of the planned number of events."""
 
 
 class StallDetector:
     """Detects runs that will not end, because there are no events, or no pair collisions if only these end the run.
 
-    A resumed run counts from zero.
+    In a resumed run, counting restarts from zero.
     """
 
     def __init__(self, simulation: Simulation, stop: Stop, begun: bool) -> None:
-        """Start at the beginning of an epoch; begun: whether the log already has a checkpoint at this time."""
+        """Begin at the start of an epoch; begun: whether the log already has a checkpoint at this time."""
         self._simulation = simulation
         self._events_at_checkpoint = simulation.totals.events if begun else -1
         never = Stop()
@@ -55,11 +56,11 @@ class StallDetector:
         self._expected = 0.0  # pair collisions expected in these epochs
         self._missed = 0.0  # pair collisions expected since the last one, if only pair collisions end the run
         self._overdue: float = OVERDUE
-        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id, in previous epochs, since
+        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id in the epochs since:
         self._hits_since = simulation.time
 
     def end_epoch(self) -> None:
-        """Take account of the epoch that is over, before the next epoch begins."""
+        """Take account of an epoch that has ended, before the next epoch begins."""
         simulation = self._simulation
         before, now = simulation.totals, simulation.counters
         empty, apart = now.events == before.events, now.disc_collisions == before.disc_collisions
@@ -72,7 +73,7 @@ class StallDetector:
             self._empty, self._expected, self._missed = min(self._empty, QUIET_SAMPLES), 0.0, 0.0
 
     def checkpoint_due(self, every: int) -> bool:
-        """Whether to store the start of this epoch: one in `every` epochs, if there were events since the last one."""
+        """Whether to store the start of this epoch: once in `every` epochs, if events have happened since the last."""
         simulation = self._simulation
         due = simulation.epoch % every == 0 and simulation.totals.events > self._events_at_checkpoint
         if due:
@@ -98,7 +99,7 @@ class StallDetector:
         return ""
 
     def stuck(self) -> int:
-        """Id of an inelastic disc that is stuck; -1 if there is none. It must also be called at each epoch's end."""
+        """Return the id of an inelastic disc that is stuck, or -1; must also be called at the end of each epoch."""
         simulation, restitution = self._simulation, self._simulation.effects.restitution
         if restitution is None or simulation.method.single_epoch:
             return -1
@@ -112,7 +113,7 @@ class StallDetector:
         return disc if hits[disc] > STUCK * (1 + durations) else -1
 
     def busy(self) -> str:
-        """Notice, once per run, that a few discs have most events of an epoch with far too many; otherwise empty."""
+        """Return a notice, once per run, if an epoch has far too many events and a few discs have most of them."""
         simulation, n = self._simulation, len(self._simulation.gas)
         events = simulation.counters.events - simulation.totals.events
         if simulation.method.single_epoch or events <= self._overdue * max(EVENTS_PER_DISC * n, EVENTS_OF_FEW):
@@ -128,7 +129,7 @@ class StallDetector:
 
 
 def _expected_collisions(gas: Gas, duration: float, absorbing: np.ndarray | None = None) -> float:
-    """Number of pair collisions expected in a time by kinetic theory, from velocities relative to the mean velocity."""
+    """Number of pair collisions expected in a time from kinetic theory and the velocities relative to their mean."""
     here = inside(gas.position[:, 0], absorbing)
     gas = replace(gas, velocity=gas.velocity[here], radius=gas.radius[here], mass=gas.mass[here])
     if (n := len(gas)) < 2:

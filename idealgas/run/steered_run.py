@@ -17,11 +17,11 @@ from idealgas.scene.changes import SceneChange, changed_scene
 from idealgas.toml.table import LARGEST
 
 LONGEST_SETTING = np.dtype(CHANGE_COLUMNS[-1].dtype).itemsize
-"""Largest size of the text of a change, bytes."""
+"""Largest size of the text of a change, in bytes."""
 
 
 class SteeredRun(LoggedRun):
-    """A run that `open_run` begins, and that the program advances up to the end of the scene.
+    """A run that `open_run` begins and that a Python program advances, at most to the end of the scene.
 
     Each change ends an epoch, is written to the log, and is followed by a checkpoint.
 
@@ -87,12 +87,12 @@ class SteeredRun(LoggedRun):
             discs: (n,) ids of the discs; all discs by default.
 
         Raises:
-            UserError: the scene has no table [steering], or an array has a wrong shape or invalid values.
+            UserError: the scene has no [steering] table, or an array has a wrong shape or invalid values.
         """
         number = len(self._simulation.gas)
         ids = np.arange(number) if discs is None else np.asarray(discs)
         given = np.asarray(velocity, float)
-        whole = ids.dtype.kind in "iu" or not ids.size  # an empty list has no whole numbers
+        whole = ids.dtype.kind in "iu" or not ids.size  # an empty list becomes an array of floats
         if ids.ndim != 1 or not whole or not ((ids >= 0) & (ids < number)).all():
             raise UserError(f"discs: not ids (allowed 0 to {number - 1})")
         ids, record = ids.astype(int), self._simulation.method.discs
@@ -108,10 +108,10 @@ class SteeredRun(LoggedRun):
         self._begin_epoch(changed=True)
 
     def reverse(self) -> None:
-        """Reverse all velocities and spins, and the velocities of pistons with a mass, at the time reached.
+        """Reverse all velocities and spins, and the velocities of pistons of finite mass, at the time reached.
 
         Raises:
-            UserError: the scene has no table [steering].
+            UserError: the scene has no [steering] table.
         """
         self._arrive()
         self._stall.end_epoch()
@@ -119,14 +119,14 @@ class SteeredRun(LoggedRun):
         self._begin_epoch(changed=True)
 
     def change(self, setting: str) -> None:
-        """Change a value of the scene from the time reached on; later steps of this value in the scene are dropped.
+        """Change a value of the scene at the time reached; later steps of this value in the scene are dropped.
 
         Args:
-            setting: "table.key=value" for a value that may be in steps, such as "thermostat.temperature=2", or
+            setting: "table.key=value" for a value that may be given in steps, such as "thermostat.temperature=2", or
                 "wall.NAME.open=true" or "wall.NAME.open=false" for a gate.
 
         Raises:
-            UserError: the scene has no table [steering].
+            UserError: the scene has no [steering] table.
             SceneError: the setting does not fit the scene.
         """
         self._arrive()
@@ -145,7 +145,7 @@ class SteeredRun(LoggedRun):
         """Process all events up to the time reached, so that the epoch can end there."""
         simulation = self._simulation
         if self._scene.steering is None:
-            raise UserError("only a scene with a table [steering] can be changed in its run")
+            raise UserError("only a scene with a [steering] table can be changed during its run")
         if self.ended:
             raise UserError("the run has reached the end of its scene")
         if not simulation.epoch_over:

@@ -109,7 +109,7 @@ def test_a_lost_program_leaves_a_log_that_goes_on_after_the_last_change(tmp_path
 def test_a_closed_log_takes_nothing_more_and_what_cannot_be_steered_is_one_line(tmp_path):
     with open_run(parse_scene(BOX, overrides=["steering="]), tmp_path / "plain.h5") as run:
         run.advance(until=1)
-        with pytest.raises(UserError, match=r"^only a scene with a table \[steering\] can be changed in its run$"):
+        with pytest.raises(UserError, match=r"^only a scene with a \[steering\] table can be changed during its run$"):
             run.reverse()
     with open_run(parse_scene(BOX), tmp_path / "run.h5") as run:
         for velocity, discs, wrong in (

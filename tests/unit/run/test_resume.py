@@ -175,7 +175,7 @@ def test_a_wrong_end_and_other_laws(finished, monkeypatch):
         resume(finished, ["run.until=-1"])
     with monkeypatch.context() as patch:
         patch.setattr(going_on, "TRAJECTORY", 99)
-        with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion, this program has "):
+        with pytest.raises(LogError, match=f"made with version {TRAJECTORY} of the laws of motion; this program has "):
             resume(finished, ["run.events=9000"])
     restore = going_on.restore
 
@@ -186,7 +186,7 @@ def test_a_wrong_end_and_other_laws(finished, monkeypatch):
 
     monkeypatch.setattr(going_on, "restore", displaced)
     before = finished.read_bytes()
-    with pytest.raises(LogError, match=r"in event row \d+ differs with this program on this machine"):
+    with pytest.raises(LogError, match=r"this program on this machine computes a different \w+ in event row \d+"):
         resume(finished, ["run.events=9000"])
     assert finished.read_bytes() == before
 
