@@ -61,7 +61,7 @@ def export(
     from idealgas.log.export.export import export as write
 
     if parts and output == "-":
-        raise UserError("--parts: a folder cannot be standard output (allowed -o FOLDER)")
+        raise UserError("--parts: a folder cannot be written to standard output (allowed -o FOLDER)")
     kind = kind or ("parquet" if parts else _kind_of(output))
     with open_log(path) as log:
         times = None if frames is None else frame_times(log, frames).tolist()

@@ -68,7 +68,7 @@ def three_disc_orbit(box: tuple[float, float], radius: float) -> Orbit:
 
 
 def is_on_orbit(gas: Gas) -> bool:
-    """Return whether a gas is, to within rounding, in the initial state of the orbit in its box."""
+    """Return whether a gas is, to within rounding, in the initial state of the periodic orbit known for its box."""
     if len(gas) != 3 or np.ptp(gas.radius) or np.ptp(gas.mass):
         return False
     orbit = three_disc_orbit(gas.box, float(gas.radius[0]))

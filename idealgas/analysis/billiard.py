@@ -1,4 +1,4 @@
-"""Measure the mean path of discs between two wall hits.
+"""Measure the mean path length of discs between successive wall hits.
 
 If the paths pass through every point in every direction with equal probability, the mean path length is exactly π times
 the area that the centres of the discs can reach, divided by the perimeter of this area, whatever the shape of the box
@@ -82,7 +82,7 @@ class Billiard(Result):
     def summary(self) -> str:
         """Return the mean path between wall hits, and whether it agrees with π A/P."""
         verdict = agreement([("path", self.path)], "π A/P", self.reason)
-        return f"The mean path between two wall hits is {format_estimate(self.path)}; {verdict}."
+        return f"The mean path length between successive wall hits is {format_estimate(self.path)}; {verdict}."
 
     def figure(self) -> "Figure":
         """Draw the running mean of the path length, with the theoretical value."""
@@ -104,13 +104,15 @@ class BilliardAnalysis(Analysis):
     position = 108
     headline = "path"
     results = (Billiard,)
-    sections = (Section("Paths between walls", "Mean path between two wall hits, averaged up to each time"),)
+    sections = (
+        Section("Paths between walls", "Mean path length between successive wall hits, averaged up to each time"),
+    )
 
     @staticmethod
     def measure(
         log: Log, start: float | None = None, end: float | None = None, progress: ReadProgress | None = None
     ) -> Billiard:
-        """Measure the mean path of discs between two wall hits, and compare it with π A/P.
+        """Measure the mean path length of discs between successive wall hits, and compare it with π A/P.
 
         A is the area that the centres of the discs can reach, and P is its perimeter. Collisions with other discs do
         not end a path. Theory is available for discs of equal radius that fly straight between walls at rest. In a gas

@@ -1,4 +1,4 @@
-"""Measure how discs leave the gas through holes: the number of remaining discs, and escapes per path length.
+"""Measure how discs leave the gas through holes: the number of remaining discs, and escapes per unit path length.
 
 In the limit of small holes in an ergodic box, theory predicts that a disc of speed v leaves at a rate of v ℓ/(π A)
 through holes of total length ℓ in the walls around an area A.
@@ -52,7 +52,7 @@ class Escape(Result):
         expected: (INSTANTS,), theoretical mean number of discs that remain; None without theory.
         spread: (INSTANTS,), standard deviation of `left` about `expected`, including the error of theory; None without
             theory.
-        per_path: escapes per path length, 1/length; None under gravity.
+        per_path: escapes per unit path length, 1/length; None under gravity.
         mean_time: total time that all discs spend in the gas, divided by the number of escapes, time. If the escape
             rate does not depend on the time already spent in the gas, this is the mean escape time, even if some discs
             have not left yet.
@@ -83,7 +83,7 @@ class Escape(Result):
     def summary(self) -> str:
         """Return the number of discs that escaped, and whether their escape rate agrees with theory."""
         estimate = self.per_path or self.mean_time
-        quantity = "escapes per path length" if self.per_path else "time per escape"
+        quantity = "escapes per unit path length" if self.per_path else "time per escape"
         verdict = agreement([(quantity, estimate)])
         return f"{self.escaped} of {self.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
 
@@ -180,12 +180,12 @@ def _flights(
 
 
 def _theory(log: Log, number: float) -> Theory:
-    """Return the theoretical number of escapes per path length, ℓ/(π A), 1/length.
+    """Return the theoretical number of escapes per unit path length, ℓ/(π A), 1/length.
 
     The relative error is the sum of four terms: ℓ/P for the depletion of the gas in front of a hole, where P is the
-    whole perimeter that discs touch; 2φ for the density at the wall; the error for a slit of width ℓ in `effusion`, for
-    discs that stream out together; and the fraction of ℓ that is uncertain because it lies at corners between absorbing
-    and other walls.
+    total perimeter that discs can touch; 2φ for the density at the wall; the error that `effusion` assigns to a slit of
+    width ℓ, from which discs stream out together; and the fraction of ℓ that is uncertain because it lies at corners
+    between absorbing and other walls.
 
     Args:
         log: log of the gas.
@@ -225,7 +225,7 @@ def _expected(
     Args:
         log: log of the gas.
         speed: (N,), speeds of the discs at the start of the window, length/time.
-        rate: escapes per path length, 1/length.
+        rate: escapes per unit path length, 1/length.
         time: (INSTANTS,), times since the start of the window.
         collisions: number of collisions between discs per escape, where each collision counts for both discs.
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIGNMENT = 20
-"""Events per disc before growth is measured, while the deviations turn into the directions of fastest growth."""
+"""Events per disc before growth is measured, while the deviations align with the directions of fastest growth."""
 
 FEWEST = 32
 """Smallest number of intervals, of one event per disc each, in which growth is measured."""

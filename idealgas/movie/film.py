@@ -177,9 +177,9 @@ def check_shown(log: Log, colouring: Colouring | None) -> None:
     """
     if colouring == "order" and not log.scene.properties.fixed_walls:
         moving = ", ".join(log.scene.lacking("fixed_walls"))
-        raise UserError(f"{log.path}: colours by order require a box with fixed sides (got a scene with {moving})")
+        raise UserError(f"{log.path}: colouring by order requires a box with fixed sides (got a scene with {moving})")
     if colouring == "order" and log.escapes:
-        raise UserError(f"{log.path}: colours by order require that no discs leave the gas")
+        raise UserError(f"{log.path}: colouring by order requires that no disc leaves the gas")
     if not log.has_positions:
         raise UserError(f"{log.path}: has no positions to show ({log.scene.run.method})")
     log.require_events()

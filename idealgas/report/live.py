@@ -153,7 +153,7 @@ class Live:
             self._points[middle] = _temperature(log, middle), self._pressures(middle)
 
     def _pressures(self, middle: float) -> dict[str, Estimate]:
-        """Return the pressure around a time, by name: of the gas, or on each wall if there is no equation of state."""
+        """Return the pressure near a time, by name: of the gas or, without an equation of state, on each wall."""
         log = self._log
         row = min(max(log.row_at(middle) - POINT_ROWS // 2, 0), max(len(log) - 1 - POINT_ROWS, 0))
         try:

@@ -144,7 +144,7 @@ def description_html(description: str) -> str:
 
 
 def _summary(log: Log, facts: dict) -> str:
-    """Return a sentence about the gas, with its initial packing fraction, and about its run."""
+    """Return a sentence that describes the gas, including its initial packing fraction, and its run."""
     gas, run, effects = facts["gas"], facts["run"], ", ".join(log.scene.effects)
     kind = f" with {effects}" if effects else ""
     discs = "disc" if gas["number"] == 1 else "discs"

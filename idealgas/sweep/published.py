@@ -49,7 +49,7 @@ def comparisons(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[tuple[
     """Yield each `[[published]]` table of a sweep with the comparisons at all points that have results.
 
     Raises:
-        UserError: if the sweep has no such quantity or no results.
+        UserError: if the sweep has none of the published quantities, or no results.
     """
     rows: dict[str, list[dict[str, Any]]] = {}
     for point in read_points(folder):
@@ -72,7 +72,7 @@ def published_tables(sweep: Sweep, folder: str | os.PathLike[str]) -> Iterator[T
     Deviations are in units of the combined standard error.
 
     Raises:
-        UserError: if the sweep has no such quantity or no results.
+        UserError: if the sweep has none of the published quantities, or no results.
     """
     for paper, compared in comparisons(sweep, folder):
         lines = [

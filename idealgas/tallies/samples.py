@@ -92,7 +92,9 @@ def sampled(log: Log, start: float | None, end: float | None, needs: tuple[str, 
     """
     must_apply(log, start, needs)
     if SUMS[0] not in log.observables:
-        raise UserError(f"{log.path}: has no events (made with log.events = false), and no sums (log.pressure = true)")
+        raise UserError(
+            f"{log.path}: has neither events (log.events = false) nor sums (these require log.pressure = true)"
+        )
     first, last = span(log, start, end)
     time = log.observables[SUMS[0]][0]
     time = time[(time >= first) & (time <= last)]

@@ -125,14 +125,14 @@ def thin_pair_distribution(distance: ArrayLike, diameter: float, number_density:
 def confinement(
     radius: ArrayLike, box: tuple[float, float], periodic: tuple[bool, bool] = (False, False), axis: int | None = None
 ) -> np.ndarray:
-    """Return the factor (S, S) by which walls change the number of contacts of species i and j.
+    """Return the factor (S, S) by which walls change the number of contacts between species i and j.
 
     Walls confine the centres to the area (Lx - 2R)(Ly - 2R), which increases the number of contacts. On the other hand,
     a disc near a wall has neighbours on one side only, which decreases it. The factor is the average fraction of the
-    contact circle that lies inside the box, relative to a periodic box. It is exact for two discs alone, and in a gas
-    it is of first order in density; its errors, from simulations, are in `values.ERRORS`. Periodic axes have no walls
-    and contribute a factor 1. With an `axis`, each contact is weighted by its contribution to the pair virial along
-    this axis, which is balanced by the walls across it.
+    contact circle that lies inside the box, divided by its value in a periodic box. It is exact for two isolated discs
+    and correct to first order in density for a gas; its errors, estimated from simulations, are in `values.ERRORS`.
+    Periodic axes have no walls and contribute a factor of 1. If `axis` is given, each contact is weighted by its
+    contribution to the pair virial along this axis, which is balanced by the forces on the walls perpendicular to it.
     """
     radius = np.asarray(radius, float)
     along_x, along_y = (_room_along(radius, *side) for side in zip(box, periodic, strict=True))

@@ -236,7 +236,7 @@ def _two(radius: np.ndarray, number: np.ndarray, box: tuple[float, float], perio
     radii = np.repeat(radius, number.astype(int))
     exact = two_discs((radii[0], radii[1]), box, periodic)
     if exact is None:
-        raise NoTheoryError("the box is too small for two such discs")
+        raise NoTheoryError("the box is too small for two of these discs")
     pairs, walls, *sides = (
         None if z is None else Theory(z, 0.0, "two discs, exact") for z in (exact.pairs, exact.walls, *exact.sides)
     )
@@ -335,7 +335,7 @@ def _finite_error(kind: str, n: int, radius: float, phi: float, box: tuple[float
     n_square = min(n, 4 * phi / math.pi * across**2 * (1 + 1e-9))  # discs in the square of the shorter side
     if n_square < NUMBERS[0]:
         raise NoTheoryError(
-            "at this packing fraction a square with the shorter side of the box holds fewer than "
+            "at this packing fraction a square as long as the shorter side of the box holds fewer than "
             f"{NUMBERS[0]} of the largest discs"
         )
     if phi > FRACTIONS[-1] and n_square < NUMBERS[-1]:

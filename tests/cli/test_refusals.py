@@ -86,7 +86,7 @@ EXPORTS = [
     ("--format csv --events --parts 3", PARTS),
     ("--frames 3 --parts 3", PARTS),
     ("--events --parts 3 -o .", "….: already exists…"),
-    ("--events --parts 3 -o -", "…--parts: a folder cannot be standard output (allowed -o FOLDER)…"),
+    ("--events --parts 3 -o -", "…--parts: a folder cannot be written to standard output (allowed -o FOLDER)…"),
 ]
 FILMS = [
     ("homogeneous.h5", "…homogeneous.h5: has no positions to show (monte_carlo)…"),
@@ -95,7 +95,7 @@ FILMS = [
     ("piston.h5 --to 31", "…piston.h5: empty time window t = 0 to 31: the log covers t = 0 to 30…"),
     ("run.h5 --speed 1e-9 --to 30", "…frames are too many (allowed <= 1,000,000)…"),
     ("run.h5 -o film.avi", "…film.avi: unknown kind of film (allowed: .mp4, .gif)…"),
-    ("piston.h5 --colour order", "…colours by order require a box with fixed sides (got a scene with piston)…"),
+    ("piston.h5 --colour order", "…colouring by order requires a box with fixed sides (got a scene with piston)…"),
     ("run.h5 --frame 4", "…film.gif: unknown figure format (allowed .png)…"),
     ("piston.h5 --frame 31 -o a.png", "…piston.h5: no state at t = 31: the log covers t = 0 to 30…"),
     ("run.h5 -o folder.gif", "…folder.gif: is a folder…"),

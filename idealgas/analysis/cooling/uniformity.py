@@ -23,7 +23,7 @@ def cells_of(log: Log) -> np.ndarray:
 
 
 def scatter_of(log: Log, state: LogState, shape: np.ndarray) -> tuple[float, float]:
-    """Return the variance over mean of the numbers of discs in cells, and the relative mean square momentum of cells.
+    """Return the variance-to-mean ratio of the number of discs per cell, and the relative mean square momentum.
 
     The mean square momentum of a cell is relative to that of discs that move independently. As all discs have the same
     mass, it is computed from sums of velocities.

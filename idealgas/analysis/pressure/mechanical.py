@@ -93,7 +93,7 @@ def mechanical(log: Log, gauge: WallGauge, window: Window) -> Mechanical:
 
 
 def _external_pressure(gauge: WallGauge, face: Face, window: Window) -> float | None:
-    """Return the external pressure that holds a piston; None for other walls."""
+    """Return the external pressure on a piston; None for other walls."""
     held = (piston.balance(window.start, window.end) for piston in gauge.moving if piston.wall == face.wall)
     return next(held, None)
 

@@ -112,7 +112,7 @@ class Profile(Result):
         return (self.edges[1:] + self.edges[:-1]) / 2
 
     def plain_tables(self) -> list[Table]:
-        """Return the tables of density, temperature and pressure in every strip, and of the heat given by the walls."""
+        """Return the tables of density, temperature and pressure in every strip, and of the heat from walls."""
         axis, edges = self.axis, self.edges
         strips = [f"{axis} = {low:.4g} to {high:.4g}" for low, high in pairwise(edges)]
         tables = []

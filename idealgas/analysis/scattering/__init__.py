@@ -1,4 +1,4 @@
-"""Measure density and current correlations in space and time: F(k, t) and its self part, S(k, ω), and currents.
+"""Measure density and current correlations in space and time: F(k, t), its self part, S(k, ω) and currents.
 
 The box must be periodic; the wave vectors are parallel to its sides. The analysis also gives the two parts of the van
 Hove function, G_s(r, t) and G_d(r, t), and the non-Gaussian parameter of the displacements.

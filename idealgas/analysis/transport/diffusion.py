@@ -108,7 +108,7 @@ class LagLimits(NamedTuple):
 
 
 def diffusion_limits(log: Log, discs: Composition, collisions: np.ndarray, equilibrium: Ensemble) -> list[LagLimits]:
-    """Return the limits of the diffusion of each species, from measured collision rates.
+    """Return, for each species, the limits of the lags at which its diffusion can be measured.
 
     The velocity of a disc of species i decays at the rate Σ_j 2 m_j/(m_i + m_j) Γ_ij. If there are so many species that
     the rates are not known for every pair, m_j is the mean mass of all discs.

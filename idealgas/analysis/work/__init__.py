@@ -1,4 +1,4 @@
-"""Measure the work of a piston and derive the free energy from Jarzynski's equality and Crooks' theorem.
+"""Measure the work done by a piston and derive the free energy from Jarzynski's equality and Crooks' theorem.
 
 The strokes of several logs are combined. DIR is the folder of a sweep with the analysis "work".
 """
@@ -130,7 +130,7 @@ class WorkAnalysis(Analysis):
     headline = "processes.*.free_energy"
     results = (WorkOfRun, Work)
     sections = (
-        Section("Work", "Distribution of the work of the piston forward and back, which cross at the free energy"),
+        Section("Work", "Distribution of the work done by the piston forward and back, which cross at the free energy"),
     )
     averages = True
     supports_polydispersity = False
