@@ -12,9 +12,9 @@ NEVER = 1e300
 MAX_DISPLACEMENT = 6144
 """Longest path of the fastest disc in an epoch, in diameters of the smallest disc.
 
-If 4 events per disc take longer, the epoch lasts until they have happened. The rounding of the clock adds at most 2⁻⁵⁴
-of this path per disc to the error of a contact. A few discs in a wide box have longer epochs, of about 500 events in
-total; if the path is 500 box lengths L, the rounding of the clock adds about 2⁻⁴⁵ L.
+If 4 events per disc take longer, the epoch lasts until they have happened. For each of the two discs, rounding of the
+clock adds at most 2⁻⁵⁴ of this path to the error of a contact. A few discs in a wide box have longer epochs, of about
+500 events in total; if the path is 500 box lengths L, rounding of the clock adds about 2⁻⁴⁵ L.
 """
 
 
