@@ -84,7 +84,7 @@ def begin_epoch(effects: Effects, time: float, length: float) -> None:
 
 
 def end_epoch(effects: Effects, length: float) -> None:
-    """Finish an epoch: let the local times of all effects count from the end of the epoch.
+    """Finish an epoch: make the local times of all effects count from the end of the epoch.
 
     length: duration of the epoch, time.
     """
@@ -98,7 +98,7 @@ def next_change(effects: Effects, time: float) -> float:
 
 
 def changed(effects: Effects, after: float, until: float) -> Effects:
-    """Return the effects after all scheduled changes at times with `after` < time <= `until`.
+    """Return the effects after all scheduled changes with `after` < time <= `until`.
 
     `step_energy` is not updated.
     """

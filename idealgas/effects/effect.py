@@ -24,7 +24,7 @@ class Tables(NamedTuple):
         table: table of the effect, None if absent; for an effect with an array of tables, a tuple in which
             invalid tables are None.
         size: width and height of the box, length.
-        sides: kinds of the left, right, bottom and top side; empty while the table of the box is invalid.
+        sides: left, right, bottom and top side, each a word or a table; empty if the table of the box is invalid.
         walls: wall segments, with None for invalid tables, followed by fixed discs.
     """
 
@@ -200,7 +200,7 @@ class Effect(ABC, Generic[State]):
         """Prepare the state for an epoch that begins at a time of the run; length: duration of the epoch."""
 
     def end_epoch(self, state: State, length: float) -> None:
-        """Let local times count from the end of the epoch; length: duration of the epoch."""
+        """Make local times count from the end of the epoch; length: duration of the epoch."""
 
     def reverse(self, state: State) -> None:
         """Reverse the velocities in the state; called at the start of an epoch."""

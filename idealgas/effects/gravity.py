@@ -62,7 +62,7 @@ class GravityEffect(Effect[law.Gravity]):
             yield Issue((key,), "no acceleration", str(list(steps[0])), "a nonzero acceleration, or no [gravity]")
 
     def exists(self, _: Tables, start: GasAtStart) -> bool:
-        """Return whether any effect accelerates the discs, because effects other than `[gravity]` may do so too."""
+        """Return whether the discs are accelerated, by `[gravity]` or by another effect."""
         return any(start.acceleration) or bool(start.later_accelerations)
 
     def make(self, _: Tables, start: GasAtStart) -> law.Gravity:

@@ -34,8 +34,9 @@ NAME = "piston"
 class PistonTable(SteppedTable):
     """`[[piston]]`: a wall across the whole box that replaces one side, or moves inside the box between two gases.
 
-    It either moves at a prescribed velocity or has a finite mass and is accelerated by gravity along its axis. An
-    external pressure pushes a piston that replaces a side against the gas. At a side of the box a piston is reflected.
+    It either moves at a prescribed velocity or has a finite mass and is accelerated by gravity along its axis. A piston
+    of finite mass that replaces a side is pushed against the gas by an external pressure. Every piston is reflected at
+    the sides of the box.
     """
 
     in_steps = ("velocity", "pressure")

@@ -124,7 +124,7 @@ class Properties:
 
     @property
     def conserves_energy(self) -> bool:
-        """Whether only heat, from walls or a heat bath, changes the energy of translation and spin."""
+        """Whether only heat, from walls or a heat bath, can change the energy of translation and spin."""
         return self.collisions_conserve_energy and self.straight_flight and self.fixed_walls and not self.escapes
 
     @property

@@ -16,7 +16,7 @@ LAST_COLLISION = Column("last_collision", "f8", (), "time")
 
 
 class RestitutionTable(Table):
-    """`[restitution]`: discs separate more slowly than they approached.
+    """`[restitution]`: discs separate more slowly than they approached each other.
 
     A disc that collided less than the contact duration ago collides elastically; this prevents infinitely many
     collisions in a finite time (Luding & McNamara, Granular Matter 1, 113 (1998)).

@@ -15,7 +15,7 @@ INERTIA = Column("inertia", "f8", (), "mass length^2")
 
 
 class RotationTable(Table):
-    """`[rotation]`: discs have a spin, which a tangential coefficient of restitution couples to their motion.
+    """`[rotation]`: discs spin, and a coefficient of tangential restitution couples their spins to their translation.
 
     The coefficient ranges from -1 (smooth) to 1 (perfectly rough); at these two values energy is conserved. Pistons are
     smooth.
@@ -25,10 +25,10 @@ class RotationTable(Table):
         default=0.5, gt=0, le=1, description="moment of inertia in units of mass * radius²: 0.5 for a uniform disc"
     )
     roughness: Real = Field(
-        default=1.0, ge=-1, le=1, description="tangential coefficient of restitution for two discs, -1 to 1"
+        default=1.0, ge=-1, le=1, description="coefficient of tangential restitution for two discs, -1 to 1"
     )
     wall_roughness: Real = Field(
-        default=-1.0, ge=-1, le=1, description="tangential coefficient of restitution for a disc and a wall, -1 to 1"
+        default=-1.0, ge=-1, le=1, description="coefficient of tangential restitution for a disc and a wall, -1 to 1"
     )
 
 

@@ -20,7 +20,7 @@ class Vibration(Table):
 
 
 class VibratingSide(Table):
-    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that moves on parabolas and is at rest at time 0."""
+    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that starts at rest and moves on parabolas in time."""
 
     vibrating: Vibration = Field(description="amplitude and frequency")
 

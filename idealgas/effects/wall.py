@@ -73,7 +73,7 @@ class WallTable(SteppedTable):
 
     @property
     def absences(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of times from and until which the wall is absent, in order; the last time may be infinite."""
+        """Intervals (start, end) in time during which the wall is absent, in order; the last end may be infinite."""
         opens, closes = (as_times(times) for times in (self.opens_at or 0.0, self.closes_at))
         if self.opens_at is None and self.closes_at is None:
             return ()

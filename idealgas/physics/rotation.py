@@ -62,7 +62,7 @@ def tangential_impulse(a, b, a_id, b_id, x, y, rotation):
 
 @inline
 def _rounding(disc, u, tx, ty, impulse, factor, rotation):
-    """Excess energy of a disc due to rounding, and the derivative of this energy that `correction` requires."""
+    """Excess energy of a disc due to rounding, and the derivative of this energy with respect to the correction."""
     dx, dy = impulse / disc.m * tx, impulse / disc.m * ty
     spin = disc.r / rotation.inertia[u] * impulse
     motion = (factor * disc.vx + dx) * dx + (factor * disc.vy + dy) * dy

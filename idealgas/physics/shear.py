@@ -45,7 +45,7 @@ def make_shear(rate: float, size: tuple[float, float]) -> Shear:
 
 
 def begin_epoch(shear: Shear, time: float, length: float) -> None:
-    """Let local times count from a time of the run, and compute the offset, which is rounded only once.
+    """Make local times count from a given time of the run, and compute the offset, which is rounded only once.
 
     time: time of the run at which the epoch begins. length: duration of the epoch, time.
     """
@@ -65,7 +65,7 @@ def at(shear: Shear | None, time: float) -> Shear | None:
 def longest_epoch(shear: Shear | None) -> float:
     """Longest duration of an epoch, time; infinite without shear.
 
-    It is a power of two, in which the image above the box moves by at most the width of the box.
+    The duration is a power of two, such that the image above the box moves by at most the width of the box.
     """
     return math.inf if shear is None else 2.0 ** math.floor(math.log2(shear.Lx / shear.speed))
 
@@ -89,9 +89,9 @@ def subtract_offset(x, vx, time, shear, images):
 
 @inline
 def less_offset_of_nearest(x, y, time, shear):
-    """Convert a relative position (x, y), length, to that of the nearest image along y, whose displacement is included.
+    """Convert a relative position (x, y), length, to the position relative to the nearest image along y.
 
-    time: local time at which the displacement is computed.
+    The displacement of this image along x is subtracted too. time: local time at which the displacement is computed.
     """
     if shear is not None:
         rows = np.rint(y / shear.Ly)

@@ -9,8 +9,8 @@ The heat flux is accumulated in the same way as ∫ Σ (m v²/2) v_a dt + Σ ΔE
 energy gained by one disc and velocities are relative to the centre of mass. The heat flux is recorded only if
 velocities change exclusively in collisions of smooth elastic discs.
 
-A face is one side of a wall. Faces 0 to 3 are the sides of the box. Each wall segment then has two faces: first the
-face on the left as seen from the start of the segment, then the face on the right.
+A face is one side of a wall. Faces 0 to 3 are the sides of the box. They are followed by two faces for each wall
+segment: the face on the left as seen from the start of the segment, and the face on the right.
 """
 
 from typing import Any, NamedTuple
@@ -145,7 +145,7 @@ def record_flight(flow, disc, time, gravity):
 def record_collision_stress(flow, a, b, a_id, b_id, flights, images, effects):
     """Record the collision of two discs, whose stored states must be at the time of contact, if stress is recorded.
 
-    flights: durations (a, b) of the flights that ended with the contact, time; velocities (a_vx, a_vy, b_vx, b_vy) at
+    flights: durations (a_delay, b_delay) of the flights that ended with the contact, time; velocities (a_vx, a_vy, b_vx, b_vy) at
     the start of these flights, length/time; and the same velocities just before the collision.
     """
     if flow is not None:

@@ -69,8 +69,8 @@ def straight_body_delay(d, s, v_normal, v_tangent, r, length):
 def accelerated_body_delay(motion, r, length):
     """Time until a disc of radius r on a parabola touches a segment's body; NEVER if it does not.
 
-    The disc touches at its earliest approach to either face at which the foot of the perpendicular is on the body. If a
-    gate has closed on a disc and gravity keeps it from leaving the gate, the disc bounces at its current depth.
+    The contact is the earliest approach to either face with the foot of the perpendicular on the body. If a gate has
+    closed on a disc and gravity keeps the disc from leaving the gate, the disc bounces at its current depth.
     """
     d, s, vn, vt, an, at = motion
     best = NEVER
