@@ -1,11 +1,11 @@
 """Collision rates of hard discs from kinetic theory.
 
-Two discs whose radii have the sum S and that move at relative speed v sweep an area 2Sv per unit time. In a box of area
-A, two discs at random positions therefore collide at a rate 2Sχv/A, where χ is the contact value of the pair
+Two discs that move at relative speed v sweep an area 2Sv per unit time, where S is the sum of their radii. In a box of
+area A, two discs at random positions therefore collide at a rate 2Sχv/A, where χ is the contact value of the pair
 distribution function, which is 1 in a dilute gas. These estimates determine the lengths of epochs; they are not
-measurements. Monte Carlo trials take place at the rate of the fastest possible pair, and each trial is accepted with a
-probability equal to the ratio of the two rates: Novak & Bortz, Am. J. Phys. 38, 1402 (1970); Eger & Kress, Am. J. Phys.
-50, 120 (1982).
+measurements. Monte Carlo trials take place at the rate of the fastest possible pair. Each trial is accepted with a
+probability equal to the rate of the pair that is tried divided by the rate of the fastest: Novak & Bortz, Am. J. Phys.
+38, 1402 (1970); Eger & Kress, Am. J. Phys. 50, 120 (1982).
 """
 
 import math

@@ -18,7 +18,7 @@ from idealgas.physics.shear import enter_common_frame, set_velocities_along_x, s
 
 @inline
 def relative_motion(a, b, gravity, periodic, images):
-    """Later of the local times of two discs, and the position and velocity of disc a relative to disc b at that time.
+    """The later of two discs' local times, and the position and velocity of disc a relative to disc b at that time.
 
     Returns (time, x, y, vx, vy), in units of time, length and length/time.
     """
@@ -157,9 +157,9 @@ def random_contact(a, b, offset):
     """Place two discs in contact with a given impact parameter: disc b at the origin, disc a on the line of centres.
 
     offset: impact parameter divided by the sum of the radii, -1 to 1; this is the sine of the angle from the relative
-    velocity to the line of centres. The distance between the discs does not enter the collision law. It is set to the
-    relative speed, because with unit vectors the rounding in `collide` would be biased, and the energy would grow by
-    half a unit in the last place per collision.
+    velocity to the line of centres. Because the distance between the discs does not enter the collision law, the
+    distance is set to the relative speed. With unit vectors, the rounding in `collide` would be biased, and the energy
+    would grow by half a unit in the last place per collision.
     """
     vx = a.vx - b.vx
     vy = a.vy - b.vy

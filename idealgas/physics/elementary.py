@@ -57,7 +57,7 @@ def cos_sin_turns(turns):
 
 @inline
 def _cos(x, y, z, w):
-    """Cosine of x + y for |x| <= π/4, where y is less than the last place of x, z = x² and w = x⁴."""
+    """Cosine of x + y for |x| <= π/4, where |y| is below the last place of x, z = x² and w = x⁴."""
     r = z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * 2.48015872894767294178e-05))
     more = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
     half = 0.5 * z
@@ -67,7 +67,7 @@ def _cos(x, y, z, w):
 
 @inline
 def _sin(x, y, z, w):
-    """Sine of x + y for |x| <= π/4, where y is less than the last place of x, z = x² and w = x⁴."""
+    """Sine of x + y for |x| <= π/4, where |y| is below the last place of x, z = x² and w = x⁴."""
     r = 8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * 2.75573137070700676789e-06)
     r += z * w * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)
     cube = z * x

@@ -61,7 +61,7 @@ def end_epoch(pistons: np.ndarray, length: float) -> None:
 
 @inline
 def height_over_piston(disc, piston, gravity):
-    """Later of the local times of a disc and the piston, and the disc's motion relative to the piston at that time.
+    """The later of the local times of a disc and the piston, and the disc's motion relative to the piston at that time.
 
     Returns (time, height, velocity, acceleration). The height is the distance between the disc's edge and the piston;
     all three components are positive if they point away from the piston.

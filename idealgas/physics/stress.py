@@ -145,8 +145,8 @@ def record_flight(flow, disc, time, gravity):
 def record_collision_stress(flow, a, b, a_id, b_id, flights, images, effects):
     """Record the collision of two discs, whose stored states must be at the time of contact, if stress is recorded.
 
-    flights: durations (a_delay, b_delay) of the flights that ended with the contact, time; velocities (a_vx, a_vy, b_vx, b_vy) at
-    the start of these flights, length/time; and the same velocities just before the collision.
+    flights: durations (a_delay, b_delay) of the flights that ended with the contact, time; velocities (a_vx, a_vy,
+    b_vx, b_vy) at the start of these flights, length/time; and the same velocities just before the collision.
     """
     if flow is not None:
         number, terms = flow.buffer.number, flow.buffer.terms
