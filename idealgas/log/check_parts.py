@@ -1,6 +1,6 @@
-"""Checks of the parts of a log: the tables and columns that it must have, its box, discs, species and walls.
+"""Checks of the tables and columns that a log must have, and of its box, discs, species and walls.
 
-A part that is missing or invalid raises ValueError.
+Missing or invalid data raise ValueError.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ NEEDED: dict[str, Sequence[Column]] = {
     "summary": SUMMARY_COLUMNS,
     "changes": CHANGE_COLUMNS,
 }
-"""Columns that each table has; only the tables of events and of changes may be missing in a log."""
+"""Columns that each table must have; only the tables `events` and `changes` may be missing from a log."""
 
 
 def box_of(data: np.ndarray) -> tuple[float, float]:
@@ -40,7 +40,7 @@ def box_of(data: np.ndarray) -> tuple[float, float]:
 
 
 def check_names(names: Mapping[str, Sequence[str]]) -> None:
-    """Check that each table has its required columns. names: names of the columns, by table."""
+    """Check that each table has the required columns. names: names of the columns, by table."""
     for table, columns in NEEDED.items():
         if table in ("events", "changes") and table not in names:
             continue
@@ -75,7 +75,12 @@ def check_boundary(words: object) -> None:
 
 
 def check_images(periodic: bool, names: Sequence[str]) -> None:
-    """Check that discs have images if and only if sides are periodic. names: columns of the checkpoints."""
+    """Check that checkpoints have a column of images if and only if some sides are periodic.
+
+    Args:
+        periodic: whether any sides are periodic.
+        names: names of the columns of checkpoints.
+    """
     if periodic != (IMAGE.name in names):
         raise ValueError(f"{'missing, with' if periodic else 'present, without'} periodic sides")
 
@@ -92,11 +97,11 @@ def check_walls(walls: Sequence[Wall], box: tuple[float, float]) -> None:
 
 
 def check_sizes(discs: int, species: int, walls: int, file_size: int) -> None:
-    """Check the numbers of discs, species and walls."""
+    """Check that the numbers of discs, species and walls are possible for a file of `file_size` bytes."""
     if not 1 <= discs <= file_size:
         raise ValueError(f"discs/id: {discs:,} discs in a file of {file_size:,} bytes")
     if not 1 <= species <= discs:
-        raise ValueError(f"discs/species_name: {species} names of {discs} discs")
+        raise ValueError(f"discs/species_name: {species} names for {discs} discs")
     if species > MOST_SPECIES:
         raise ValueError(f"discs/species_name: {species:,} names (allowed up to {MOST_SPECIES:,})")
     if not len(SIDES) <= walls <= len(SIDES) + MOST_WALLS:

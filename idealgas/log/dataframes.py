@@ -1,4 +1,4 @@
-"""Convert the rows of a log to columns with one number per row, for tables of other programs."""
+"""Convert the rows of a log to columns with one number per row, for tables in other programs."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Columns = dict[str, np.ndarray]
 
 KIND_NAMES = tuple(kind.name.lower() for kind in Kind)
-"""Names of the codes in the column `kind` of events."""
+"""Names of the codes in the event column `kind`."""
 
 CHOSEN_BY = {
     "events": ("disc", "t0", "t1"),
@@ -28,7 +28,7 @@ CHOSEN_BY = {
     "discs": ("disc", "times"),
     "observables": ("t0", "t1"),
 }
-"""Arguments of `Log.to_pandas` that select rows, for each of its tables."""
+"""Arguments of `Log.to_pandas` that select rows, by table."""
 
 
 def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTORS) -> Columns:
@@ -36,10 +36,10 @@ def flat(values: Mapping[str, Any], vectors: Mapping[str, Sequence[str]] = VECTO
 
     Args:
         values: columns by name; None for a missing column.
-        vectors: names of the components, by column; unnamed components are numbered, as in name_0_1.
+        vectors: names of the components, by column; components without names are numbered, as in name_0_1.
 
     Returns:
-        (n,) columns by name.
+        Columns of shape (n,), by name.
     """
     columns: Columns = {}
     for name, column in values.items():
@@ -78,10 +78,10 @@ def flat_flights(batches: Iterable[Flights]) -> Iterator[Columns]:
 
 
 def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) -> Iterator[Columns]:
-    """Yield the columns of states, with one row for each disc.
+    """Yield the columns of each state, with one row per disc; `species` is an index into `gas.species_names`.
 
     Args:
-        gas: the discs; the column `species` is an index into its names of species.
+        gas: the discs.
         states: states of the discs.
         disc: id of the only disc to include; None for all discs.
     """
@@ -90,7 +90,7 @@ def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) ->
     for state in states:
         values = state._asdict()
         time = np.full(len(ids), values.pop("time"))
-        if (here := state.inside).any() and np.isnan(state.position[here]).all():  # a gas without positions
+        if (here := state.inside).any() and np.isnan(state.position[here]).all():  # discs without positions
             del values["position"]
         fixed = {"time": time, "disc": ids, "species": gas.species, "radius": gas.radius, "mass": gas.mass}
         yield {name: column[chosen] for name, column in (fixed | flat(values)).items()}
@@ -99,13 +99,13 @@ def flat_discs(gas: Gas, states: Iterable[LogState], disc: int | None = None) ->
 def flat_samples(
     observables: Mapping[str, tuple[np.ndarray, np.ndarray]], walls: Sequence[Wall], t0: float | None, t1: float | None
 ) -> Columns:
-    """Return the samples at times t0 ≤ t < t1 as columns, with their times.
+    """Return the times and values of the samples at t0 ≤ t < t1 as columns.
 
     Args:
         observables: times (s,) and values (s, …), by name.
-        walls: walls of the log, which name components.
-        t0: start; None for the first sample.
-        t1: end; None for no end.
+        walls: walls of the log, whose names become part of the names of components.
+        t0: start of the window; None to begin with the first sample.
+        t1: end of the window; None to include the last sample.
     """
     time = next((time for time, _ in observables.values()), np.empty(0))
     rows = slice(*time.searchsorted([-np.inf if t0 is None else t0, np.inf if t1 is None else t1]))
@@ -116,7 +116,7 @@ def flat_samples(
 
 
 def check_choice(path: Path, table: str, choice: Mapping[str, Any]) -> None:
-    """Raise LogError for an unknown table, or if arguments, given by name, do not apply to the table."""
+    """Raise LogError if the table is unknown or if an argument in `choice`, by name, does not apply to it."""
     if table not in CHOSEN_BY:
         raise LogError(f"{path}: no table of {table} (allowed: {', '.join(CHOSEN_BY)})")
     if useless := [name for name, value in choice.items() if value is not None and name not in CHOSEN_BY[table]]:
@@ -128,8 +128,8 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
     """Return a DataFrame with the rows of all blocks.
 
     Args:
-        blocks: columns of each block.
-        categories: names of the codes in a column, by column.
+        blocks: columns of each block, by name.
+        categories: names of the codes in a categorical column, by column.
 
     Raises:
         LogError: if pandas is missing.
@@ -144,7 +144,7 @@ def data_frame(blocks: Iterable[Columns], categories: Mapping[str, Sequence[str]
             parts.setdefault(name, []).append(column)
     whole: dict[str, Any] = {
         name: np.concatenate(parts.pop(name)) for name in tuple(parts)
-    }  # popped one by one, so that the data are in memory only once
+    }  # popped one by one to avoid holding all data in memory twice
     for name, words in categories.items():
         whole[name] = Categorical.from_codes(whole[name], categories=list(words))
     return DataFrame(whole, copy=False)

@@ -1,4 +1,4 @@
-"""The event rows of a log in blocks, and the state of the gas at any time."""
+"""Read the event rows of a log in blocks, and compute the state of the gas at any time."""
 
 from bisect import bisect_left, bisect_right
 from collections import namedtuple
@@ -19,21 +19,21 @@ from idealgas.log.schema import SUMMARY_COLUMNS
 from idealgas.log.summary import parse_summary
 
 COUNTS = ("events", "disc_collisions", "trials")
-"""Numbers that every run counts; a run may end at a given value of each."""
+"""Quantities that every run counts; a stop rule may set the final value of any of them."""
 
 
 _CACHED = ("runs", "checkpoints", "observables", "snapshot_times", "summary", "changes", "end_time", "counts")
-"""Properties that change while the run writes."""
+"""Cached properties that change while the run is writing the log."""
 
 
 @cache
 def _rows(columns: tuple[str, ...]) -> Any:
-    """Return the type of blocks of rows with these columns; creating it takes longer than reading a short block."""
+    """Return the type of blocks with these columns; creating a type takes longer than reading a short block."""
     return namedtuple("Rows", columns)
 
 
 class LogHistory(LogHeader):
-    """The part of a `Log` that is written during the run, except samples; `Log` describes its attributes."""
+    """The part of a `Log` that is written during the run, except samples; see `Log` for the attributes."""
 
     start_time = 0.0
 
@@ -47,7 +47,7 @@ class LogHistory(LogHeader):
 
     @property
     def live(self) -> bool:
-        """Whether a run is writing this log now."""
+        """Whether a run is currently writing this log."""
         return self.unclosed and is_locked(self.path)
 
     def require_events(self) -> None:
@@ -56,7 +56,7 @@ class LogHistory(LogHeader):
             raise LogError(f"{self.path}: has no events (made with log.events = false)")
 
     def refresh(self) -> None:
-        """Read what the run has written since the log was opened or last refreshed."""
+        """Make available everything that the run has written since the log was opened or last refreshed."""
         self._file.refresh()
         self._update()
 
@@ -70,7 +70,7 @@ class LogHistory(LogHeader):
             start = (self._rows - 1) // self._block * self._block
             last = {name: self._file.chunk(f"events/{name}", start) for name in ("disc", "partner", "kind")}
             self._file.checked(partial(check_pairs, last, start))
-            if last["disc"][-1] < last["partner"][-1]:  # first row of a pair whose second row is not yet committed
+            if last["disc"][-1] < last["partner"][-1]:  # the second row of this pair is not yet committed
                 self._rows -= 1
         self._first_times: dict[int, float] = {}
         for name in _CACHED:
@@ -94,7 +94,7 @@ class LogHistory(LogHeader):
 
     @cached_property
     def checkpoints(self) -> Checkpoints:
-        """States at the beginning of epochs, from which the run can be resumed; each is read when it is indexed."""
+        """States at the beginnings of epochs, from which the run can be resumed; each is read when it is indexed."""
         checkpoints = Checkpoints(self._file, len(self), self._check_checkpoint)
         if self.complete and len(checkpoints) < self._file.rows("checkpoints"):
             row = self._file.column("checkpoints/row")[-1]
@@ -105,12 +105,12 @@ class LogHistory(LogHeader):
         """Raise DamageError unless the number of rows before a checkpoint agrees with its time."""
         if self.has_events and not self.row_at(time) <= row <= self.row_at(time, "right"):
             raise DamageError(
-                self.path, f"checkpoints/row: {row} at t = {time:g} (the events before it have other times)"
+                self.path, f"checkpoints/row: {row} at t = {time:g} (disagrees with the times of the events)"
             )
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """Fields of the run's `Summary` by name; empty if the run has not reached its end."""
+        """Fields of the run's `Summary`, by name; empty if the run has not reached its end."""
         names, values = (self._file.column(f"summary/{column.name}").tolist() for column in SUMMARY_COLUMNS)
         fields = self._file.checked(lambda: parse_summary(names, values), "summary/value")
         if self.has_events and fields.get("rows", len(self)) != len(self):
@@ -133,7 +133,7 @@ class LogHistory(LogHeader):
         return end
 
     def _sample_times(self, table: str, step: int) -> np.ndarray:
-        """Return the times of every `step`-th row of a table of samples; none if the table is missing."""
+        """Return the times of every `step`-th row in a table of samples; an empty array if there is no such table."""
         path = next((f"{table}/{name}" for name in self._file.names(table) if name.endswith("/time")), None)
         times = self._file.column(path, step) if path else np.empty(0)
         if self.complete and len(times) and times[-1] > self.end_time:
@@ -144,7 +144,7 @@ class LogHistory(LogHeader):
     def counts(self) -> dict[str, int]:
         """Numbers of `events`, `disc_collisions` and `trials` up to the end of the log.
 
-        Without event rows they are taken from the last sample.
+        If the log has no event rows, the numbers are those of the last sample.
         """
         if self.complete:
             return {name: self.summary[name] for name in COUNTS}
@@ -163,12 +163,12 @@ class LogHistory(LogHeader):
 
     @property
     def has_positions(self) -> bool:
-        """Whether the discs have positions; with the Monte Carlo method their positions are nan."""
+        """Whether the discs have positions; in a run with the Monte Carlo method, all positions are nan."""
         return "position" in self._file.names("checkpoints")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns of `EventBatch` that this log has; empty without events."""
+        """Names of the columns of `EventBatch` that this log contains; empty if the log has no events."""
         return tuple(self._file.names("events"))
 
     @overload
@@ -180,9 +180,9 @@ class LogHistory(LogHeader):
 
         Args:
             columns: names of the columns to read; each block is then a named tuple of arrays, (n,) or (n, 2). By
-                default, a block is an `EventBatch`, which describes the columns.
+                default, each block is an `EventBatch`, whose documentation describes the columns.
             start: number of the first row.
-            stop: number of the row after the last one; by default the end of the log.
+            stop: number of the row after the last row; by default the end of the log.
 
         Raises:
             LogError: if the log does not have a column.
@@ -199,7 +199,7 @@ class LogHistory(LogHeader):
             yield block(**{name: column[chosen] for name, column in rows.items()})
 
     def row_at(self, time: float, side: Literal["left", "right"] = "left") -> int:
-        """Return the number of the first event row at `time` or later, or later than `time` if the side is "right"."""
+        """Return the number of the first event row at or after `time`, or strictly after it if `side` is "right"."""
         if not len(self):
             return 0
         find = bisect_left if side == "left" else bisect_right
@@ -218,7 +218,7 @@ class LogHistory(LogHeader):
         Args:
             disc: id of a disc; all discs by default.
             t0: start of the window; by default the start of the log.
-            t1: end of the window; by default the end of the log, including it.
+            t1: end of the window; by default the end of the log, including events at that time.
         """
         start = 0 if t0 is None else self.row_at(t0)
         stop = len(self) if t1 is None else self.row_at(t1)
@@ -239,21 +239,21 @@ class LogHistory(LogHeader):
             time: time of the state.
 
         Raises:
-            LogError: as for `frames`.
+            LogError: if the log does not contain a state at this time; see `frames`.
         """
         return next(self.frames([time]))
 
     def frames(self, times: Iterable[float]) -> Iterator[LogState]:
         """Yield the states of all discs at several times, in a single pass over the log.
 
-        The states are exact, as every disc moves freely after its last event. A log without events has states only at
-        its checkpoints.
+        The states are exact, because every disc moves freely after its last event. A log without events contains states
+        only at its checkpoints.
 
         Args:
             times: times in increasing order.
 
         Raises:
-            LogError: at a time that the log does not cover, or that is out of order.
+            LogError: if a time is out of order or the log contains no state at this time.
         """
         replay: Replay | None = None
         base = -1
@@ -261,7 +261,7 @@ class LogHistory(LogHeader):
         for time in times:
             if not earliest <= time <= self.end_time:
                 raise LogError(
-                    f"{self.path}: no state at time {time:g} (got up to {self.end_time:g}, in increasing order)"
+                    f"{self.path}: no state at time {time:g} (allowed up to {self.end_time:g}, in increasing order)"
                 )
             earliest = time
             nearest = int(self.checkpoints.times.searchsorted(time, "right")) - 1
@@ -284,7 +284,7 @@ class LogHistory(LogHeader):
         return Replay(start, self.columns, self.box, self.wrapped_axes, gravity_at, self.escapes)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
-        """Return the state of the discs at the start, in the form of a checkpoint."""
+        """Return the initial state of the discs as arrays, named as in a checkpoint."""
         names = self._file.names("checkpoints")
         arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
         if not self.has_positions:

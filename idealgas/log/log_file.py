@@ -1,4 +1,4 @@
-"""The HDF5 file of a log, open for reading in chunks. Every failure is a LogError."""
+"""The HDF5 file of a log, open for reading in chunks. Every failure to read it raises LogError."""
 
 import math
 import os
@@ -26,24 +26,24 @@ from idealgas.log.hdf5.superblock import ReadableFile
 from idealgas.log.rules import Rules
 
 _CACHED = 64
-"""Number of chunks of events in the cache, up to 64 MiB.
+"""Number of event chunks in the cache, which takes up to 64 MiB.
 
-With this number, several analyses together read a log of half a million rows only once.
+It suffices for several analyses that run together to read a log of half a million rows only once.
 """
 _CACHED_SMALL = 16
 """Number of small chunks of other tables in the cache."""
 _SMALL = 2**20
-"""Largest size of a small chunk, bytes."""
+"""Largest size of a chunk that counts as small, bytes."""
 ATTEMPTS = 10
-"""Number of attempts to read a file while a writer may be changing the same bytes."""
+"""Number of attempts to read bytes that a writer may be changing."""
 PAUSE = 0.02
-"""Time between two attempts, s."""
+"""Time between attempts, s."""
 
 Result = TypeVar("Result")
 
 
 class StoredTable(dict[str, Any]):
-    """Entries of a table of a log, by name; a missing entry raises DamageError."""
+    """Entries of a table in a log, by name; access to a missing entry raises DamageError."""
 
     def __init__(self, path: Path, table: str, entries: Mapping[str, Any]) -> None:
         super().__init__(entries)
@@ -54,23 +54,23 @@ class StoredTable(dict[str, Any]):
 
 
 class LogFile:
-    """The HDF5 file of a log, open for reading, even while it is written or after its writer was killed.
+    """The HDF5 file of a log, open for reading, even while a run is writing it or after the run was killed.
 
     Attributes:
         path: path of the file.
         unclosed: whether the file consistency flags are set, because the file is being written or its writer was
             killed.
         commit: newest commit record.
-        kinds: optional kinds of events that the log counts.
+        kinds: optional kinds of events that the log may contain, and therefore counts.
         pistons: number of pistons.
-        rules: rules for the values of this log.
+        rules: rules for the values in this log.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: Any = None
         self._opened: list[Any] = []
-        weakref.finalize(self, _close_all, self._opened)  # before Python ends, as HDF5 can no longer read after that
+        weakref.finalize(self, _close_all, self._opened)  # runs before Python exits, when HDF5 can still read
         self._events = lru_cache(_CACHED)(self._chunk)
         self._small_chunks = lru_cache(_CACHED_SMALL)(self._chunk)
         keep_freed_memory()
@@ -100,9 +100,9 @@ class LogFile:
         return self._names.get(table, [])
 
     def stored(self, table: str) -> list[Column]:
-        """Return the columns of a table as stored in the file: name, type and shape of an entry.
+        """Return the columns of a table as stored in the file, each with name, type and shape of an entry.
 
-        Of an H5MD element, only the values are included.
+        For an H5MD element, only the values are included, without steps and times.
         """
         columns = ((name, self._columns[f"{table}/{name}"]) for name in self.names(table))
         paths = ((name.removesuffix("/value").rpartition("/")[2], name, column) for name, column in columns)
@@ -117,7 +117,7 @@ class LogFile:
         return self._columns[path].chunk[0]
 
     def chunk(self, path: str, start: int) -> np.ndarray:
-        """Return the committed rows of the chunk of a column that begins at row `start`; the array is read-only."""
+        """Return the committed rows of a column in the chunk that begins at row `start`, as a read-only array."""
         if table_of(path) == "events":
             return self._events(path, start)
         column = self._columns[path]
@@ -125,14 +125,14 @@ class LogFile:
         return self._small_chunks(path, start) if small else self._chunk(path, start)
 
     def column(self, path: str, step: int = 1) -> np.ndarray:
-        """Return all committed rows of a column of a short table, or every `step`-th row from the first one on."""
+        """Return all committed rows of a column of a short table, or every `step`-th row, starting with the first."""
         column = self._columns[path]
         starts = range(0, self.rows(table_of(path)), column.chunk[0])
         parts = [np.ascontiguousarray(self.chunk(path, start)[-start % step :: step]) for start in starts]
         return np.concatenate(parts) if parts else np.empty((0, *column.chunk[1:]), column.dtype)
 
     def fixed(self, name: str) -> np.ndarray:
-        """Return the values of a dataset that was stored before the run."""
+        """Return the values of a dataset that was written before the run."""
 
         def read() -> np.ndarray:
             column = StoredColumn(self._file, name)
@@ -144,16 +144,16 @@ class LogFile:
         return self._read(read, f"{name}: ")
 
     def texts(self, name: str) -> list[str]:
-        """Return the texts of a dataset that was stored before the run, or of a column of a table."""
+        """Return the strings in a dataset that was written before the run, or in a column of a table."""
         texts = (self.column(name) if name in self._columns else self.fixed(name)).tolist()
         return self.checked(lambda: [text.decode() for text in texts], name)
 
     def checked(self, action: Callable[[], Result], name: str = "") -> Result:
-        """Return the result of an action that raises ValueError for invalid data.
+        """Return the result of a function; if the function raises ValueError for invalid data, raise DamageError.
 
         Args:
             action: function to call.
-            name: name of the data, with which the error message begins.
+            name: name of the data, which begins the error message.
         """
         return self._read(action, name and f"{name}: ")
 
@@ -162,7 +162,7 @@ class LogFile:
         return self._read(lambda: self._file[name].attrs[attribute], f"{name}: ")
 
     def attributes(self, name: str, wanted: Sequence[str]) -> dict[str, str | int]:
-        """Return attributes of a group by name; each is a text or an integer."""
+        """Return attributes of a group by name; each must be a string or an integer."""
         return self._read(lambda: {key: _text_or_integer(self._file[name], key) for key in wanted}, f"{name}: ")
 
     def _open(self) -> None:
@@ -186,7 +186,7 @@ class LogFile:
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")
         self.commit = Commit.read(self._file)
-        size = os.fstat(source.fileno()).st_size  # read after the commit, as a writer may be extending the file
+        size = os.fstat(source.fileno()).st_size  # read after the commit, because a writer may be extending the file
         if self.unclosed:
             self._check_size(size, self.commit.file_size)
         self._columns = {path: self._column_at(path) for path in self.commit.tails}
@@ -203,7 +203,11 @@ class LogFile:
             raise DamageError(self.path, f"truncated: {size:,} of {expected:,} bytes")
 
     def _rules(self, size: int) -> Rules:
-        """Check the tables of this log, and return the rules for its values. size: size of the file, bytes."""
+        """Check the tables of this log, and return the rules for its values.
+
+        Args:
+            size: size of the file, bytes.
+        """
         discs, species, walls = (self._column_at(name) for name in ("discs/id", "discs/species_name", "walls/name"))
         counts = (discs.extent, species.extent, walls.extent)
         check_sizes(*counts, size)
@@ -237,7 +241,7 @@ class LogFile:
         return data
 
     def _read(self, action: Callable[[], Result], prefix: str = "") -> Result:
-        """Return the result of an action; if it fails while a writer may be changing the same bytes, try again."""
+        """Return the result of a function; if it fails while a writer may be changing the same bytes, try again."""
         attempt = 1
         while True:
             try:
@@ -245,13 +249,13 @@ class LogFile:
             except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError) as error:
                 if attempt == ATTEMPTS or not is_locked(self.path):
                     if self._was_changed():
-                        raise LogError(f"{self.path}: was changed by a run while it was read") from error
+                        raise LogError(f"{self.path}: was changed by a run while it was being read") from error
                     raise DamageError(self.path, f"{prefix}{reason(error)}") from error
             attempt += 1
             time.sleep(PAUSE)
 
     def _was_changed(self) -> bool:
-        """Return whether a run has changed the log since it was opened or last refreshed."""
+        """Return whether a run has changed the log since the log was opened or last refreshed."""
         try:
             return commit_of(self.path) != self.commit
         except (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError):
@@ -259,14 +263,14 @@ class LogFile:
 
 
 def _close_all(files: list[Any]) -> None:
-    """Close files in reverse order, and empty the list."""
+    """Close the files in reverse order, and empty the list."""
     while files:
-        with suppress(OSError, RuntimeError):  # HDF5 may read damaged bytes even when it closes a file
+        with suppress(OSError, RuntimeError):  # HDF5 may read damaged bytes even while closing a file
             files.pop().close()
 
 
 def _text_or_integer(item: h5py.HLObject, name: str) -> str | int:
-    """Return an attribute that is a single text or integer. Raises ValueError if it is anything else."""
+    """Return an attribute that is a single string or integer. Raises ValueError if it is anything else."""
     value = item.attrs[name]
     try:
         value = value.decode() if isinstance(value, bytes) else value

@@ -1,6 +1,6 @@
-"""The rule of pairs: a collision of two discs is two event rows with the same time, the smaller id first.
+"""The pair rule: a collision of two discs consists of two event rows with the same time, the smaller id first.
 
-The kind of a row has to agree with its partner, which is a disc, the heat bath, the outside or a wall.
+The kind of a row must agree with its partner, which is a disc, a wall, the heat bath or the outside.
 """
 
 from collections.abc import Mapping
@@ -10,15 +10,15 @@ import numpy as np
 from idealgas.columns import BATH, OUTSIDE, Kind
 
 PARTNERS = {Kind.THERMOSTAT: BATH, Kind.STEERED: OUTSIDE}
-"""Kinds of events that always have a certain partner, which occurs only in events of this kind."""
+"""Kinds of events that always have the same special partner, which occurs in no other kind of event."""
 
 
 def check_pairs(columns: Mapping[str, np.ndarray], start: int) -> None:
-    """Check the rule of pairs. The two rows of a pair may be in different chunks.
+    """Check the pair rule in a chunk; the two rows of a pair may be in different chunks.
 
     Args:
-        columns: chunks of event columns, by name.
-        start: number of their first row.
+        columns: event columns of the chunk, by name.
+        start: number of the first row of the chunk.
 
     Raises:
         ValueError: if one of the two rows of a pair is missing, or the kind of a row disagrees with its partner.

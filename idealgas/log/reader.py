@@ -1,4 +1,4 @@
-"""Log of a run, open for reading. The run may be active, or may have been interrupted or killed."""
+"""Read the log of a run, which may be complete, still running, interrupted or killed."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 
 
 class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
-    """Times and values of the samples by name; each is read from the file when it is first accessed."""
+    """Times and values of the samples, by name of the observable; each is read from the file on first access."""
 
     def __init__(self, file: LogFile, names: Sequence[str], times: Callable[[int], np.ndarray], step: int = 1) -> None:
-        """Take every `step`-th sample of the named observables; `times` reads their common times, given the step."""
+        """Select every `step`-th sample of the named observables; `times` is a function that reads their times."""
         self._file, self._names, self._read_times, self._step = file, tuple(names), times, step
         self._read: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def thinned(self, most: int) -> "Samples":
-        """Return at most `most` of these samples, evenly spaced, beginning with the first one."""
+        """Return at most `most` of these samples, evenly spaced, starting with the first."""
         return Samples(self._file, self._names, self._read_times, max(1, -(-self._file.rows("observables") // most)))
 
     def __getitem__(self, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -61,19 +61,19 @@ class Samples(Mapping[str, tuple[np.ndarray, np.ndarray]]):
 
     @cached_property
     def times(self) -> np.ndarray:
-        """(P,) times of the samples."""
+        """Times of the samples, (P,)."""
         return self._read_times(self._step)
 
 
 def open_log(path: str | os.PathLike[str]) -> "Log":
-    """Open the log of a run for reading. Use it in a `with` statement, or call `close` at the end.
+    """Open the log of a run for reading. Use the log in a `with` statement, or call its `close` method at the end.
 
     Args:
         path: path of the log.
 
     Raises:
-        LogError: if the file is missing, damaged or not a log of idealgas. As most of the file is read on demand, all
-            methods of `Log` may raise it, too.
+        LogError: if the file is missing, damaged or not a log of idealgas. As most of the file is read on demand, any
+            method of `Log` may raise it, too.
     """
     for _ in range(ATTEMPTS):
         before = _last_change(path)
@@ -82,12 +82,12 @@ def open_log(path: str | os.PathLike[str]) -> "Log":
         except LogError:
             if not is_locked(Path(path)) and _last_change(path) == before:
                 raise
-            sleep(PAUSE)  # the run may just have ended, or be removing rows in order to resume the log
+            sleep(PAUSE)  # a run may just have ended, or may be removing rows in order to resume the log
     return Log(LogFile(Path(path)))
 
 
 def _last_change(path: str | os.PathLike[str]) -> tuple[int, ...]:
-    """Return the inode, the size and the time of the last change of a file; an empty tuple if it is missing."""
+    """Return the inode, the size and the modification time of a file; an empty tuple if the file is missing."""
     try:
         status = os.stat(path)
     except OSError:
@@ -96,16 +96,17 @@ def _last_change(path: str | os.PathLike[str]) -> tuple[int, ...]:
 
 
 class Log(LogHistory):
-    """The log of a run, open for reading; a context manager that closes the file. Use `open_log` to create it.
+    """The log of a run, open for reading; a context manager that closes the file. Use `open_log` to create one.
 
-    `len(log)` is the number of event rows: two for a collision of two discs, and one for any other event. `print(log)`
-    shows the scene, the state of the run and the file. Energies and temperatures are in units of mass·length²/time²,
-    with Boltzmann's constant 1. Methods and properties raise LogError if the data that they require are damaged.
+    `len(log)` is the number of event rows: two for each collision of two discs, and one for any other event.
+    `print(log)` shows the scene, the state of the run and the file. Energies and temperatures are in units of
+    mass·length²/time², with Boltzmann's constant equal to 1. Methods and properties raise LogError if the data that
+    they require are damaged.
 
     Attributes:
         path: path of the file.
         complete: whether the run reached its end.
-        unclosed: whether the file was not closed, because it is still being written (see `live`) or its run was killed.
+        unclosed: whether the file is not closed, because it is still being written (see `live`) or its run was killed.
         has_events: whether the log has event rows.
         box: (Lx, Ly), length; the origin is the lower left corner.
         periodic: whether the box is periodic along x and along y.
@@ -123,7 +124,7 @@ class Log(LogHistory):
         return "interrupted"
 
     def __str__(self) -> str:
-        """Return three lines: scene and discs; time span, events and state of the run; file."""
+        """Return three lines: the scene and its discs; the time span, events and state of the run; and the file."""
         from rich.filesize import decimal
 
         scene, names = self.scene, self.discs.species_names
@@ -140,16 +141,16 @@ class Log(LogHistory):
 
     @cached_property
     def observables(self) -> "Samples":
-        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name, read when accessed.
+        """Samples taken during the run: times (P,) and values (P,) or (P, components), by name, read on first access.
 
-        Every log has kinetic_energy, momentum, energy (of the discs), overlap (the deepest, relative to the sum of the
-        two radii), outside (the largest distance by which a disc extends beyond a reflecting side, in diameters), and
-        the numbers of events, disc_collisions, wall_hits and trials since the start. Effects add rotational_energy,
-        potential_energy, piston_position and piston_velocity (of each piston), wall_energy (received from each wall
-        since the start), dissipated_energy (lost since the start in collisions of discs, then at each wall),
-        thermostat_collisions and bath_energy.
+        Every log has kinetic_energy, momentum, energy (of the discs), overlap (deepest overlap of two discs, relative
+        to the sum of their radii), outside (largest distance by which a disc extends beyond a reflecting side, in
+        diameters), and the numbers of events, disc_collisions, wall_hits and trials since the start. Effects add
+        rotational_energy, potential_energy, piston_position and piston_velocity (of each piston), wall_energy (received
+        from each wall since the start), dissipated_energy (lost since the start, first in collisions between discs,
+        then at each wall), thermostat_collisions and bath_energy.
 
-        With `log.pressure`, samples also contain sums, which idealgas/log/README.md describes: kinetic_flow,
+        With `log.pressure`, samples also contain the sums that are described in idealgas/log/README.md: kinetic_flow,
         collision_flow, wall_virial, face_normal_impulse, face_tangential_impulse, face_hits and, in mixtures,
         pair_collisions; with `log.heat_flow` also kinetic_heat_flow and collision_heat_flow.
         """
@@ -158,25 +159,26 @@ class Log(LogHistory):
 
     @cached_property
     def snapshot_times(self) -> np.ndarray:
-        """(S,) times of the snapshots, which `log.snapshot_every` adds to the file in the layout of H5MD."""
+        """Times of the snapshots, (S,); `log.snapshot_every` adds snapshots to the file, in the layout of H5MD."""
         return self._sample_times("particles", 1)
 
     def flights(
         self, edges: ArrayLike | None = None, *, discs: ArrayLike | None = None, columns: Sequence[str] | None = None
     ) -> Iterator[Flights]:
-        """Yield the flights of discs from event to event, in batches of at most 131 072, unless one has more pieces.
+        """Yield the flights of discs from event to event, in batches.
 
-        A flight contains the state of a disc at its start and the event at its end; `Flights` describes the columns.
-        The flights of a disc cover the time from the first edge to the last, and are cut at the edges in between.
+        A flight contains the state of a disc at the start of the flight and the event at its end; `Flights` describes
+        the columns. The flights of a disc cover the time from the first edge to the last and are cut into pieces at the
+        edges in between. A batch has at most 131 072 pieces, unless a single flight has more.
 
         Args:
             edges: (B + 1,), times in increasing order; by default the start and the end of the log.
             discs: ids of the discs to include; all by default.
-            columns: names of the columns to compute; all columns of the log by default, which takes longer.
+            columns: names of the columns to compute; by default all columns of the log, which takes longer.
 
         Raises:
             LogError: if the log has no events, if a column or a disc does not exist, or if the log does not cover the
-                edges.
+                times of the edges.
         """
         return FlightReader(self, edges, discs, columns).batches()
 
@@ -191,15 +193,14 @@ class Log(LogHistory):
     ) -> "DataFrame":
         """Return a table of the log as a pandas DataFrame.
 
-        - "events": one row for each event row of one disc or all discs at times t0 ≤ t < t1, with time, disc, partner,
-          kind (a category: disc, wall, ...) and the state after the event: x, y, vx, vy and, if the scene has these
-          effects, angular_velocity, image_x, image_y.
-        - "flights": one row for each flight of one disc or all discs, cut at `times`, with the columns of `Flights`;
-          kind is missing if the flight does not end with an event.
-        - "discs": one row for each disc at each of `times`, by default the start, with time, disc, species, radius,
-          mass and the state as above.
-        - "observables": one row for each sample at times t0 ≤ t < t1, with a column for each component of
-          `observables`.
+        - "events": one row per event row of one disc or all discs at times t0 ≤ t < t1, with time, disc, partner, kind
+          (a category: disc, wall, ...) and the state after the event: x, y, vx, vy and, if the scene has rotation or
+          periodic sides, angular_velocity or image_x and image_y.
+        - "flights": one row per flight of one disc or all discs, cut at `times`, with the columns of `Flights`; kind is
+          missing if the flight does not end with an event.
+        - "discs": one row per disc at each of `times`, by default the start, with time, disc, species, radius, mass and
+          the state as above.
+        - "observables": one row per sample at times t0 ≤ t < t1, with a column for each component of `observables`.
 
         Requires pandas: .venv/bin/pip install -e ".[notebook]".
 
@@ -211,8 +212,8 @@ class Log(LogHistory):
             times: times in increasing order.
 
         Raises:
-            LogError: if pandas is missing, if the log has no events or does not cover a time, or if an argument does
-                not apply to the table.
+            LogError: if pandas is missing, if the table requires events and the log has none, if the log does not cover
+                a time, or if an argument does not apply to the table.
         """
         check_choice(self.path, table, {"disc": disc, "t0": t0, "t1": t1, "times": times})
         if table == "events":
@@ -235,7 +236,7 @@ Result = TypeVar("Result")
 def takes_path(
     function: Callable[Concatenate[Log, Parameters], Result],
 ) -> Callable[Concatenate[Log | str | os.PathLike[str], Parameters], Result]:
-    """Let a function whose first argument is a log also accept the path of a log."""
+    """Decorate a function whose first argument is a log, so that it also accepts the path of a log."""
 
     @wraps(function)
     def opening(log: Log | str | os.PathLike[str], *args: Parameters.args, **named: Parameters.kwargs) -> Result:

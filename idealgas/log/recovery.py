@@ -1,4 +1,4 @@
-"""Open a log for writing again, after its writer was killed or to continue it from a checkpoint."""
+"""Reopen a log for writing, to close it after its writer was killed or to continue it from a checkpoint."""
 
 import os
 import shutil
@@ -18,12 +18,12 @@ from idealgas.log.reader import Log, open_log
 
 
 def recover(path: str | os.PathLike[str], output: str | os.PathLike[str] | None = None, force: bool = False) -> int:
-    """Close a log that was not closed, so that any HDF5 program can open it. A closed log is left as it is.
+    """Close a log that was left open, so that any HDF5 program can open it. A closed log remains unchanged.
 
     Args:
         path: path of the log.
-        output: path of a copy, which is closed instead of the log itself.
-        force: whether the copy may overwrite another log.
+        output: path of a copy; if given, the copy is closed instead of the log itself.
+        force: whether the copy may overwrite an existing log.
 
     Returns:
         Number of event rows.
@@ -52,10 +52,10 @@ def reopen(
     Args:
         path: path of the log.
         checkpoint: index of the checkpoint; None for the start.
-        commit: commit that the log must have; None for any.
+        commit: newest commit that the log must have; None if any commit is accepted.
 
     Returns:
-        The file, the writers of its tables, and the sequence number of its last commit.
+        The file, the writers of its tables by name, and the sequence number of its last commit.
 
     Raises:
         LogError: if the log has no such checkpoint, is damaged or has another commit.
@@ -73,7 +73,7 @@ def reopen(
             rows |= {"events": int(row), "checkpoints": index + 1}
             rows["particles"] = int(log.snapshot_times.searchsorted(time, "right"))
             rows["changes"] = sum(change.time <= time for change in log.changes)
-            times = log.observables.times  # if two samples have the same time, the second was taken at an end
+            times = log.observables.times  # if two samples have the same time, the second was taken at the end of a run
             rows["observables"] = int(min(times.searchsorted(time) + 1, times.searchsorted(time, "right")))
         keep = {table: rows.get(table, 0) for table in log.commit.rows}
         _check_appendable(log, keep)
@@ -81,7 +81,7 @@ def reopen(
 
 
 def _committed(log: Log) -> dict[str, int]:
-    """Return the number of valid rows of each table, after which a log can be continued."""
+    """Return the number of valid rows in each table, after which the log can be continued."""
     rows = {"events": len(log), "checkpoints": len(log.checkpoints)}
     keep = {table: rows.get(table, stored) for table, stored in log.commit.rows.items()}
     _check_appendable(log, keep)
@@ -89,15 +89,15 @@ def _committed(log: Log) -> dict[str, int]:
 
 
 def _close(path: Path, keep: Mapping[str, int] | None, commit: Commit | None = None) -> None:
-    """Close a log after the first `keep` rows of each table; do nothing for None, as the log is already closed."""
+    """Close a log after the first `keep` rows of each table; do nothing if `keep` is None, for a log already closed."""
     if keep is not None:
         open_after(path, keep, commit)[0].close()
 
 
 def _check_appendable(log: Log, keep: Mapping[str, int]) -> None:
-    """Raise DamageError if a log cannot be continued after these rows. Called before the log is changed."""
+    """Raise DamageError if a log cannot be continued after these rows; to be called before the log is changed."""
     if log.live:
-        return  # opening it will be refused, and its writer may be changing the same bytes
+        return  # reopening it will be refused, and its writer may be changing the same bytes
     try:
         with ReadableFile(log.path) as source, h5py.File(source, "r") as file:
             open_tables(file, Commit.read(file), keep)
@@ -110,13 +110,14 @@ def open_after(
 ) -> tuple[WritableFile, dict[str, TableWriter], int]:
     """Open a log for appending after the first `keep` rows of each table, and remove later rows.
 
-    The commit record is written first, so that the log is valid at any moment. If the commit of the log is not the
-    given one, another run has continued or replaced the log since it was read, and it is left as it is.
+    The commit record is written first, so that the log is valid at every moment. If the newest commit of the log
+    differs from `commit`, another run has continued or replaced the log since it was read; the log then remains
+    unchanged, and LogError is raised.
     """
     try:
         opened = WritableFile(path, commit)
     except ChangedError:
-        raise LogError(f"{path}: was changed by another run while it was read") from None
+        raise LogError(f"{path}: was changed by another run while it was being read") from None
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise _failure(path, error) from error
     try:
@@ -135,8 +136,8 @@ def open_after(
 
 
 def _failure(path: Path, error: Exception) -> UserError:
-    """Return the error for a log that cannot be opened for appending.
+    """Return the error to raise for a log that cannot be opened for appending.
 
-    An error with a number comes from the operating system; any other error means that the file is damaged.
+    An error with an error number comes from the operating system; any other error means that the file is damaged.
     """
     return DamageError(path, reason(error)) if error_number(error) is None else storage_error(path, error)

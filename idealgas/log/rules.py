@@ -1,6 +1,6 @@
-"""Rules for the values of a log: declared types and shapes, and numbers that are finite, in range and in order.
+"""Rules for the values in a log: types and shapes as declared, and numbers that are finite, in range and in order.
 
-Every column is checked when it is read, before its numbers are used. A broken rule raises ValueError.
+Every column is checked when it is read, before its numbers are used. A violated rule raises ValueError.
 """
 
 import math
@@ -30,28 +30,29 @@ from idealgas.log.schema import (
 )
 
 ORDERED = ("time", "row", "epoch", "step", "trial")
-"""Columns that are never negative and never decrease."""
+"""Columns whose values are never negative and never decrease."""
 
 MOST_PACKED = 1100
-"""Largest number of bytes to which one byte of a file may expand; deflate expands it to at most 1032."""
+"""Largest allowed number of bytes per byte of a compressed file; deflate cannot exceed 1032."""
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST, SLOWEST = 1e-100, 1e50, 1e150, 1e-61
-"""Bounds of values, within which products and sums of squares are finite.
+"""Bounds on values, which ensure that products and sums of squares are finite.
 
-LEAST bounds masses and radii from below; MOST bounds masses, radii and velocities from above; LONGEST bounds times,
-spins and observables from above; SLOWEST bounds the largest velocity component of a gas from below.
+LEAST is the lower bound on masses, radii and positive times; MOST is the upper bound on masses, radii and velocities;
+LONGEST is the upper bound on times, angular velocities and observables; SLOWEST is the lower bound on the largest
+velocity component in a moving gas.
 """
 
 Range = tuple[float, float]
 
 
 class Rules:
-    """The rules for the values of one log.
+    """The rules for the values in one log.
 
-    Before any value is used, the datasets themselves are checked against their declarations: `check_fixed` and
-    `check_table` compare types, shapes and sizes. `check` then checks the values of a column whenever a part of it is
-    read: they must be in the range of the column, and times and counts must not decrease.
+    Before any value is used, `check_fixed` and `check_table` compare the types, shapes and sizes of the datasets with
+    their declarations. Whenever part of a column is read, `check` then verifies that its values are in the range of the
+    column and that times and counts do not decrease.
 
     Attributes:
         has_time_steps: function that returns whether the run has time steps; called if a disc is outside the box.
@@ -73,7 +74,7 @@ class Rules:
             discs: number of discs.
             species: number of species.
             walls: number of walls.
-            kinds: optional kinds of events that this log declares.
+            kinds: optional kinds of events that the log declares.
             pistons: number of pistons.
         """
         self.has_time_steps: Callable[[], bool] = lambda: False
@@ -90,7 +91,7 @@ class Rules:
         self._chunk_ends: dict[str, tuple[list[int], list[tuple[float, float]]]] = {}
 
     def check_fixed(self, name: str, stored: StoredColumn) -> None:
-        """Check the type and shape of a dataset that was stored before the run, in a single chunk."""
+        """Check the type and shape of a dataset that was written before the run, in a single chunk."""
         column = self._declared[name]
         self._check_type(column, stored)
         if stored.shape != column.shape or stored.chunk != column.shape:
@@ -122,7 +123,7 @@ class Rules:
             raise ValueError(f"entries of shape {stored.chunk[1:]} (allowed {column.shape})")
 
     def _declaration(self, path: str, stored: StoredColumn) -> Column:
-        """Return the declared type and shape of a column; observables and effects bring columns of their own."""
+        """Return the declared type and shape of a column, which for observables and effects may be any."""
         table, *names = path.split("/")
         if path in self._declared:
             return self._declared[path]
@@ -147,7 +148,7 @@ class Rules:
             )
 
     def check(self, path: str, data: np.ndarray, start: int = 0) -> None:
-        """Check the values of a column. start: row of the first value."""
+        """Check the values of a column. start: row number of the first value."""
         name = path.removesuffix("/value").rpartition("/")[2]
         if not data.size or data.dtype.kind == "S":
             return
@@ -162,8 +163,8 @@ class Rules:
             _check_range(data, *self._range(path, name), start)
         if name == "kind":
             self._check_kinds(data, start)
-        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < SLOWEST:  # whose fourth powers underflow
-            raise ValueError(f"largest component {largest:g} (allowed from {SLOWEST:g} on, or 0)")
+        if path == "discs/velocity" and 0 < (largest := np.abs(data).max()) < SLOWEST:  # their fourth powers underflow
+            raise ValueError(f"largest component {largest:g} (allowed 0 or >= {SLOWEST:g})")
 
     def _range(self, path: str, name: str) -> Range:
         """Return the range of the values of a column."""
@@ -171,19 +172,20 @@ class Rules:
             return self._ranges[name]
         if path.startswith("observables/"):
             return -LONGEST, LONGEST
-        unknown = path not in self._declared and path.startswith("checkpoints/")  # a time of minus infinity means never
+        unknown = path not in self._declared and path.startswith("checkpoints/")  # a time of -inf means never
         return (-math.inf, math.inf) if unknown else (-LARGEST, LARGEST)
 
     def _check_kinds(self, data: np.ndarray, start: int) -> None:
-        """Check that all kinds of events are kinds that this log declares."""
+        """Check that all events are of kinds that this log declares."""
         if (impossible := np.isin(data, self._impossible_kinds)).any():
             row = int(impossible.argmax())
             raise ValueError(f"{Kind(data[row]).name} in row {start + row}, which this log cannot have")
 
     def _check_positions(self, path: str, data: np.ndarray, start: int) -> None:
-        """Check that positions are in the box; in a run with time steps, discs may leave it after the start.
+        """Check that positions are in the box.
 
-        Discs that have left the gas have the position nan.
+        In a run with time steps, discs may be outside the box after the start. Discs that have left the gas have nan as
+        position.
         """
         width, height = self._box
         if self._escapes and path.startswith(("checkpoints/", "particles/")):
@@ -200,22 +202,22 @@ class Rules:
             _check_range(data, -MOST, MOST, start)
 
     def _check_ordered(self, path: str, name: str, data: np.ndarray, start: int) -> None:
-        """Check that values of a chunk are in range and do not decrease, and that no time is positive but tiny."""
+        """Check that the values in a chunk are in range and do not decrease, and that no positive time is too small."""
         low, high = self._range(path, name)
         in_order = bool((data[1:] >= data[:-1]).all())
-        if not (in_order and low <= data[0] and data[-1] <= high):  # in order, the first and last value are the bounds
+        if not (in_order and low <= data[0] and data[-1] <= high):  # ordered values lie between the first and the last
             _check_range(data, low, high, start)
         if not in_order:
             raise ValueError(f"decreases in row {start + 1 + int((data[1:] < data[:-1]).argmax())}")
         self._check_neighbouring_chunks(path, data, start)
         if name == "time" and (later := data[data.searchsorted(0.0, "right") :]).size and later[0] < LEAST:
-            raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0, or from {LEAST:g} on)")
+            raise ValueError(f"{later[0]:g} in row {start + len(data) - len(later)} (allowed 0 or >= {LEAST:g})")
 
     def _check_neighbouring_chunks(self, path: str, data: np.ndarray, start: int) -> None:
-        """Check that values do not decrease from one chunk to the next; only chunks that have been read are compared.
+        """Check that values do not decrease from one chunk to the next, among the chunks that have been read.
 
-        For each column, the first rows of the chunks that have been read, and the first and last value of each, are
-        kept in order of the rows.
+        For each column, the row numbers at which these chunks begin, and the first and last values in each chunk, are
+        kept in ascending order.
         """
         starts, ends = self._chunk_ends.setdefault(path, ([], []))
         index = bisect(starts, start)
@@ -228,7 +230,7 @@ class Rules:
 
 
 def _ranges(box: tuple[float, float], discs: int, species: int, walls: int) -> dict[str, Range]:
-    """Return the smallest and largest value of columns, by their names; the arguments are as in `Rules`."""
+    """Return the smallest and largest allowed values of columns, by name; the arguments are those of `Rules`."""
     return {
         **dict.fromkeys(ORDERED, (0, LARGEST)),
         "time": (0, LONGEST),
@@ -247,7 +249,7 @@ def _ranges(box: tuple[float, float], discs: int, species: int, walls: int) -> d
 
 
 def _declared_columns(discs: int, species: int, walls: int) -> dict[str, Column]:
-    """Return the columns that a log may have, by their paths, except observables and columns of effects."""
+    """Return all columns that a log may have, by path, except observables and columns of effects."""
 
     def per_disc(column: Column) -> Column:
         return column._replace(shape=(discs, *column.shape))
@@ -270,7 +272,7 @@ def _declared_columns(discs: int, species: int, walls: int) -> dict[str, Column]
 
 
 def _check_range(data: np.ndarray, low: float, high: float, start: int) -> None:
-    """Check that all numbers are in a range, and that none is nan."""
+    """Check that all numbers are in a range and none is nan."""
     if data.min() >= low and data.max() <= high:
         return
     wrong = ~((data >= low) & (data <= high))

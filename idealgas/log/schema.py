@@ -1,8 +1,8 @@
-"""The schema of a log: the type, unit and chunk of every dataset, and the creation of an empty file.
+"""The schema of a log: type, unit and chunk size of every dataset, and functions that create an empty file.
 
-A table has one dataset for each column. The tables are `runs`, whose last row contains the scene of the log, `events`,
-`checkpoints`, `observables`, the snapshots in `particles`, and `summary`, which has rows once the run has reached its
-end. The number of valid rows of each table is stored only in the commit record (`commit.py`).
+A table has one dataset per column. The tables are `runs`, whose last row contains the scene of the log, `events`,
+`checkpoints`, `observables`, snapshots in `particles`, `changes`, and `summary`, which has rows once the run has
+reached its end. The number of valid rows in each table is stored only in the commit record (`commit.py`).
 """
 
 import importlib.metadata
@@ -34,10 +34,10 @@ from idealgas.state import Gas
 
 FORMAT = "idealgas log"
 VERSION = 1
-"""Version of the format, to be increased if a reader of the previous version would misread a log."""
+"""Version of the format, to be increased whenever a reader of the previous version would misread a log."""
 H5MD_VERSION = (1, 1)
 PAGES: dict = {"fs_strategy": "page", "fs_page_size": 4096}
-"""Small blocks of the file do not extend over two pages, so that a killed process never leaves half a block."""
+"""Options with which no small block of a file extends over two pages, so a killed process leaves none half written."""
 
 
 class Wall(NamedTuple):
@@ -57,15 +57,15 @@ class Wall(NamedTuple):
 CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Column("epoch", "i8"))
 """Columns of all checkpoints: the time, and the numbers of event rows and of epochs before it."""
 CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
-"""Default columns of a checkpoint with an entry for each disc."""
+"""Default columns of a checkpoint that have an entry for each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
-"""Columns that all observables, or all elements of snapshots, share; the step of an observable counts epochs."""
+"""Columns shared by all observables, or by all elements of snapshots; the step of an observable counts epochs."""
 CHANGE_COLUMNS = (Column("time", "f8", (), "time"), Column("setting", "S256"))
-"""Columns with the changes that a program made to the scene during the run."""
+"""Columns of the changes that a program made to the scene during the run."""
 RUN_COLUMNS = (Column("scene", "S"), Column("command", "S"))
-"""Columns with the scene and command of the run, and of each run that resumed it."""
+"""Columns with the scene and the command line of the run, and of each run that resumed it."""
 SUMMARY_COLUMNS = (Column("name", "S64"), Column("value", "S256"))
-"""Columns of the summary, which has a row for each field; the values are JSON."""
+"""Columns of the summary, which has one row per field; the values are JSON."""
 DISC_COLUMNS = (
     POSITION,
     VELOCITY,
@@ -77,9 +77,9 @@ ID = Column("id", "u4")
 BOX, GRAVITY = Column("box", "f8", (2,), "length"), Column("gravity", "f8", (2,), "length/time^2")
 ENDPOINTS = Column("endpoints", "f8", (2, 2), "length")
 NAME = Column("name", "S")
-"""Columns of the header, which describe the discs, the box, the walls, and the names of walls and species."""
+"""Columns of the header, which describe the discs, the box and the walls, and name the walls and species."""
 MOST_NAME = 1024
-"""Largest size of a name, bytes; it is limited because exported tables repeat names in every row."""
+"""Largest size of a name, bytes, limited because exported tables repeat names in every row."""
 
 ROOT_ATTRIBUTES = ("format", "format_version", "seed", "created")
 PACKAGES = ("numpy", "numba", "h5py", "isal")
@@ -87,17 +87,17 @@ VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
 """Attributes of the root and of the group `versions`."""
 
 SHORTEST_CHUNK = 8192
-"""Smallest number of event rows in a chunk; even a short run may later be resumed to a later end."""
+"""Smallest number of event rows in a chunk, not smaller because even a short run may be resumed to a later end."""
 DISC_RECORDS = 4096
-"""Approximate number of disc records in a chunk of checkpoints or snapshots; a chunk has at least one state."""
+"""Approximate number of discs times states in a chunk of checkpoints or snapshots, which has at least one state."""
 SAMPLES = 1024
 """Number of rows in a chunk of `observables`."""
 SUMMARY_ROWS = 64
 """Number of rows in a chunk of `summary`."""
 SCENE_SLACK = 256
-"""Bytes by which the text of a scene may grow when the run is resumed to another end."""
+"""Number of bytes by which the text of a scene may grow when the run is resumed with a different end."""
 COMMAND_SIZE = 1024
-"""Largest size of a command, bytes."""
+"""Largest size of a command line, bytes."""
 
 
 VECTORS: dict[str, Sequence[str]] = {
@@ -107,16 +107,16 @@ VECTORS: dict[str, Sequence[str]] = {
     **{name: (f"{name}_x", f"{name}_y") for name in ("kinetic_heat_flow", "collision_heat_flow")},
     "collision_flow": tuple(f"collision_flow_{part}" for part in ("xx", "xy", "yy", "yx")),
 }
-"""Names of components that do not depend on the walls."""
+"""Names of the components of event columns and observables, except where they depend on the walls."""
 
 
 def box_walls(box: tuple[float, float]) -> list[Wall]:
-    """Return the sides of the box as walls: left, right, bottom, top."""
+    """Return the sides of the box as walls, in the order left, right, bottom, top."""
     return [Wall(name, *ends) for name, ends in zip(SIDES, side_ends(box), strict=True)]
 
 
 def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
-    """Return the names of the components of event columns and observables. walls: names of the walls of a log."""
+    """Return the names of the components of event columns and observables. walls: names of a log's walls."""
     faces = {
         name: [f"{name}_{face}" for face in face_names(walls)]
         for name in ("face_normal_impulse", "face_tangential_impulse", "face_hits")
@@ -128,13 +128,13 @@ def components(walls: Sequence[str]) -> Mapping[str, Sequence[str]]:
 
 @dataclass(frozen=True)
 class LogLayout:
-    """The layout of a log, which is determined before the run.
+    """The layout of a log, which is fixed before the run.
 
     Attributes:
         walls: walls in the order of their numbers in events.
         boundary: "none" or "periodic", along x and along y.
-        gravity: acceleration between events, length/time².
-        disc_columns: (N,) further constants and initial values of the discs.
+        gravity: acceleration of the discs between events, length/time².
+        disc_columns: additional constants and initial values of the discs, (N,) each.
         event_columns: columns of events; if there are none, the log has no events.
         checkpoint_arrays: columns of checkpoints with an entry for each disc.
         checkpoint_values: all other columns of checkpoints.
@@ -171,7 +171,8 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
     file.create_group("h5md/creator").attrs.update({"name": np.bytes_("idealgas"), "version": np.bytes_(__version__)})
 
     def store(path: str, values: Any, column: Column) -> None:
-        data = values if column.dtype == "S" else np.array(values, column.dtype)  # in one chunk, for its checksum
+        # The data are stored in one chunk, as only chunks have checksums.
+        data = values if column.dtype == "S" else np.array(values, column.dtype)
         _create(file, path, column.unit, layout, data=data, chunks=data.shape)
 
     store("box", gas.box, BOX)
@@ -187,13 +188,13 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
-    """Create an empty table for each kind of rows that has columns, and the commit record, which lists their datasets.
+    """Create all tables that have columns, without rows, and the commit record, which lists their datasets.
 
     Args:
         file: the new file.
         discs: number of discs.
         layout: layout of the log.
-        text_sizes: size of each text in a row of `runs`, bytes.
+        text_sizes: size of each string in a row of `runs`, bytes, by column.
     """
     paths: list[str] = []
 
@@ -209,7 +210,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
         paths.append(path)
 
     def add_elements(group: str, columns: Sequence[Column], rows: int) -> None:
-        """Add elements of H5MD that share their steps and times."""
+        """Add H5MD elements that share their steps and times."""
         first = f"{group}/{columns[0].name}"
         for shared in SAMPLE_COLUMNS:
             add(f"{first}/{shared.name}", shared, rows)
@@ -247,7 +248,7 @@ def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Ma
 
 
 def _create(file: h5py.File, path: str, unit: str, layout: LogLayout, **options: Any) -> None:
-    """Create a dataset with checksums and with the compression of the log."""
+    """Create a dataset with checksums and the compression of the log."""
     if layout.compression == "gzip":
         options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     dataset = file.create_dataset(path, fletcher32=True, **options)
@@ -257,14 +258,14 @@ def _create(file: h5py.File, path: str, unit: str, layout: LogLayout, **options:
 
 @cache
 def _versions() -> dict[str, np.bytes_]:
-    """Return the versions of the programs that write the log."""
+    """Return the versions of idealgas, Python and the packages that write the log."""
     packages = {name: importlib.metadata.version(name) for name in PACKAGES}
     versions = {"idealgas": __version__, "python": platform.python_version(), **packages}
     return {name: np.bytes_(version) for name, version in {**versions, "hdf5": h5py.version.hdf5_version}.items()}
 
 
 def _text(texts: Sequence[str]) -> np.ndarray:
-    """Return UTF-8 strings of fixed length; HDF5 does not store strings of variable length with checksums."""
+    """Return UTF-8 strings of fixed length, because HDF5 does not apply checksums to variable-length strings."""
     coded = [text.encode() for text in texts]
     size = max([1, *map(len, coded)])
     return np.array(coded, h5py.string_dtype("utf-8", size))

@@ -26,8 +26,8 @@ EVENTS = 3000
 KILLED = -9
 WANTED = {
     "another run is writing this file",
-    "was changed by another run while it was read",
-    "was changed by a run while it was read",
+    "was changed by another run while it was being read",
+    "was changed by a run while it was being read",
 }
 """Reasons for which an action may be refused."""
 

@@ -1,4 +1,4 @@
-"""Export logs for other programs: tables of events or discs, and frames of all discs."""
+"""Export logs for other programs, as tables of events, flights or discs or as frames with all discs."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -20,10 +20,10 @@ class Format(NamedTuple):
     """A file format.
 
     Attributes:
-        ending: file name extension.
+        ending: extension of file names.
         write: function that writes frames at given times, all event rows or all flights, and returns their number.
         has_events: whether the format can contain event rows and flights.
-        streams: whether `write` takes an open binary file, which it writes sequentially, instead of a path.
+        streams: whether `write` takes an open binary file, to which it writes sequentially, instead of a path.
     """
 
     ending: str
@@ -57,19 +57,19 @@ def export(
     Args:
         log: log to export, or its path.
         kind: name of a format in FORMATS.
-        output: path of the file, which appears there when it is complete; or an open binary file, such as a pipe, for
-            a format that streams.
-        times: times of the frames in increasing order; None for events or flights.
+        output: path of the file, which appears there once it is complete; or, for a format that streams, an open binary
+            file such as a pipe.
+        times: times of the frames in increasing order; None to export events or flights.
         force: whether to overwrite an existing file of the same format.
         rows: "events", or "flights" for the motion of each disc from one of its events to the next.
-        parts: number of Parquet files into which events or flights are divided in time; `output` is then a new folder.
+        parts: number of Parquet files into which events or flights are divided by time; `output` is then a new folder.
 
     Returns:
-        Number of frames or rows.
+        Number of frames or rows written.
 
     Raises:
-        UserError: if there is no such format.
-        LogError: if the format or the log lacks the requested data, or a package is missing.
+        UserError: if the format or the table of rows is unknown.
+        LogError: if the format or the log cannot provide the requested data, or a required package is missing.
         OutputError: if the file cannot be written.
     """
     if kind not in FORMATS:
@@ -120,14 +120,14 @@ def _target(
 
 
 def frame_times(log: Log, choice: str) -> np.ndarray:
-    """Return the times of frames.
+    """Return the times of the frames that the user chose.
 
     Args:
         log: the log.
-        choice: the number of frames from the start to the end of the log, or `every=DT`.
+        choice: number of frames, evenly spaced from the start to the end of the log, or `every=DT`.
 
     Raises:
-        LogError: for any other choice.
+        LogError: if the choice is invalid.
     """
     every, equals, text = choice.rpartition("=")
     start, end = log.start_time, log.end_time

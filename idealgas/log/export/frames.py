@@ -1,4 +1,4 @@
-"""Write frames of all discs as GSD, extended XYZ, or H5MD in three dimensions."""
+"""Write frames with all discs as GSD, extended XYZ, or H5MD in three dimensions."""
 
 import errno
 import io
@@ -19,17 +19,17 @@ from idealgas.log.reader import Log
 
 
 def write_gsd(log: Log, times: Sequence[float], path: Path) -> int:
-    """Write GSD with HOOMD's schema, in two dimensions and float32, with the origin in the middle of the box.
+    """Write GSD with HOOMD's schema, in two dimensions and float32, with the origin at the centre of the box.
 
-    GSD has no walls, so programs treat its box as periodic. Names of species are written in ASCII. Discs that have left
-    the gas have the position nan.
+    GSD has no walls, so programs treat the box as periodic. Names of species are written in ASCII. The positions of
+    discs that have left the gas are nan.
     """
     import gsd.hoomd
 
     try:
         with gsd.hoomd.open(str(path), "w") as file:
             _append_gsd(file, log, times)
-    except RuntimeError as error:  # raised by gsd if the end of a file cannot be written
+    except RuntimeError as error:  # gsd raises this if the end of a file cannot be written
         raise OSError(errno.EIO, str(error)) from error
     return len(times)
 
@@ -67,14 +67,14 @@ ELEMENTS = frozenset(
 """Symbols of the chemical elements."""
 
 PROPERTIES = "id:I:1:type:S:1:species:S:1:tags:I:1:pos:R:3:velo:R:3:momenta:R:3:radius:R:1:mass:R:1:masses:R:1"
-"""Columns of extended XYZ: OVITO reads `type`, `velo` and `mass`, ASE `species`, `tags`, `momenta` and `masses`."""
+"""Columns of extended XYZ. OVITO reads `type`, `velo` and `mass`; ASE reads `species`, `tags`, `momenta`, `masses`."""
 
 
 def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
     """Write extended XYZ with enough digits to represent every float64 exactly.
 
-    The depth of the box is the largest diameter. `species` is the name of a species if it is the symbol of a chemical
-    element, and X otherwise. Discs that have left the gas are omitted.
+    The depth of the box is the largest diameter. The column `species` contains the name of a disc's species if it is
+    the symbol of a chemical element, and X otherwise. Discs that have left the gas are omitted.
     """
     discs, (width, height) = log.discs, log.box
     pbc = " ".join("T" if periodic else "F" for periodic in (*log.periodic, False))
@@ -99,8 +99,8 @@ def write_extxyz(log: Log, times: Sequence[float], file: BinaryIO) -> int:
 def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
     """Write H5MD 1.1 with a third coordinate equal to zero, in the group that MDAnalysis expects.
 
-    Without periodic sides, the edges of the box are omitted because MDAnalysis would treat them as periodic. Discs that
-    have left the gas have the position nan.
+    If no sides are periodic, the edges of the box are omitted, because MDAnalysis would treat the box as periodic. The
+    positions of discs that have left the gas are nan.
     """
     with _Target(path) as target, h5py.File(target, "w", libver=("v110", "v110")) as file:
         _fill_h5md3d(file, log, times)
@@ -110,10 +110,10 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
 
 class _Target(io.RawIOBase):
-    """A file for HDF5, which would crash if a write failed: after a failure, this file ignores all calls.
+    """A file that hides failures from HDF5, which might crash after a failed write; it then ignores all calls.
 
     Attributes:
-        failure: error of the call that failed; None if there was no failure.
+        failure: error raised by the first call that failed; None if no call failed.
     """
 
     def __init__(self, path: Path) -> None:
@@ -181,11 +181,11 @@ def _fill_h5md3d(file: h5py.File, log: Log, times: Sequence[float]) -> None:
 
 
 def _share_times(group: h5py.Group, name: str) -> None:
-    """Link the steps and times of an element to the steps and times of the positions."""
+    """Let an element share the steps and times of the positions."""
     for shared in ("step", "time") if name != "position" else ():
         group[f"{name}/{shared}"] = group[f"position/{shared}"]
 
 
 def _with_zeros(vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (N, 3) with third component 0 from vectors (N, 2)."""
+    """Return the vectors (N, 2) with a third component of 0, (N, 3)."""
     return np.pad(vectors, ((0, 0), (0, 1)))

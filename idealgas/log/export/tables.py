@@ -16,21 +16,21 @@ from idealgas.log.dataframes import KIND_NAMES, Columns, flat_discs, flat_events
 from idealgas.log.reader import Log
 
 Rows = Literal["events", "flights"]
-"""What the rows of a table describe, unless they describe discs at given times."""
+"""What the rows of a table describe, if not the discs at given times."""
 
 END_OF = {"events": "time", "flights": "end"}
-"""Column with the time by which the rows are ordered."""
+"""Column with the time by which the rows are sorted."""
 
 
 def write_csv(log: Log, times: Sequence[float] | Rows, file: BinaryIO) -> int:
-    """Write CSV with a row per disc and time, event row or flight; return the number of frames or rows."""
+    """Write CSV with one row per disc and time, event row or flight; return the number of frames or rows."""
     from pyarrow import csv
 
     return _write(log, times, partial(csv.CSVWriter, file))
 
 
 def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
-    """Write Parquet with a row per disc and time, event row or flight; return the number of frames or rows."""
+    """Write Parquet with one row per disc and time, event row or flight; return the number of frames or rows."""
     from pyarrow import parquet
 
     return _write(log, times, partial(parquet.ParquetWriter, str(path)))
@@ -39,18 +39,18 @@ def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
 def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = False) -> int:
     """Write event rows or flights as Parquet files in a new folder, and return the number of rows.
 
-    The time of the log is divided into equal parts, and each file has all columns of the rows that end in one part. The
-    folder appears when it is complete.
+    The duration of the log is divided into equal intervals, and each file contains the rows whose times, or whose
+    flights' end times, are in one interval. The folder appears once it is complete.
 
     Args:
         log: log to export.
         what: "events" or "flights".
-        folder: the new folder.
+        folder: path of the new folder.
         number: number of files.
         force: whether to replace an existing folder that contains only such files.
 
     Raises:
-        OutputError: if the folder cannot be written.
+        OutputError: if the folder exists and may not be replaced, or cannot be written.
     """
     import pyarrow
     from pyarrow import parquet
@@ -58,7 +58,7 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
     if folder.exists() and not force:
         raise OutputError(f"{folder}: already exists (use force=True to overwrite)")
     if folder.exists() and not (folder.is_dir() and all(map(_is_part, folder.iterdir()))):
-        raise OutputError(f"{folder}: not overwritten, because it is not a folder that contains only parts")
+        raise OutputError(f"{folder}: not overwritten, because it is not a folder with only export parts")
     edges = np.linspace(log.start_time, log.end_time, number + 1)[1:-1]
     place, writers, rows = beside(folder), list[Any](), 0
 
@@ -91,7 +91,7 @@ def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = F
 
 
 def _replace(place: Path, folder: Path) -> None:
-    """Rename a complete folder to its final name; a previous folder with this name is removed last."""
+    """Rename a complete folder to its final name, and then remove any previous folder with this name."""
     if not folder.exists():
         place.rename(folder)
         return
@@ -110,7 +110,7 @@ def _is_part(path: Path) -> bool:
 
 
 def _write(log: Log, times: Sequence[float] | Rows, make_writer: Callable[[Any], Any]) -> int:
-    """Write blocks of rows. The first block, which may be empty, determines the columns."""
+    """Write blocks of rows. The first block, which may be empty, determines the columns of the file."""
     import pyarrow
 
     writer, rows = None, 0
@@ -134,7 +134,7 @@ def _columns(log: Log, times: Sequence[float] | Rows) -> Iterator[Columns]:
 
 
 def _flight_columns(log: Log) -> Iterator[Columns]:
-    """Yield whole flights; the kind is empty if a flight does not end with an event."""
+    """Yield the columns of uncut flights; `kind` is an empty string if a flight does not end with an event."""
     kinds, species = np.array([*KIND_NAMES, ""]), np.array(log.discs.species_names)
     for columns in flat_flights(log.flights()):
         del columns["block"]

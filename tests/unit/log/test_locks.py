@@ -122,7 +122,7 @@ def test_a_log_that_other_code_has_open_or_has_changed_is_refused(tmp_path):
     with LogWriter.resume(path, 0) as writer:
         write_rows(writer, writer.rows + 500)
     before = path.read_bytes()
-    with pytest.raises(LogError, match="was changed by another run while it was read"):
+    with pytest.raises(LogError, match="was changed by another run while it was being read"):
         LogWriter.resume(path, commit=commit)
     assert path.read_bytes() == before
 
@@ -150,7 +150,7 @@ def test_a_reader_of_a_log_that_a_run_continues(tmp_path):
     path = write_log(tmp_path / "run.h5", 200_000)
     with open_log(path) as log:
         with LogWriter.resume(path, 3) as writer:
-            with pytest.raises(LogError, match="was changed by a run while it was read"):
+            with pytest.raises(LogError, match="was changed by a run while it was being read"):
                 check(log)
             write_rows(writer, 250_000)
         log.refresh()

@@ -90,7 +90,7 @@ def test_parts_of_a_table(log, rows, tmp_path, monkeypatch):
     assert export(log, "parquet", tmp_path / "parts", rows=rows, parts=2, force=True) == number
     assert len(list((tmp_path / "parts").iterdir())) == 2
     (tmp_path / "parts" / "mine.txt").touch()
-    with pytest.raises(OutputError, match="not a folder that contains only parts"):
+    with pytest.raises(OutputError, match="not a folder with only export parts"):
         export(log, "parquet", tmp_path / "parts", rows=rows, parts=2, force=True)
 
 
