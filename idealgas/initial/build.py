@@ -15,7 +15,7 @@ from idealgas.toml.issues import Issue
 
 
 def make_gas(scene: Scene) -> Gas:
-    """Make the discs of a scene at time 0: given discs have the first ids, followed by the species in order.
+    """Make the discs of a scene at time 0; explicit discs have the first ids, followed by the species in order.
 
     Raises:
         SceneError: the discs cannot be placed, a disc is in static contact with a wall or piston against which it is
@@ -23,7 +23,7 @@ def make_gas(scene: Scene) -> Gas:
     """
     radius, mass, species, names = disc_constants(scene)
     position, velocity = _positions(scene, radius), _all_velocities(scene, mass, species, names)
-    if rate := scene.properties.shear:  # given velocities remain unchanged
+    if rate := scene.properties.shear:  # explicit velocities remain unchanged
         explicit = [names.index(s.name) for s in scene.species if s.velocities is not None]
         drawn = ~np.isin(species, explicit)
         drawn[: 0 if scene.draws_velocities else len(scene.explicit_discs)] = False
@@ -44,7 +44,7 @@ def make_gas(scene: Scene) -> Gas:
 
 
 def disc_constants(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...]]:
-    """Radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
+    """Return the radius (N,), mass (N,) and species (N,) of each disc of a scene, and the names of the species."""
     given, tables = scene.explicit_discs, [s.name for s in scene.species]
     names = (*(name for name in given.names if name not in tables), *tables)
     number = {name: k for k, name in enumerate(names)}
@@ -69,7 +69,7 @@ def _radii(species: Species, seed: int) -> np.ndarray:
 
 
 def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Velocities (N, 2) of all discs, length/time; given discs keep their velocities unless the scene draws new ones.
+    """Velocities (N, 2) of all discs, length/time; explicit discs keep theirs unless the scene draws new velocities.
 
     mass, species: (N,) of all discs. names: names of the species.
     """
@@ -83,9 +83,10 @@ def _all_velocities(scene: Scene, mass: np.ndarray, species: np.ndarray, names: 
 
 
 def _velocities(species: Species, mass: np.ndarray, random: "np.random.Generator") -> np.ndarray:
-    """Velocities (count, 2) of a species, length/time; for a temperature T the kinetic energy is count * T.
+    """Velocities (count, 2) of the discs of a species, length/time.
 
-    At a temperature, the total momentum of two or more discs is 0. mass: (count,) of the discs.
+    If the species has a temperature T, the kinetic energy is count * T, and the total momentum of two or more discs is
+    0. mass: (count,) of the discs.
     """
     n = species.count
     if n == 0:
@@ -105,7 +106,7 @@ def _velocities(species: Species, mass: np.ndarray, random: "np.random.Generator
 
 
 def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length; compressed discs start from random positions at which they are smaller."""
+    """Positions (N, 2), length; if discs are compressed, all are first placed with smaller radii."""
     if not any(s.placement == "compressed" and s.count for _, s in scene.placed):
         return _placed(scene, radius)
     from idealgas.initial.compression import compress, loose_scale
@@ -121,7 +122,7 @@ def _positions(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
-    """Positions (N, 2), length: first explicit discs, then a lattice for each region, then discs at random."""
+    """Positions (N, 2), length; explicit discs are placed first, then discs on lattices, then discs at random."""
     from idealgas.initial import lattices, placement  # compiled code, which readers of logs do not need
     from idealgas.initial.room import make_room
 
@@ -190,6 +191,6 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
 
 
 def _no_room(scene: Scene, species: int, how: str, got: str, allowed: str) -> SceneError:
-    """Error for a species whose discs do not find enough room; how: kind of placement."""
+    """Return the error for a species whose discs do not fit into the box; how: kind of placement."""
     keys = (*(("species", species, key) for key in ("count", "radius", "region")), ("box", "size"))
     return SceneError(scene.report([Issue(keys, f"no room for all discs {how}", got, allowed)]))

@@ -1,4 +1,4 @@
-"""Dense states by compression: discs collide while their radii grow at a constant rate, until they reach their size.
+"""Dense states from compression: discs collide while their radii grow at a constant rate to their final values.
 
 This is the event-driven algorithm of Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990), in a periodic box; only
 the initial positions and velocities are random. The compression prepares the positions at time 0 of a run: all discs
@@ -17,7 +17,7 @@ LOOSE = 0.5
 """Packing fraction of the random positions from which the compression starts."""
 
 RATE = 5e-3
-"""Rate at which the mean radius grows, in units of the root mean square of a velocity component."""
+"""Rate at which the mean radius grows, in units of the root-mean-square velocity component."""
 
 GAP = 1e-9
 """Relative growth beyond the final radius, so that rounding does not cause overlaps at the start of the run."""
@@ -26,7 +26,7 @@ SLACK = 0.3
 """Gap up to which neighbours are listed, in diameters of the largest disc."""
 
 RESCALE_INTERVAL, MAX_COLLISIONS = 4, 5_000
-"""Numbers of collisions per disc after which velocities are rescaled, and after which the discs count as jammed."""
+"""Numbers of collisions per disc after which velocities are rescaled, and after which discs are considered jammed."""
 
 
 class Growing(NamedTuple):
@@ -42,7 +42,7 @@ class Growing(NamedTuple):
         first: (N + 1,) i8, index in `neighbour` at which the neighbours of each disc begin.
         neighbour: i8, discs that a disc may meet before the next synchronization.
         next_time: (N,) f8, time of the next event of each disc.
-        partner: (N,) i8, partner in this event; -1 if the disc may leave the range of its neighbours instead.
+        partner: (N,) i8, partner in this event; -1 if at this time the disc may instead meet a disc that is not listed.
         collisions: (N,) i8, number of collisions of each disc.
         known: (N,) i8, number of collisions of the partner when the event was predicted.
     """
@@ -62,14 +62,14 @@ class Growing(NamedTuple):
 
 
 def loose_scale(radius: np.ndarray, box: tuple[float, float]) -> float:
-    """Fraction of the final radii at which the discs start; 1 if the final packing fraction is low enough."""
+    """Return the fraction of the final radii with which the discs start; 1 if the packing fraction is low enough."""
     return min(math.sqrt(LOOSE * box[0] * box[1] / (math.pi * float(radius @ radius))), 1.0)
 
 
 def compress(
     position: np.ndarray, radius: np.ndarray, box: tuple[float, float], scale: float, random: np.random.Generator
 ) -> float:
-    """Let discs grow from scale * radius to radius; return the fraction of the radius that they reach before they jam.
+    """Let discs grow from scale * radius to radius; return the fraction of the radius reached, 1 unless they jam.
 
     position: (N, 2), changed in place, length. radius: (N,), length. random: source of the initial velocities.
     """
@@ -94,7 +94,7 @@ def compress(
 def _synchronised(
     position: np.ndarray, velocity: np.ndarray, radius: np.ndarray, period: np.ndarray, reach: float
 ) -> Growing:
-    """Return the discs at their positions, with those neighbours of each that are closer than `reach` (length)."""
+    """Return the discs at local time 0, with a list of the neighbours of each that are closer than `reach` (length)."""
     from scipy.spatial import cKDTree
 
     n = len(radius)
@@ -119,7 +119,7 @@ def _synchronised(
 
 @inline
 def _time_to_contact(discs, i, j, scale, rate):
-    """Time at which discs i and j touch; infinite if they never do. scale: fraction of the final radii at time 0."""
+    """Time at which discs i and j touch; infinite if they never touch. scale: fraction of the final radii at time 0."""
     now = max(discs.time[i], discs.time[j])
     since_i, since_j = now - discs.time[i], now - discs.time[j]
     vx = discs.velocity[i, 0] - discs.velocity[j, 0]

@@ -1,6 +1,6 @@
-"""Discs in static contact with a wall against which they are pressed, which would collide endlessly at one instant.
+"""Discs in static contact with a wall against which they are pressed; they would collide endlessly at one instant.
 
-Only a disc that touches the wall exactly and has no velocity along the normal is in static contact; any other disc
+A disc is in static contact only if it touches the wall exactly and has no velocity along the normal; any other disc
 moves freely or bounces.
 """
 
@@ -24,7 +24,7 @@ def static_contact_issues(scene: Scene, gas: Gas) -> Iterator[Issue]:
             key = _key_of(scene, gas, int(i))
             if key not in reported:
                 reported.add(key)
-                got = f"disc {i} in contact, without a velocity along the normal"
+                got = f"disc {i} in contact, with no velocity along the normal"
                 yield Issue((key,), f"at rest on {name}, against which it is pressed", got, "a gap or a velocity")
 
 
@@ -59,12 +59,12 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _first(accelerations: np.ndarray) -> np.ndarray:
-    """First component that is not 0 of each series along axis 0; it moves a disc away from a wall or presses it on."""
+    """Return the first nonzero value of each series along axis 0, which moves a disc off a wall or presses it on."""
     return np.take_along_axis(accelerations, (accelerations != 0).argmax(axis=0)[None, ...], axis=0)[0]
 
 
 def _key_of(scene: Scene, gas: Gas, i: int) -> Key:
-    """Key of the scene that sets disc i's velocity."""
+    """Return the key of the scene that sets disc i's velocity."""
     if i < len(scene.explicit_discs) and not scene.draws_velocities:
         return ("start", "velocities") if scene.start else ("disc", i, "velocity")
     names = [s.name for s in scene.species]

@@ -1,4 +1,4 @@
-"""Columns of discs from files: .npz, .csv, .gsd and .extxyz, including files from `idealgas export`."""
+"""Reading columns of discs from .npz, .csv, .gsd and .extxyz files, including those written by `idealgas export`."""
 
 import csv
 import math
@@ -30,11 +30,11 @@ LONGEST_LINE = 2**17
 """Largest number of characters in a line; Python's csv module has the same limit for a field."""
 
 ROWS = 2**14
-"""Number of rows of a text file that are in memory as text at the same time."""
+"""Number of rows of a text file that are held in memory as text at any time."""
 
 
 def read_state(path: Path, time: Instant) -> State:
-    """Read the columns of the discs in a file at a time. Raises StartError if they cannot be read."""
+    """Read the columns of the discs at a given time from a file. Raises StartError if they cannot be read."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise StartError("file", "unknown kind of file", path.name, ", ".join(READERS))
@@ -76,7 +76,7 @@ def _inside(columns: dict[str, Any]) -> dict[str, Any]:
     def kept(values: Any) -> Any:
         if isinstance(values, list):
             return list(compress(values, here))
-        return np.asarray(values)[here] if np.ndim(values) else values  # a single number holds for all discs
+        return np.asarray(values)[here] if np.ndim(values) else values  # a single number applies to all discs
 
     return {name: kept(values) for name, values in columns.items()}
 
@@ -101,11 +101,11 @@ def _npz(path: Path, time: Instant) -> State:
 
 
 def _shape_of(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
-    """Shape and type of an array in a .npy file, from its header."""
+    """Return the shape and type of the array in a .npy file, from the header of the file."""
     read = {1: np.lib.format.read_array_header_1_0, 2: np.lib.format.read_array_header_2_0}
     major, _ = np.lib.format.read_magic(file)
     if major not in read:
-        raise ValueError(f"version {major} of its format is not known")
+        raise ValueError(f"unknown version {major} of the .npy format")
     shape, _, dtype = read[major](file)
     return shape, dtype
 
@@ -116,7 +116,7 @@ def _check_column(name: str, shape: tuple[int, ...], dtype: np.dtype) -> None:
     if name not in COLUMNS:
         raise StartError("file", "unknown column", name, ", ".join(COLUMNS))
     if name != "species" and dtype.kind not in "biuf":
-        raise StartError("file", f"column {name} not of real numbers", str(dtype), "numbers such as float64")
+        raise StartError("file", f"column {name} does not contain real numbers", str(dtype), "numbers such as float64")
     if (size := math.prod(shape) * dtype.itemsize) > MOST_COLUMN_BYTES:
         raise StartError("file", f"column {name} too large", f"{size:,} bytes", f"<= {MOST_COLUMN_BYTES:,}")
 
@@ -131,7 +131,7 @@ def _single(columns: dict[str, Any]) -> float:
 
 
 def _lines(file: IO[str]) -> Iterator[str]:
-    """Yield the lines of a text; ValueError if a line is longer than LONGEST_LINE."""
+    """Yield the lines of a text file; ValueError if a line is longer than LONGEST_LINE."""
     while line := file.readline(LONGEST_LINE + 1):
         if len(line) > LONGEST_LINE:
             raise ValueError(f"a line of more than {LONGEST_LINE:,} characters")
@@ -148,18 +148,18 @@ def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
 
 
 class _Moment:
-    """State at the wanted time, or at the last time for "end", from parts of a file with their times."""
+    """State at the requested time, or at the last time for "end", assembled from parts of a file."""
 
     def __init__(self, wanted: Instant) -> None:
         self._wanted, self._range = wanted, (math.inf, -math.inf)
         self.begin(-math.inf)
 
     def begin(self, time: float) -> None:
-        """Discard the previous parts, because the next parts belong to another time or a later frame."""
+        """Discard all previous parts, because the parts that follow belong to another time or a later frame."""
         self.time, self._parts, self._discs = time, list[dict[str, np.ndarray]](), 0
 
     def wants(self, time: float) -> bool:
-        """Whether parts at this time may belong to the wanted state."""
+        """Whether parts at this time may belong to the requested state."""
         self._range = min(self._range[0], time), max(self._range[1], time)
         return time >= self.time if self._wanted == "end" else time == self._wanted
 
@@ -170,7 +170,7 @@ class _Moment:
         self._parts.append(columns)
 
     def columns(self) -> dict[str, Any]:
-        """Return the columns of the state, columns of text as lists. Raises StartError if the file has no such time."""
+        """Return the columns of the state, text as lists. Raises StartError if the file has no such time."""
         if not self._parts:
             allowed = "{:g} to {:g}".format(*self._range) if self._range[0] < math.inf else "a file with discs"
             raise StartError("time", "no such time in the file", f"{self._wanted}", allowed)
@@ -185,7 +185,7 @@ def _csv(path: Path, time: Instant) -> State:
         names = next(rows, [])
         known = {"x", "y", "vx", "vy", *COLUMNS[2:], *LABELS}
         if wrong := [name for name in names if name not in known] or [n for n in names if names.count(n) > 1]:
-            raise StartError("file", "unknown column, or one that appears twice", wrong[0], ", ".join(sorted(known)))
+            raise StartError("file", "unknown or repeated column", wrong[0], ", ".join(sorted(known)))
         if "time" not in names:
             if time != "end":
                 raise StartError("time", "no column time in the file", f"{time:g}", '"end"')
@@ -243,7 +243,7 @@ def _gsd(path: Path, time: Instant) -> State:
 
 
 _NAMES = {"pos": "position", "velo": "velocity", "radius": "radius", "mass": "mass", "masses": "mass"}
-"""Columns of a state, by property of extended XYZ."""
+"""Column of a state that corresponds to each property of extended XYZ."""
 
 
 def _extxyz(path: Path, time: Instant) -> State:
@@ -271,7 +271,7 @@ def _extxyz(path: Path, time: Instant) -> State:
 
 
 def _places_of(head: str) -> dict[str, tuple[int, int, str]]:
-    """First column, column after the last, and type of each property in the second line of a frame, by name."""
+    """Return the first column, the column after the last, and the type of each property, from a frame's second line."""
     if (stated := re.search(r"\bProperties=(\S+)", head)) is None:
         raise ValueError("no Properties in the second line")
     parts, first = stated[1].split(":"), 0

@@ -13,15 +13,15 @@ from idealgas.scene.lattice import TriangularLattice
 def place_on_lattice(
     room: Room, position: np.ndarray, radius: np.ndarray, bounds: np.ndarray, placed: np.ndarray, ids: np.ndarray
 ) -> bool:
-    """Place discs on a lattice spaced for the largest of them; return whether there is room for all.
+    """Place discs on a lattice with room for the largest of them at each site; return whether all discs fit.
 
-    Sites that are already occupied are left out; the free sites are used evenly.
+    Occupied sites are left out, and the discs are distributed evenly over the free sites.
 
     Args:
         room: room for the discs.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
-        bounds: (4,), x0, y0, x1, y1 for the centre of the largest disc, length.
+        bounds: (4,), limits x0, y0, x1, y1 of the centre of the largest disc, length.
         placed: ids of the discs that are already in place.
         ids: ids of the discs to be placed.
     """
@@ -44,7 +44,7 @@ def place_on_lattice(
 
 
 def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarray, ids: np.ndarray) -> bool:
-    """Whether the discs `ids` overlap neither walls nor the discs `placed` nor each other.
+    """Whether the discs `ids` do not overlap walls, the discs `placed`, or each other.
 
     position: (N, 2), length. radius: (N,), length.
     """
@@ -55,7 +55,7 @@ def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarra
 
 
 def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the indices (n,) of both discs of all pairs that overlap, in parts; position: (M, 2), radius: (M,)."""
+    """Yield, in chunks, the indices (n,) of both discs of all overlapping pairs; position: (M, 2), radius: (M,)."""
     for i, k in near_pairs(position, radius, (room.period_x, room.period_y)):
         (dx, dy), contact = (position[i] - position[k]).T, radius[i] + radius[k]
         dx = nearest_image(dx, room.period_x, room.period_x > 0)
@@ -65,10 +65,10 @@ def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterato
 
 
 def make_lattice(low: np.ndarray, high: np.ndarray, diameter: float, sites: int) -> np.ndarray | None:
-    """Return at least `sites` points (M, 2) from `low` to `high`, no two closer than a diameter; None without room.
+    """Return a lattice of at least `sites` points (M, 2), no two closer than a diameter; None if there is no room.
 
-    low, high: (2,), length. The lattice is square if a square lattice fits, otherwise triangular; its points are in
-    rows from below, and fill the whole region.
+    low, high: (2,), lower left and upper right corners of the region, length. The lattice is square if a square lattice
+    fits, otherwise triangular. It fills the whole region, and its points are listed row by row from the bottom.
     """
     width, height = high - low + diameter
     rows = np.arange(1, min(int(2 * height / diameter), sites) + 1)
@@ -100,7 +100,10 @@ def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> n
 
 
 def lattice_sites(lattice: TriangularLattice) -> np.ndarray:
-    """Sites (M, 2) of a triangular lattice in a periodic box, half a step from its lower left corner."""
+    """Return the sites (M, 2), length, of a triangular lattice that fills a periodic box.
+
+    The first site is a quarter of a spacing, along the rows, and half a row from the lower left corner.
+    """
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(lattice.columns), np.arange(lattice.rows)))
     along, across = (column + row % 2 / 2 + 0.25) * lattice.spacing, (row + 0.5) * lattice.height
     return np.column_stack((along, across) if lattice.axis == 0 else (across, along))

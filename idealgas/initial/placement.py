@@ -1,8 +1,9 @@
-"""Random initial positions without overlaps of discs or walls.
+"""Random initial positions at which discs overlap neither each other nor walls.
 
-Random placement is sequential addition, the largest discs first. Whenever a position is refused, one of the discs
-placed so far makes a Metropolis step. The gas therefore stays close to equilibrium and does not jam at the packing
-fraction 0.547 of pure random addition (Feder, J. Theor. Biol. 87, 237 (1980)). At low density refusals are rare.
+Discs are added one after another at random positions, the largest discs first. Whenever a position is refused, one of
+the discs placed so far makes a Metropolis step. The gas therefore stays close to equilibrium and does not jam at a
+packing fraction of 0.547, as it would with random sequential addition alone (Feder, J. Theor. Biol. 87, 237 (1980)). At
+low density refusals are rare.
 """
 
 from typing import Any
@@ -17,10 +18,10 @@ REFUSALS_PER_DISC = 3_000
 """Mean number of refused positions per disc after which random placement fails."""
 
 MIN_REFUSALS = 3_000_000
-"""Number of refused positions, of all discs together, before which random placement never fails."""
+"""Total number of refused positions before which random placement never fails."""
 
 FEW, FEW_REFUSALS = 10_000, 20_000
-"""Numbers of discs, at one disc per cell, and of refused positions up to which Python is faster than compilation."""
+"""Numbers of discs, with one per cell, and of refused positions up to which Python is faster than compiling."""
 
 
 def place_at_random(
@@ -42,7 +43,7 @@ def place_at_random(
         room: room for the discs.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
-        bounds: (N, 4), x0, y0, x1, y1 for the centre of each disc, length.
+        bounds: (N, 4), limits x0, y0, x1, y1 of the centre of each disc, length.
         placed: ids of the discs that are already in place.
         ids: ids of the discs to be placed.
         random: source of random numbers.
@@ -67,8 +68,8 @@ def place_at_random(
 
 
 def _linked_lists(room: Room, position: np.ndarray, placed: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """First of the discs `placed` in each cell, and the next disc in the cell after each of n discs; -1 for none."""
-    placed = placed[::-1]  # the last come first, because discs on lattices are in the way most often
+    """Return the first of the discs `placed` in each cell, and the next in its cell for each of n discs; -1 for none."""
+    placed = placed[::-1]  # the last come first, because positions are most often blocked by discs on lattices
     cell = cells_of(room, position[placed])
     order = np.argsort(cell, kind="stable")
     cell, placed = cell[order], placed[order]
@@ -88,7 +89,7 @@ def _cell_of(room, x, y):
 
 @inline
 def _is_free(room, lists, radius, x, y, i):
-    """Whether disc i at (x, y) would overlap neither walls nor solids nor other discs."""
+    """Whether disc i at (x, y) would not overlap walls, solids or other discs."""
     first, behind, xs, ys = lists
     column, row = _cell_of(room, x, y)
     wraps_x, wraps_y = room.period_x > 0.0, room.period_y > 0.0
@@ -111,7 +112,7 @@ def _is_free(room, lists, radius, x, y, i):
 
 @inline
 def _take_out(room, lists, i):
-    """Take disc i out of the list of its cell."""
+    """Remove disc i from the list of its cell."""
     first, behind, xs, ys = lists
     column, row = _cell_of(room, xs[i], ys[i])
     cell = column * room.rows + row
@@ -125,7 +126,7 @@ def _take_out(room, lists, i):
 
 
 def insert(room, lists, radius, bounds, ids, random, placed, max_refusals):
-    """Place discs at random in the order of `ids`, of which the first `placed` are in place; return the new number.
+    """Place discs at random in the order of `ids`, the first `placed` being in place; return the new number in place.
 
     lists: (first, behind, xs, ys), the linked lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see
     `place_at_random`. In Python all of these are lists; in compiled code they are arrays.

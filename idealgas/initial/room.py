@@ -1,4 +1,4 @@
-"""Room for discs: the box, its walls and its solids, in cells for the search of discs and walls that overlap."""
+"""Room for discs: the box, its walls and its solids, divided into cells to find discs and walls that overlap."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -73,7 +73,7 @@ def make_room(
     walls: Sequence[Any] = (),
     solids: Mapping[str, Sequence[Any]] = NO_SOLIDS.walls,
 ) -> Room:
-    """Make the room for discs.
+    """Make the room in which discs are to be placed.
 
     Args:
         box: width and height, length.
@@ -98,7 +98,7 @@ def make_room(
 
 
 def for_kernels(room: Room) -> Room:
-    """Return the same room with arrays of walls, for compiled code."""
+    """Return the same room for compiled code, with arrays in place of the lists of walls."""
     wall, inside, outside = (np.array(a, WALL).view(np.recarray) for a in (room.wall, room.inside, room.outside))
     return room._replace(wall=wall, inside=inside, outside=outside)
 
@@ -110,13 +110,13 @@ def _numbers(walls: Sequence[Any]) -> np.ndarray:
 
 
 def _placed(rows: np.ndarray) -> list[PlacedWall]:
-    """Convert the numbers (W, 12) of `_numbers` to walls."""
+    """Convert the rows (W, 12) of `_numbers` to walls."""
     columns = np.hstack((rows[:, :2], rows[:, 2:4] - rows[:, :2], rows[:, 4:]))
     return [PlacedWall(x, y, dx, dy, radius, Arc(*arc)) for x, y, dx, dy, radius, *arc in columns.tolist()]
 
 
 def _images(walls: np.ndarray, period: np.ndarray) -> np.ndarray:
-    """Numbers (W, 12) of walls and of their images next to the box along periodic axes."""
+    """Return the rows (W, 12) of `_numbers` for walls and for their images next to the box along periodic axes."""
     shifts = [[-length, 0.0, length] if length else [0.0] for length in period]
     remainder = np.zeros(walls.shape[1] - 4)
     return np.concatenate([walls + np.array((dx, dy, dx, dy, *remainder)) for dx in shifts[0] for dy in shifts[1]])
@@ -153,7 +153,7 @@ def is_clear(room: Room, position: np.ndarray, radius: np.ndarray) -> np.ndarray
 
 @inline
 def meets_wall(room, cell, x, y, reach):
-    """Whether a disc of radius `reach` at the point (x, y) of a cell would overlap a wall."""
+    """Whether a disc of radius `reach` at the point (x, y) in a cell would overlap a wall."""
     for k in range(room.wall_start[cell], room.wall_start[cell + 1]):
         wall = room.wall[room.wall_item[k]]
         contact = reach + wall.radius
@@ -164,7 +164,7 @@ def meets_wall(room, cell, x, y, reach):
 
 @inline
 def is_in_solid(room, x, y):
-    """Whether the point (x, y) is in a solid; numbers or arrays."""
+    """Whether the point (x, y) is in a solid; x and y may be numbers or arrays."""
     inside = False
     for k in range(len(room.inside)):
         wall = room.inside[k]

@@ -72,8 +72,11 @@ def test_rows_of_a_time_in_any_order_and_number(tmp_path):
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
-        ({"position": np.ones((2, 2), complex)}, "column position not of real numbers (got complex128; "),
-        ({"position": np.ones((2, 2)), "radius": np.array("0.1")}, "column radius not of real numbers (got <U3; "),
+        ({"position": np.ones((2, 2), complex)}, "column position does not contain real numbers (got complex128; "),
+        (
+            {"position": np.ones((2, 2)), "radius": np.array("0.1")},
+            "column radius does not contain real numbers (got <U3; ",
+        ),
         ({"position": np.ones((2, 2)), "radis": np.ones(2)}, "unknown column (got radis; "),
         ({"position": np.zeros((2_000_001, 2), np.int8)}, "too many discs (got 2,000,001; allowed <= 2,000,000)"),
         ({"position": np.zeros((2_000_000, 135), np.int8)}, "column position too large (got 270,000,000 bytes; "),
