@@ -68,7 +68,7 @@ def place_at_random(
 
 
 def _linked_lists(room: Room, position: np.ndarray, placed: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first of the discs `placed` in each cell, and the next in its cell for each of n discs; -1 for none."""
+    """Return the first of the discs `placed` in each cell, and the next disc after each of n discs; -1 for none."""
     placed = placed[::-1]  # the last come first, because positions are most often blocked by discs on lattices
     cell = cells_of(room, position[placed])
     order = np.argsort(cell, kind="stable")
