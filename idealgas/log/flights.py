@@ -1,7 +1,7 @@
-"""Flights: the motion of each disc between two of its events, in bounded memory.
+"""Flights: the motion of each disc between two successive events of the disc, computed in bounded memory.
 
-An event row contains the state of a disc after an event. A flight also contains the state before that event, which
-follows from the previous event of the disc. A single pass over the rows joins the two.
+An event row contains the state of a disc after an event. A flight also contains the state before the event, which
+follows from the disc's previous event. A single pass over the rows joins the two.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -19,12 +19,12 @@ from idealgas.physics.motion import path_length, position_after, velocity_after
 from idealgas.physics.periodic import wrapped
 
 BATCH = 2 * BLOCK
-"""Largest number of flights in a batch, unless a single flight is cut into more pieces."""
+"""Largest number of pieces of flights in a batch, unless a single flight has more."""
 
 NO_EVENT = 255
-"""Kind of a flight that does not end with an event, because it is cut at an edge or still open at the last edge."""
+"""Kind of a flight that does not end with an event, because it is cut at an edge or not over at the last edge."""
 NOBODY = -(2**31)
-"""Partner of the disc at the end of a flight that does not end with an event."""
+"""Value of `partner` for a flight that does not end with an event."""
 
 FLIGHT_COLUMNS = (
     Column("disc", "u4"),
@@ -46,7 +46,7 @@ FLIGHT_COLUMNS = (
     Column("angular_velocity", "f8", (), "1/time"),
     Column("new_angular_velocity", "f8", (), "1/time"),
 )
-"""All columns that flights may have, in the order of the fields of `Flights`."""
+"""All columns that flights can have, in the order of the fields of `Flights`."""
 
 _NEEDS: dict[str, tuple[str, ...]] = {
     "ends_in_collision": ("kind",),
@@ -59,7 +59,7 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "image": ("position", "velocity"),
     "new_angular_velocity": ("angular_velocity",),
 }
-"""Columns from which a column is computed, by name, where a flight is cut at an edge."""
+"""Columns from which a column is computed where a flight is cut at an edge, by name of the column."""
 
 _READ = {
     "kind": "kind",
@@ -72,38 +72,39 @@ _READ = {
     "angular_velocity": "angular_velocity",
     "new_angular_velocity": "angular_velocity",
 }
-"""Event column that contains the values of a column of flights."""
+"""Event column that contains the values of a flight column, by name of the flight column."""
 
 _STATE = {"position", "velocity", "image", "angular_velocity"}
-"""Columns of the state at the start of a flight."""
+"""Columns that describe the state at the start of a flight."""
 
 
 class Flights(NamedTuple):
-    """Flights of discs, ordered by the events at their ends; flights that are still open come last.
+    """Flights of discs, ordered by the events at their ends; flights that are not over at the last edge come last.
 
-    The two flights that end in a collision of two discs are in the same batch, the flight of the smaller id first, and
-    only pieces of the second flight lie between their ends. The pieces of a flight are consecutive. A column that was
-    not requested is None. Columns may share memory: do not write into them.
+    The two flights that end in a collision of two discs are in the same batch, with the flight of the smaller id first;
+    only pieces of the second flight lie between their last pieces. The pieces of a flight are consecutive. A column
+    that was not requested is None. Columns may share memory, so do not modify them.
 
     Attributes:
         disc: (n,) u4, id of the disc.
-        species: (n,) u2, number of its species.
+        species: (n,) u2, number of the disc's species.
         block: (n,) i8, number of the interval between two edges, from 0; an event at an edge belongs to the
             interval that ends there.
-        start: (n,) f8, time of the previous event of the disc, or of the edge at which the piece begins.
-        end: (n,) f8, time of the event or edge at the end.
-        kind: (n,) u1, `Kind` of the event at the end, or NO_EVENT.
+        start: (n,) f8, time of the disc's previous event, or of the edge at which the piece begins.
+        end: (n,) f8, time of the event or edge at the end of the flight.
+        kind: (n,) u1, `Kind` of the event at the end of the flight, or NO_EVENT.
         partner: (n,) i4, id of the other disc in this event, -1 - k for wall k, BATH, OUTSIDE, or NOBODY.
-        ends_in_collision: (n,) bool, whether the event at the end is a collision with another disc.
+        ends_in_collision: (n,) bool, whether the flight ends in a collision with another disc.
         velocity: (n, 2) f8, velocity at the start, length/time.
-        end_velocity: (n, 2) f8, velocity at the end, before the event, length/time. It equals `velocity` without
-            gravity.
-        new_velocity: (n, 2) f8, velocity after the event, length/time; equal to `end_velocity` if there is no event.
-        displacement: (n, 2) f8, displacement from start to end, length; it is unwrapped across periodic sides.
-        path: (n,) f8, length of the path from start to end, which is a parabola with gravity.
+        end_velocity: (n, 2) f8, velocity at the end, just before the event, length/time; equal to `velocity` if there
+            is no gravity.
+        new_velocity: (n, 2) f8, velocity just after the event, length/time; equal to `end_velocity` if there is no
+            event.
+        displacement: (n, 2) f8, displacement from start to end, unwrapped across periodic sides, length.
+        path: (n,) f8, length of the path from start to end, which is part of a parabola if there is gravity.
         position: (n, 2) f8, position at the start, inside the box, length; None if discs have no positions.
         end_position: (n, 2) f8, position at the end, inside the box, length; None if discs have no positions.
-        image: (n, 2) i4, number of box lengths to add to `position` to unwrap it; None without periodic sides.
+        image: (n, 2) i4, numbers of box lengths to add to `position` to unwrap it; None without periodic sides.
         angular_velocity: (n,) f8, angular velocity during the flight, 1/time; None if discs do not spin.
         new_angular_velocity: (n,) f8, angular velocity after the event, 1/time; None if discs do not spin.
     """
@@ -140,21 +141,21 @@ def flight_columns(events: Collection[str]) -> tuple[Column, ...]:
 
 
 def _made_for(columns: Collection[str]) -> set[str]:
-    """Return the names of columns together with the columns from which they are computed."""
+    """Return the names of the given columns and of all columns from which they are computed."""
     return {source for name in columns for source in (name, *_NEEDS.get(name, ()))}
 
 
 def _read_for(made: set[str]) -> set[str]:
-    """Return the event columns that must be read for columns of flights."""
+    """Return the names of the event columns that must be read to compute the given columns of flights."""
     return {_READ[name] for name in made if name in _READ}
 
 
 class FlightReader:
-    """Reader of the flights of a log between the first and the last edge, cut at the edges in between.
+    """Reader of the flights in a log between the first and the last edge, cut at the edges in between.
 
-    Most callers need only `batches`. The other methods are its steps, for sums over both whole flights and pieces in a
-    single pass. They return columns by name, including the columns from which the requested ones are computed where a
-    flight is cut.
+    Most callers need only `batches`. The other methods are the steps of `batches`; with them, a single pass can sum
+    over whole flights as well as over pieces. These methods return columns by name, including the columns that are
+    needed to compute the requested columns where a flight is cut.
     """
 
     def __init__(
@@ -164,7 +165,7 @@ class FlightReader:
         discs: ArrayLike | None = None,
         columns: Collection[str] | None = None,
     ) -> None:
-        """Check the arguments, which are described at `Log.flights`. Raises LogError if they are invalid."""
+        """Check the arguments, which are those of `Log.flights`. Raises LogError if they are invalid."""
         log.require_events()
         known = [column.name for column in flight_columns(log.columns)]
         if unknown := [name for name in columns or () if name not in known]:
@@ -185,13 +186,13 @@ class FlightReader:
         self._falls = log.has_gravity
 
     def batches(self) -> Iterator[Flights]:
-        """Yield flights, cut at the edges, in batches."""
+        """Yield all flights, cut at the edges, in batches."""
         for flights in chain(self.whole(), self.open()):
             for pieces in self.cut(flights):
                 yield self.batch(pieces)
 
     def whole(self) -> Iterator[Arrays]:
-        """Yield uncut flights that end with events, in batches. Each belongs to the block in which it ends."""
+        """Yield the uncut flights that end with events, in batches; a flight belongs to the block in which it ends."""
         log, (first, last) = self._log, self._edges[[0, -1]]
         state = log.state_at(first)
         self._join, self._left = Join(state, self._read), ~state.inside
@@ -205,9 +206,9 @@ class FlightReader:
                 yield self._flights(self._join.pass_on(rows), rows["time"], rows)
 
     def open(self) -> Iterator[Arrays]:
-        """Yield uncut flights that are still open at the last edge, in batches; to be called when `whole` has ended.
+        """Yield the uncut flights that are not over at the last edge, in batches; to be called after `whole`.
 
-        There is one for each disc that has not left the gas.
+        There is one such flight for each disc that has not left the gas.
         """
         present = np.flatnonzero(~self._left)
         present = present if self._discs is None else np.intersect1d(present, self._discs)
@@ -237,7 +238,7 @@ class FlightReader:
             yield self._pieces({name: values[rows] for name, values in flights.items()}, first[rows], pieces[rows])
 
     def batch(self, flights: Arrays) -> Flights:
-        """Return flights with the requested columns."""
+        """Return a batch of flights with the requested columns."""
         columns = dict(flights)
         if "species" in self._made:
             columns["species"] = self._log.discs.species[flights["disc"]]
@@ -254,9 +255,12 @@ class FlightReader:
         return Flights(*(cast(Any, columns[name] if name in self._columns else None) for name in Flights._fields))
 
     def _flights(self, state: Arrays, end: np.ndarray, rows: Arrays | None) -> Arrays:
-        """Return uncut flights (n,) from the states at their starts and the times at which they end.
+        """Return uncut flights as columns by name.
 
-        rows: the events at the ends of the flights; None if the flights are still open.
+        Args:
+            state: states of the discs at the starts of the flights, as columns by name.
+            end: (n,), times at which the flights end.
+            rows: event rows at the ends of the flights; None if the flights are not over at the last edge.
         """
         start, made = state["time"], self._made
         columns = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}
@@ -275,7 +279,7 @@ class FlightReader:
         return columns | {name: values for name, values in none.items() if name in made}
 
     def _pieces(self, flights: Arrays, first: np.ndarray, pieces: np.ndarray) -> Arrays:
-        """Cut flights into pieces. first: (n,), block of the first piece; pieces: (n,), number of pieces of each."""
+        """Cut flights into pieces. first: (n,), block of each flight's first piece; pieces: (n,), numbers of pieces."""
         source = np.repeat(np.arange(len(pieces)), pieces)
         opening = np.cumsum(pieces) - pieces
         columns = {name: values.take(source, axis=0) for name, values in flights.items()}
@@ -301,24 +305,24 @@ class FlightReader:
         return columns
 
     def _block_of(self, times: np.ndarray) -> np.ndarray:
-        """Return the blocks of non-decreasing times after the first edge."""
+        """Return the block of each time, for times after the first edge that do not decrease."""
         inner = self._edges[1:-1]
         low, high = inner.searchsorted(times[[0, -1]]) if len(times) else (0, 0)
         return np.asarray(low + inner[low:high].searchsorted(times))
 
     def _gravity(self, start: np.ndarray) -> np.ndarray | None:
-        """Return the accelerations, (n, 2) or (2,), of flights that start at times (n,); None without gravity."""
+        """Return the accelerations, (n, 2) or (2,), in flights that start at times (n,); None without gravity."""
         return self._log.gravity_at(start) if self._falls else None
 
     def _velocity(self, velocity: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        """Return the velocities (n, 2) at times `end` of flights with given velocities at `start`."""
+        """Return the velocities (n, 2) at times `end`, given the velocities (n, 2) at times `start`."""
         gravity = self._gravity(start)
         return velocity if gravity is None else velocity_after(velocity, gravity, (end - start)[:, None])
 
     def _position(
         self, position: np.ndarray, velocity: np.ndarray, start: np.ndarray, end: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the positions (n, 2) inside the box at times `end`, and the numbers (n, 2) of box lengths crossed."""
+        """Return the positions at times `end`, wrapped into the box, and the numbers of box lengths crossed, (n, 2)."""
         place = position_after(position, velocity, self._gravity(start), (end - start)[:, None])
         boxes = np.zeros_like(place)
         for axis in np.flatnonzero(self._log.wrapped_axes):

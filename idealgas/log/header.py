@@ -1,4 +1,4 @@
-"""The header of a log, which is written before the run: scene, box, discs, walls and versions of the programs."""
+"""The header of a log, which is written before the run: scene, box, discs, walls and program versions."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class LogHeader:
-    """The part of a `Log` that is written before the run; `Log` describes its attributes."""
+    """The part of a `Log` that is written before the run; see `Log` for the attributes."""
 
     def __init__(self, file: LogFile) -> None:
         self._file = file
@@ -37,26 +37,26 @@ class LogHeader:
 
     @cached_property
     def wrapped_axes(self) -> tuple[bool, bool]:
-        """Whether flights cross periodic sides along x and along y; crossing a sheared side is an event instead."""
+        """Whether flights continue through periodic sides along x and along y; crossing a sheared side is an event."""
         x, y = self.periodic
         return x, y and not self.scene.properties.shear
 
     @cached_property
     def runs(self) -> list[tuple[str, str]]:
-        """Scene (TOML with all defaults) and command of the run and of each run that resumed it, in order.
+        """Scene (TOML with all defaults) and command line of the run and of each run that resumed it, in order.
 
-        The scenes differ only in when the run ends.
+        The scenes differ only in their stop rules.
         """
         return list(zip(*(self._file.texts(f"runs/{column.name}") for column in RUN_COLUMNS), strict=True))
 
     @property
     def scene_text(self) -> str:
-        """Scene of the last run, as TOML with all defaults."""
+        """Scene of the latest run, as TOML with all defaults."""
         return self.runs[-1][0]
 
     @cached_property
     def changes(self) -> list["SceneChange"]:
-        """Changes that a program made to the scene, up to the last checkpoint."""
+        """Changes that a program made to the scene, up to the time of the last checkpoint."""
         from idealgas.scene.changes import SceneChange
 
         if not self._file.rows("changes"):
@@ -67,7 +67,7 @@ class LogHeader:
 
     @cached_property
     def scene(self) -> "Scene":
-        """Scene of the last run, with all defaults and the changes that a program made during the run."""
+        """Scene of the latest run, with all defaults and with the changes that a program made during the run."""
         from idealgas.log.check_consistency import check_scene
         from idealgas.scene import Scene, parse_scene
 
@@ -90,9 +90,9 @@ class LogHeader:
         return self._first_gravity
 
     def gravity_at(self, time: np.ndarray) -> np.ndarray:
-        """Return the acceleration at times (n,), length/time²: (n, 2), or (2,) if it is constant.
+        """Return the acceleration at times (n,), length/time²: an array (n, 2), or (2,) if gravity is constant.
 
-        It never changes during a flight.
+        The acceleration never changes during a flight.
         """
         if self._steps_of_gravity is None:
             return np.array(self._first_gravity)
@@ -106,7 +106,7 @@ class LogHeader:
 
     @cached_property
     def _steps_of_gravity(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Times (n,) from which accelerations (n, 2) act; None if gravity is constant."""
+        """Times (n,) at which gravity changes, and the accelerations (n, 2) from then on; None if it is constant."""
         if Kind.STEERED not in self._file.kinds or not self.scene.properties.later_accelerations:
             return None
         times, values = zip(*self.scene.gravity.steps, strict=True)
@@ -126,27 +126,27 @@ class LogHeader:
 
     @property
     def command(self) -> str:
-        """Command line of the last run; empty for a run from Python."""
+        """Command line of the latest run; empty if it was started from Python."""
         return self.runs[-1][1]
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """Attributes of the file by name: format, format_version, seed, created (UTC) and versions.
+        """Attributes of the file, by name: format, format_version, seed, created (UTC) and versions.
 
-        The versions are of idealgas, python, numpy, numba, h5py, isal and hdf5. `trajectory` is the version of the laws
-        of motion: only a program with the same value can resume the log.
+        The versions are those of idealgas, python, numpy, numba, h5py, isal and hdf5, and `trajectory`, the version of
+        the laws of motion. Only a program with the same value of `trajectory` can resume the log.
         """
         return self._file.attributes("/", ROOT_ATTRIBUTES) | self._file.attributes("versions", VERSIONS)
 
     @cached_property
     def discs(self) -> Gas:
-        """Discs at the start of the run: their constants, and their positions and velocities at time 0."""
+        """Discs at the start of the run: their constants and their initial positions and velocities."""
         inner = len(self.walls) > FIRST_SEGMENT
         return replace(self._stored_discs, solid_area=self.scene.solids.area) if inner else self._stored_discs
 
     @cached_property
     def _stored_discs(self) -> Gas:
-        """Discs at the start of the run as stored in the file, independent of the scene."""
+        """Discs at the start of the run as stored in the file, without any information from the scene."""
         columns: dict[str, Any] = {column.name: self._file.fixed(f"discs/{column.name}") for column in DISC_COLUMNS}
         names = tuple(self._file.texts("discs/species_name"))
         self._file.checked(lambda: check_species(columns["species"], names), "discs/species")
@@ -154,7 +154,7 @@ class LogHeader:
 
     @property
     def initial_discs(self) -> "InitialDiscs":
-        """The discs at the start of the run, in the form from which a scene can start."""
+        """Discs at the start of the run, in a form from which a scene can start."""
         from idealgas.scene.discs import InitialDiscs
 
         gas, n = self._stored_discs, len(self._stored_discs)
@@ -165,18 +165,18 @@ class LogHeader:
         )
 
     def stored(self, table: str) -> list[Column]:
-        """Return the columns of a table as stored in the file: name, type and shape of an entry."""
+        """Return the columns of a table as stored in the file, each with name, type and shape of an entry."""
         return self._file.stored(table)
 
     @cached_property
     def inertia(self) -> np.ndarray | None:
-        """(N,) moment of inertia of each disc, mass·length²; None without rotation."""
+        """Moments of inertia of the discs, (N,), mass·length²; None without rotation."""
         spins = "angular_velocity" in self._file.names("checkpoints")
         return self._file.fixed("discs/inertia") if spins else None
 
     @cached_property
     def walls(self) -> list[Wall]:
-        """Sides of the box (left, right, bottom, top), then the wall segments; events refer to wall k as -1 - k."""
+        """Sides of the box (left, right, bottom, top), then the wall segments; in events, wall k is partner -1 - k."""
         ends, names = self._file.fixed("walls/endpoints").tolist(), self._file.texts("walls/name")
         walls = [Wall(name, *map(tuple, end)) for name, end in zip(names, ends, strict=True)]
         self._file.checked(lambda: check_walls(walls, self.box), "walls/endpoints")

@@ -1,4 +1,4 @@
-"""Join event rows with the states of their discs before each event."""
+"""Join each event row with the state of its disc before the event."""
 
 from collections.abc import Collection, Iterator
 from typing import Any
@@ -13,7 +13,7 @@ Arrays = dict[str, np.ndarray]
 
 
 def whole_pairs(chunks: Iterator[Any]) -> Iterator[Arrays]:
-    """Yield chunks of event rows as columns by name, without splitting the two rows of a collision."""
+    """Yield chunks of event rows as columns by name, without separating the two rows of a collision."""
     held: Arrays = {}
     for chunk in chunks:
         rows: Arrays = chunk._asdict()
@@ -27,14 +27,14 @@ def whole_pairs(chunks: Iterator[Any]) -> Iterator[Arrays]:
 
 
 class Join:
-    """The latest states of all discs, updated as event rows are passed.
+    """The latest states of all discs, updated as event rows are processed in order.
 
     Attributes:
         discs: number of discs.
     """
 
     def __init__(self, state: LogState, names: Collection[str]) -> None:
-        """Start with the states of all discs at one time. names: event columns that the rows have."""
+        """Start from the state of all discs at one time. names: names of the event columns in the rows."""
         self.discs = len(state.velocity)
         start = {"time": np.full(self.discs, state.time)}
         start |= {name: getattr(state, name) for name in LogState._fields[1:] if name in names}
@@ -49,7 +49,7 @@ class Join:
         }
 
     def pass_on(self, rows: Arrays) -> Arrays:
-        """Return the states of the discs before each event row, and update the latest states."""
+        """Return the state of the disc before each event row, as columns by name, and update the latest states."""
         number = len(rows["disc"])
         if number > self._room:
             self._make_room(number)
@@ -62,9 +62,14 @@ class Join:
         return before | {"disc": rows["disc"]}
 
     def _places(self, disc: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the index (n,) of the state before each event row, the discs that have rows, and their last states.
+        """Locate the states before event rows, and the last states of the discs in these rows.
 
-        disc: (n,), disc of each row. The last state of a disc is given by its index, too.
+        Args:
+            disc: (n,), disc of each event row.
+
+        Returns:
+            The index (n,) of the state before each row, the ids of the discs that have rows, and the index of the last
+            state of each of these discs.
         """
         order = np.lexsort((disc.astype(np.uint16), (disc >> 16).astype(np.uint16)))  # a radix sort, in linear time
         ordered = disc[order]
@@ -78,6 +83,6 @@ class Join:
         return previous, ordered[first], state[np.append(first, len(disc))[1:] - 1]
 
     def states(self, discs: np.ndarray) -> Arrays:
-        """Return the latest states of discs, given by their ids."""
+        """Return the latest states of the discs with these ids, as columns by name."""
         columns = {name: values.take(discs, axis=0) for name, values in self._states.items()}
         return columns | {"disc": discs.astype(np.uint32)}

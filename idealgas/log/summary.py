@@ -8,7 +8,7 @@ from typing import Any, Self
 from idealgas.log.rules import LONGEST
 
 KINDS = ("disc_collisions", "wall_hits", "thermostat_collisions")
-"""Fields whose sum, together with `steered`, is the number of events."""
+"""Fields whose sum, plus `steered`, is the number of events."""
 
 STEERED = "steered"
 OPTIONAL = (STEERED, "escaped")
@@ -20,31 +20,31 @@ class Summary:
     """Summary of a run. If the run was resumed, the summary covers the whole log.
 
     Attributes:
-        completed: whether the run reached the end of its scene.
+        completed: whether the run reached the end that its scene specifies.
         end_time: simulated time at the end.
         events: number of events, the sum of the next three fields and `steered`.
         disc_collisions: number of collisions of two discs.
         wall_hits: number of collisions with walls and pistons.
         thermostat_collisions: number of thermostat collisions.
         trials: number of pairs tried by the Monte Carlo method.
-        rows: number of event rows, two for each collision of two discs and one for any other event.
+        rows: number of event rows: two for each collision of two discs and one for any other event.
         epochs: number of epochs.
-        energy_change: change of the energy of the discs since the start, energy.
-        energy_drift: violation of energy conservation, which is due to rounding: the change of the energy of discs and
-            pistons, plus the energy lost in collisions, minus the energy received from walls, the heat bath and
-            changes, relative to the largest of these.
-        deepest_overlap: deepest overlap of two discs, relative to the sum of their radii, at the beginning of all
-            epochs and at the end; with time steps, in all collisions.
-        max_wall_penetration: largest distance by which a disc extended beyond a side at these times, in diameters;
-            periodic sides are excluded.
-        seconds: wall time of the last run without start-up and compilation, s.
-        compile_seconds: wall time of compilation, s.
-        threads: number of threads that shared the work of the last run; 1 if no slice was shared.
+        energy_change: change in the energy of the discs since the start, energy.
+        energy_drift: violation of energy conservation due to rounding: the change in the energy of discs and pistons,
+            plus the energy lost in collisions, minus the energy received from walls, the heat bath and changes to the
+            scene, relative to the largest of these energies.
+        deepest_overlap: deepest overlap of two discs, relative to the sum of their radii, among the states at the
+            beginning of each epoch and at the end; with time steps, among all collisions.
+        max_wall_penetration: largest distance by which a disc extended beyond a side that is not periodic, in the same
+            states, in diameters.
+        seconds: elapsed real time of the latest run without start-up and compilation, s.
+        compile_seconds: elapsed real time of compilation, s.
+        threads: number of threads that shared the work of the latest run; 1 if no time slice was shared.
         threads_reason: reason for this number of threads.
-        shared_slices: number of slices of time that several threads shared.
-        aborted_slices: number of shared slices that a single thread had to repeat.
-        steered: number of events in which a velocity, or gravity, was changed from outside.
-        escaped: number of discs that have left the gas; their last events are wall hits.
+        shared_slices: number of time slices that were shared by several threads.
+        aborted_slices: number of shared time slices that a single thread had to repeat.
+        steered: number of events in which a velocity, or gravity, was changed from outside the gas.
+        escaped: number of discs that have left the gas; their last events count as wall hits.
     """
 
     completed: bool
@@ -71,17 +71,17 @@ class Summary:
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
-        """Return a summary with the given fields. If one is missing and not optional, `values` raises its error."""
+        """Return a summary with the given fields; for a missing required field, `values` raises its own error."""
         names = [field.name for field in fields(cls)]
         return cls(**{name: values[name] for name in names if name in values or name not in OPTIONAL})
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the fields by name, ready for JSON; `steered` and `escaped` are omitted if they are 0."""
+        """Return the fields by name, in a form suitable for JSON; `steered` and `escaped` are omitted if they are 0."""
         return {name: value for name, value in asdict(self).items() if value or name not in OPTIONAL}
 
 
 def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, Any]:
-    """Return the fields of a summary by name, from the rows of a log. Raises ValueError if a value is invalid."""
+    """Return the fields of a summary by name, parsed from rows of a log. Raises ValueError if a value is invalid."""
     types = {field.name: field.type for field in fields(Summary)}
     parsed: dict[str, Any] = {}
     for name, value in zip(names, values, strict=True):
@@ -101,7 +101,10 @@ def parse_summary(names: Sequence[bytes], values: Sequence[bytes]) -> dict[str, 
 
 
 def _fits(value: Any, kind: Any) -> bool:
-    """Return whether a value has the type of a field: str, bool, int (0 to 2⁶³) or float (up to LONGEST) or None."""
+    """Return whether a value fits the type of a field.
+
+    Types are str, bool, int (at least 0 and below 2⁶³), float (absolute value up to LONGEST), and float or None.
+    """
     if kind is str or isinstance(value, str):
         return kind is str and isinstance(value, str)
     if kind is bool or isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Write a log during its run: buffers circulate between the engine and a thread that stores them."""
+"""Write a log during a run: buffers circulate between the engine and a thread that stores their contents."""
 
 import errno
 import json
@@ -26,17 +26,17 @@ from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
 BUFFERS = 8
-"""Number of buffers of event rows."""
+"""Number of buffers for event rows."""
 FLUSH_ROWS = 4 * BLOCK
-"""Number of event rows after which a log is committed."""
+"""Number of event rows after which the log is committed."""
 FLUSH_SECONDS = 1.0
-"""Time after which a log is committed, s."""
+"""Time after which the log is committed, s."""
 
 
 class _Rows(NamedTuple):
-    """Rows `start` to `stop` of the columns `data` for a table, queued for the thread.
+    """Rows `start` up to, but not including, `stop` of the columns `data`, queued to be stored in a table.
 
-    If `buffer` is not None, the buffer returns to the pool when the rows are stored.
+    If `buffer` is not None, the buffer is returned to the pool once the rows are stored.
     """
 
     table: TableWriter
@@ -52,10 +52,10 @@ _END = object()
 class LogWriter:
     """A log that is being written; a context manager that closes it as interrupted unless `close` is called first.
 
-    Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive if
-    the process is killed, and with `fsync` also a power failure, unless it leaves a block of the disk half written. If
-    data cannot be stored (a full disk, a removed file), the next call raises OutputError with exit code 1, and
-    everything committed before remains readable.
+    Data are stored in the order of the calls, and committed every 2¹⁸ rows or every second. Committed data survive the
+    death of the process and, with `fsync`, also a power failure, unless it leaves a block on the disk half written. If
+    data cannot be stored, because the disk is full or the file was removed, the next call raises OutputError with exit
+    code 1, and everything committed before remains readable.
 
     Attributes:
         path: path of the log.
@@ -75,13 +75,13 @@ class LogWriter:
         fsync: bool = False,
         force: bool = False,
     ) -> None:
-        """Create the file with all its datasets.
+        """Create the file with all datasets.
 
         Args:
             path: path of the log.
             gas: discs at the start.
-            layout: what the log contains.
-            scene_text: scene with all defaults, TOML.
+            layout: layout of the log.
+            scene_text: scene with all defaults, as TOML.
             seed: seed of the run.
             command: command line of the run.
             trajectory: version of the laws of motion.
@@ -89,7 +89,7 @@ class LogWriter:
             force: whether to overwrite an existing log.
 
         Raises:
-            OutputError: if the file exists (without `force`) or cannot be written.
+            OutputError: if the file exists and `force` is false, or if the file cannot be written.
         """
         from idealgas.log.recovery import open_after
 
@@ -117,7 +117,7 @@ class LogWriter:
             give_name(part, path, force, fsync)
         except (OSError, RuntimeError) as error:
             raise storage_error(path, error) from error
-        except ValueError as error:  # the log would be larger than any log that can be read
+        except ValueError as error:  # the log would be too large to be read
             raise OutputError(f"{path}: {error}") from error
         finally:
             part.unlink(missing_ok=True)
@@ -137,11 +137,11 @@ class LogWriter:
 
         Args:
             path: path of the log.
-            checkpoint: index into `Log.checkpoints`; None to start again.
+            checkpoint: index into `Log.checkpoints`; None to continue from the start.
             fsync: whether each commit is forced to the disk.
-            scene_text: scene of the run that continues the log, TOML; None if it is not a new run.
+            scene_text: scene of the run that continues the log, as TOML; None if no new run is to be listed in `runs`.
             command: command line of the new run.
-            commit: commit that the log must still have; None for any.
+            commit: newest commit that the log must still have; None if any commit is accepted.
 
         Raises:
             LogError: if there is no such checkpoint, or if the log has another commit.
@@ -164,7 +164,7 @@ class LogWriter:
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
         self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
-        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # as the buffer returned last is still in the cache
+        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the latest buffer is still in the CPU cache
         for _ in range(BUFFERS if self._events else 0):
             self._free.put(empty_batch(BLOCK + 1, columns_named(self._names)))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)
@@ -175,9 +175,9 @@ class LogWriter:
     # ── the caller's side ──
 
     def batch(self) -> EventBatch:
-        """Return a buffer to fill; only one can be filled at a time. Waits while all buffers are in use.
+        """Return a buffer to be filled, once one is free; only one buffer can be filled at a time.
 
-        The buffer has room for the rest of the chunk in the file, and for one more row, the second row of a pair.
+        The buffer has room for the rest of the current chunk and for one more row, the second row of a pair.
         """
         self._check_open()
         self._lent = self._free.get()
@@ -186,11 +186,11 @@ class LogWriter:
 
     @property
     def behind(self) -> bool:
-        """Whether more than one buffer is waiting to be stored."""
+        """Whether more than one buffer is still waiting to be stored."""
         return self._events is not None and self._free.qsize() < BUFFERS - 1
 
     def write(self, rows: int) -> None:
-        """Store the first `rows` rows of the buffer from `batch`, which may be read until the next call of `batch`."""
+        """Store the first `rows` rows of the buffer from `batch`, which may be read until `batch` is called again."""
         assert self._events is not None, "this log has no events"
         start = self.rows % BLOCK
         self.rows += rows
@@ -200,35 +200,35 @@ class LogWriter:
     def checkpoint(
         self, time: float, epoch: int, arrays: Mapping[str, np.ndarray], values: Mapping[str, float] | None = None
     ) -> None:
-        """Store a checkpoint after the event rows written so far, and after the sample of the same time.
+        """Store a checkpoint after all event rows written so far and after the sample taken at the same time.
 
         Args:
             time: time of the state.
-            epoch: number of epochs before it.
-            arrays: arrays by declared name, such as the values of each disc; they are copied.
+            epoch: number of epochs before the state.
+            arrays: arrays by declared name, such as the columns with an entry for each disc; they are copied.
             values: single numbers by declared name.
         """
         given = {"time": time, "row": self.rows, "epoch": epoch, **arrays, **(values or {})}
         self._put_row("checkpoints", given)
 
     def observe(self, time: float, epoch: int, values: Mapping[str, float]) -> None:
-        """Store a sample of all observables, by declared name. epoch: number of epochs before it."""
+        """Store a sample of all observables, given by declared name. epoch: number of epochs before the sample."""
         self._put_row("observables", {"time": time, "step": epoch, **values})
 
     def change(self, time: float, setting: str) -> None:
-        """Store a change of the scene from a time on; it takes effect once a checkpoint follows."""
+        """Store a change to the scene at a time; it takes effect once a checkpoint follows."""
         self._put_row("changes", {"time": time, "setting": setting.encode()})
 
     def snapshot(self, time: float, step: int, arrays: Mapping[str, np.ndarray]) -> None:
-        """Store a snapshot of all discs. step: number of the snapshot; arrays: copied, by declared name."""
+        """Store a snapshot of all discs. step: number of the snapshot; arrays: by declared name, to be copied."""
         self._put_row("particles", {"time": time, "step": step, **arrays})
 
     def close(self, summary: Mapping[str, Any] | None = None) -> None:
         """Store all queued data and close the file.
 
         Args:
-            summary: fields of the summary, as JSON values; without them the run counts as interrupted. `end_time` is
-                the time up to which the log covers the motion.
+            summary: fields of the summary, as JSON values, with `end_time` the time up to which the log covers the
+                motion. Without a summary, the run counts as interrupted.
         """
         if not self._thread.is_alive():
             return
@@ -276,7 +276,7 @@ class LogWriter:
         self._queue.put(item)
 
     def _check_open(self) -> None:
-        """Raise OutputError if nothing more can be stored."""
+        """Raise OutputError if no more data can be stored."""
         self._raise()
         if not self._thread.is_alive():
             raise OutputError(f"{self.path}: this log is closed")
@@ -304,13 +304,13 @@ class LogWriter:
                 self._free.put(item.buffer)
 
     def _store(self, item: object) -> None:
-        """Store the rows of an item, if any, and commit if due; the commit of a first checkpoint is due immediately."""
+        """Store the rows of an item, if any, and commit them if due; a first checkpoint is committed immediately."""
         if isinstance(item, _Rows):
             item.table.append(item.start, item.stop, item.data)
             delay = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
             self._due = min(self._due, time.monotonic() + delay)
         if item is _END:
-            for _ in range(2):  # so that both slots of the record contain the end
+            for _ in range(2):  # so that both slots of the commit record contain the end
                 self._commit(tails=True, last=True)
         elif time.monotonic() >= self._due:
             self._commit(tails=True)
@@ -318,7 +318,7 @@ class LogWriter:
             self._commit(tails=False)
 
     def _commit(self, tails: bool, last: bool = False) -> None:
-        """Commit all rows; without `tails`, event rows only in full chunks. last: whether the log ends here."""
+        """Commit all rows, or, without `tails`, only full chunks of event rows. last: whether the log ends here."""
         if self._file.removed:
             raise FileNotFoundError(errno.ENOENT, "the file was removed")
         for table in self._tables.values():
@@ -332,13 +332,13 @@ class LogWriter:
 
 
 def _file_in_memory() -> h5py.File:
-    """Create an HDF5 file in memory, as HDF5 may crash when it creates a file on a disk that is full or fails."""
-    name = uuid.uuid4().hex  # HDF5 refuses a second file of the same name, even in memory
+    """Create an HDF5 file in memory, because HDF5 may crash while creating a file on a full or failing disk."""
+    name = uuid.uuid4().hex  # HDF5 refuses a second file with the same name, even in memory
     return h5py.File(name, "w", driver="core", backing_store=False, **OPTIONS, **schema.PAGES)
 
 
 def _texts(runs: TableWriter, scene_text: str, command: str) -> list[np.ndarray]:
-    """Return a row of `runs`, with a truncated command. Raises ValueError if the scene does not fit."""
+    """Return a row of `runs`, with the command truncated if too long. Raises ValueError if the scene does not fit."""
     scene_size, command_size = (column.dtype.itemsize for column in runs.columns.values())
     line = command.encode(errors="backslashreplace")  # file names need not be UTF-8
     scene, cut = scene_text.encode(), line[:command_size].decode(errors="ignore").encode()

@@ -1,1 +1,1 @@
-"""The HDF5 file of a log: its chunks, tables, commit record and file consistency flags."""
+"""Access to the HDF5 file of a log: its chunks, tables, commit record and file consistency flags."""

@@ -1,8 +1,9 @@
-"""Encode and decode chunks with HDF5's filter pipeline (shuffle, deflate, fletcher32), at the speed of memory.
+"""Encode and decode chunks with HDF5's filter pipeline (shuffle, deflate, fletcher32), about as fast as memory allows.
 
-A chunk may skip filters of the pipeline of its dataset; the bits of its filter mask say which. Full chunks of a
-compressed dataset are shuffled and deflated; they need no fletcher32, as a zlib stream contains an Adler-32. A chunk
-that is still growing is stored uncompressed with a fletcher32, so that it keeps its size and its position in the file.
+A chunk may skip filters of the dataset's pipeline; each bit of its filter mask stands for a filter that is skipped.
+Full chunks of a compressed dataset are shuffled and deflated; they need no fletcher32, because a zlib stream contains
+an Adler-32. A chunk that is still growing is stored uncompressed with a fletcher32, so that its size and its position
+in the file do not change.
 """
 
 import struct
@@ -17,28 +18,28 @@ COMPRESSED, PLAIN = FLETCHER32, SHUFFLE | DEFLATE
 """Filter masks of compressed and of growing chunks of a compressed dataset; each bit is a filter that is skipped."""
 
 _STORED_BLOCK, _BLOCK_HEADER = 65_535, 5
-"""Size of a full stored block of a deflate stream, and of its header, bytes."""
+"""Sizes of a full stored block of a deflate stream and of the block's header, bytes."""
 
 _SAMPLE = 1024
-"""Number of bytes of a plane that are tested to decide whether it is noise."""
+"""Number of bytes of a plane that are tested to decide whether the plane is noise."""
 
 _TILE = 2048
-"""Number of items that are shuffled while they are in the first-level cache."""
+"""Number of items that are shuffled together, small enough for them to remain in the first-level cache."""
 
 _WIDTHS = (4, 8)
-"""Sizes of the items that compiled functions shuffle, bytes; items of other sizes are shuffled with NumPy."""
+"""Sizes of items that are shuffled by compiled functions, bytes; items of other sizes are shuffled with NumPy."""
 
 _WORTH_LOADING = 64 * 2**20
-"""Number of bytes that NumPy encodes or decodes in about the time that loading the compiled functions takes."""
+"""Number of bytes that NumPy encodes or decodes in about the time it takes to load the compiled functions."""
 
 _LARGEST_KEPT = 31 * 2**20
-"""Size slightly below the largest block that glibc can be made to keep, bytes."""
+"""Size slightly below that of the largest block that glibc can be made to keep, bytes."""
 
 _RESERVED = 2**20
-"""Size of the memory that is always kept, bytes: larger than a chunk of events."""
+"""Size of the memory that an encoder always keeps, bytes; it is larger than a chunk of events."""
 
 _WORDS = 256
-"""Number of 16-bit words for which the sum of word times index fits in 32 bits."""
+"""Number of 16-bit words for which the sum of each word times its index fits in 32 bits."""
 
 
 @inline
@@ -55,7 +56,7 @@ def shuffle(items, noise, blocks, planes):
 
     Args:
         items: (n,) unsigned integers.
-        noise: number of planes that are written to `blocks`, the first ones.
+        noise: number of planes, from the first on, that are written to `blocks`.
         blocks: output, bytes of deflate's stored blocks, each with room for its header.
         planes: output, bytes of the remaining planes.
     """
@@ -75,7 +76,7 @@ def shuffle(items, noise, blocks, planes):
 
 
 def _shuffle_in_numpy(items, noise, blocks, planes):
-    """Do the same as `shuffle` in NumPy."""
+    """Do the same as `shuffle`, with NumPy."""
     n, words = len(items), items.view(np.uint8).reshape(-1, items.itemsize).T
     planes.reshape(-1, n)[:] = words[noise:]
     stored = words[:noise].reshape(-1)
@@ -103,11 +104,10 @@ def unshuffle(planes, items):
 
 
 class Encoder:
-    """Encoder of chunks that reuses its memory, as allocating memory for each chunk would take longer than encoding it.
+    """Encoder of chunks that reuses its memory, because allocating memory for a chunk takes longer than encoding it.
 
-    Memory for a larger chunk, such as a checkpoint of a large gas, is freed when a smaller chunk follows.
-
-    The result of a method is valid until the next call.
+    Memory for a larger chunk, such as a checkpoint of a large gas, is freed when a smaller chunk follows. The result of
+    a method is valid only until the next call of any method.
     """
 
     def __init__(self) -> None:
@@ -116,8 +116,8 @@ class Encoder:
     def compressed(self, rows: np.ndarray) -> np.ndarray:
         """Return the bytes of a full chunk, shuffled and deflated.
 
-        The low-order bytes of a measured number are noise. Planes of which a sample cannot be compressed become stored
-        blocks, which are written and read in a fraction of the time.
+        The low-order bytes of a computed number look like noise. Planes of which a sample cannot be compressed become
+        stored blocks, which are written and read in a fraction of the time.
         """
         self._reserve(rows.nbytes)
         items = np.ascontiguousarray(rows).reshape(-1)
@@ -136,7 +136,7 @@ class Encoder:
         return self._bytes[:size]
 
     def _shuffle(self, items: np.ndarray) -> tuple[int, np.ndarray]:
-        """Copy planes that are noise to stored blocks; return their number and the bytes of the remaining planes."""
+        """Copy the planes that are noise to stored blocks; return their number and the bytes of the other planes."""
         words, width, blocks = items.view(f"u{items.itemsize}"), items.itemsize, self._bytes[2:]
         noise = width if len(items) >= _SAMPLE else 0
         gather = shuffle if _is_worth_loading(items.nbytes) else _shuffle_in_numpy
@@ -173,21 +173,21 @@ def _shuffled(items: np.ndarray) -> np.ndarray:
 
 
 def most_stored(size: int) -> int:
-    """Return the largest size of a stored chunk of `size` bytes; incompressible data grow a little."""
+    """Return the largest stored size of a chunk of `size` bytes; incompressible data grow slightly."""
     return size + size // 64 + 1024
 
 
 def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, verify: bool = True) -> np.ndarray:
     """Return the values of a stored chunk, (values,).
 
-    At most one byte more than the declared size is decompressed, so that a crafted chunk cannot fill the memory.
+    At most one byte more than the declared size is decompressed, so that a malicious chunk cannot fill the memory.
 
     Args:
         stored: bytes in the file.
-        mask: filter mask, that is the filters that were skipped.
+        mask: filter mask, whose bits stand for the filters that were skipped.
         dtype: type of the values.
         values: expected number of values.
-        verify: whether the fletcher32, if there is one, has to match.
+        verify: whether the fletcher32, if present, has to match.
 
     Raises:
         ValueError: if the chunk is damaged or has a different number of values.
@@ -222,17 +222,17 @@ def decode(stored: bytes | memoryview, mask: int, dtype: np.dtype, values: int, 
 def keep_freed_memory() -> None:
     """Make the C library keep the memory of a chunk for the next chunk, which saves a quarter of the reading time.
 
-    glibc returns to the system every block that is larger than any block freed before, and then has to request zeroed
-    pages again.
+    glibc returns every freed block that is larger than all blocks freed before to the system, and then has to request
+    zeroed pages again.
     """
     np.empty(_LARGEST_KEPT, np.uint8)
 
 
 def fletcher32(data: bytes | memoryview | np.ndarray) -> bytes:
-    """Return HDF5's checksum of 16-bit big-endian words, as the four bytes that follow the data in the file.
+    """Return HDF5's Fletcher-32 checksum of data, as the four bytes that follow the data in the file.
 
-    The sum of the words and the sum of the running sums are computed from little-endian words. Swapping the bytes of
-    every word multiplies both sums by 256 modulo 65535.
+    The checksum consists of the sum of the data as 16-bit big-endian words and the sum of the running sums. Here both
+    are computed from little-endian words: swapping the bytes of every word multiplies both sums by 256 modulo 65535.
     """
     words = np.frombuffer(data, "<u2", len(data) // 2)
     words.flags.writeable = False  # arrays always have the same type, so that the function is compiled once
@@ -248,14 +248,14 @@ _processed = 0
 
 
 def _is_worth_loading(size: int) -> bool:
-    """Return whether to use compiled functions for `size` more bytes; loading them is not worth it for a small log."""
+    """Return whether to use compiled functions for the next `size` bytes; loading them does not pay for a small log."""
     global _processed
     _processed += size
     return _processed > _WORTH_LOADING
 
 
 def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:
-    """Return the same as `_sums`, computed with floats, which represent each partial sum exactly."""
+    """Return the same as `_sums`, computed with NumPy in floats, which represent each partial sum exactly."""
     total = moment = 0
     for first in range(0, len(words), 65535):
         part = words[first : first + 65535].astype(float)
@@ -266,7 +266,7 @@ def _sums_in_numpy(words: np.ndarray) -> tuple[int, int]:
 
 @njit
 def _sums(words):
-    """Return the sum of 16-bit words (n,) and the sum of word times index, up to multiples of 65535."""
+    """Return the sum of 16-bit words (n,) and the sum of each word times its index, up to multiples of 65535."""
     total = moment = np.int64(0)
     for first in range(0, len(words), _WORDS):
         total_here = np.uint32(0)
@@ -281,5 +281,5 @@ def _sums(words):
 
 
 def _fold(value: int) -> int:
-    """Return a value modulo 65535, but 65535 for its positive multiples, as in a sum with end-around carry."""
+    """Return a value modulo 65535, but 65535 for positive multiples of 65535, as in a sum with end-around carry."""
     return (value - 1) % 65535 + 1 if value else 0

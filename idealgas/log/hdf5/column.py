@@ -1,4 +1,4 @@
-"""Read and write a dataset of a log in whole chunks, without HDF5's own filters and cache."""
+"""Read and write a dataset of a log in whole chunks, bypassing HDF5's own filters and cache."""
 
 import math
 
@@ -10,7 +10,7 @@ from isal import isal_zlib
 from idealgas.log.hdf5 import chunks
 
 NUMBERS = ("<f8", "<i8", "<u8", "<i4", "<u4", "<u2", "|u1")
-"""NumPy types that numbers in a log may have."""
+"""NumPy types that the numbers in a log may have."""
 
 _COMPRESSED = (h5z.FILTER_SHUFFLE, h5z.FILTER_DEFLATE, h5z.FILTER_FLETCHER32)
 _PLAIN = (h5z.FILTER_FLETCHER32,)
@@ -27,7 +27,7 @@ class StoredColumn:
     """
 
     def __init__(self, file: h5py.File, path: str, encoder: chunks.Encoder | None = None) -> None:
-        """Open a dataset. Raises KeyError if it is missing, and ValueError if its layout is not that of a log."""
+        """Open a dataset. Raises KeyError if it is missing, and ValueError if a log cannot contain such a dataset."""
         try:
             dataset = h5py.h5o.open(file.id, path.encode())  # h5py's Dataset takes four times as long to open
         except KeyError:
@@ -48,7 +48,7 @@ class StoredColumn:
         if self.shape[1:] != self.chunk[1:]:
             raise ValueError(f"in chunks of shape {self.chunk} (got an extent of {self.shape})")
         self._encoder = encoder or chunks.Encoder()
-        self.extent: int = self.shape[0]  # kept here, as requests to HDF5 would slow down writing
+        self.extent: int = self.shape[0]  # kept here because asking HDF5 would slow down writing
         self._compressed = pipeline == _COMPRESSED
         self._origin = (0,) * (len(self.chunk) - 1)
 
@@ -76,12 +76,12 @@ class StoredColumn:
             verify: whether the checksum of the chunk has to match.
         """
         mask, stored = self.id.read_direct_chunk((start, *self._origin))
-        if not self._compressed:  # this pipeline consists only of the checksum, so its bits have another meaning
+        if not self._compressed:  # the pipeline is only the checksum, so the bits of its masks differ
             mask = chunks.PLAIN
         return chunks.decode(stored, mask, self.dtype, math.prod(self.chunk), verify).reshape(self.chunk)
 
     def write(self, start: int, rows: int, data: np.ndarray, plain: bool = False) -> None:
-        """Write a whole chunk. The dataset is extended first if necessary, as HDF5 requires.
+        """Write a whole chunk. If necessary, the dataset is extended first, as HDF5 requires.
 
         Args:
             start: first row of the chunk.

@@ -1,8 +1,9 @@
-"""The commit record, which contains the number of committed rows of each table.
+"""The commit record, which contains the number of committed rows in each table.
 
 Two slots with checksums are written alternately, always after the rows that they count. Whenever a writer is killed, at
-least one slot is complete and its rows are in the file. The last chunk of a table is rewritten in place until it is
-full. The bytes of its committed rows do not change, so their CRC-32, which is also in the record, is valid at any time.
+least one slot is complete, and the rows that it counts are in the file. The last chunk of a table is rewritten in place
+until it is full. The bytes of the committed rows in this chunk do not change, so their CRC-32, which is also in the
+record, remains valid.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,7 +43,7 @@ class Commit(NamedTuple):
 
     @classmethod
     def create(cls, file: h5py.File, paths: Sequence[str]) -> None:
-        """Create the dataset of the record, without committed rows. paths: paths of the datasets of all tables."""
+        """Create the dataset for the record, with no committed rows. paths: paths of the datasets of all tables."""
         tables = dict.fromkeys(map(table_of, paths), 0)
         width = 2 + len(tables) + len(paths) + 1
         dataset = file.create_dataset(DATASET, (2, width), "u8", chunks=(1, width), fletcher32=True)
@@ -51,7 +52,7 @@ class Commit(NamedTuple):
             cls(sequence, 0, tables, dict.fromkeys(paths, 0)).write(dataset.id)
 
     def write(self, dataset: h5py.h5d.DatasetID) -> None:
-        """Write the record to the slot of its sequence number."""
+        """Write the record to the slot determined by its sequence number."""
         slot = np.array([self.sequence, self.file_size, *self.rows.values(), *self.tails.values(), 0], "u8")
         slot[-1] = isal_zlib.crc32(slot[:-1])
         dataset.write_direct_chunk((self.sequence % 2, 0), chunks.Encoder().plain(slot), 0)

@@ -1,9 +1,8 @@
-"""The superblock of an HDF5 file, with the file consistency flags and the position of the end of the file.
+"""The superblock of an HDF5 file, which contains the file consistency flags and the position of the end of the file.
 
-While a writer has the file open, or if it did not close it, the file consistency flags are set, and HDF5 refuses to
-open the file in the usual way. Source: HDF5 File Format Specification 3.0, II.A. A superblock of version 3 has the
-flags in byte 11, the end of the file in bytes 28 to 35, and the lookup3 checksum of all previous bytes in bytes 44 to
-47.
+The flags are set while a writer has the file open, and remain set if the writer did not close it; HDF5 then refuses to
+open the file in the usual way. A superblock of version 3 has the flags in byte 11, the end of the file in bytes 28 to
+35, and the lookup3 checksum of all previous bytes in bytes 44 to 47. Source: HDF5 File Format Specification 3.0, II.A.
 """
 
 import errno
@@ -22,7 +21,7 @@ _MASK = 0xFFFFFFFF
 
 
 def has_consistency_flags(block: bytes) -> bool | None:
-    """Return whether the flags are set in the first bytes of a file; None if it is not HDF5 with version 3."""
+    """Return whether the flags are set, given the first bytes of a file; None if it is not HDF5 of version 3."""
     return block[11] != 0 if len(block) >= _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
@@ -49,14 +48,14 @@ def clear_consistency_flags(descriptor: int) -> None:
 class ReadableFile(io.FileIO):
     """An HDF5 file, open for reading, whose file consistency flags appear to be cleared.
 
-    HDF5 accesses the file only through this object. Therefore it takes no locks and shares nothing with a writer in the
-    same process. HDF5's own mode for reading a file that is being written, SWMR, is not used because it retries
-    indefinitely where a byte is damaged. As a writer may extend the file at any moment, the file appears to be very
-    long; bytes beyond its actual end are zero.
+    HDF5 accesses the file only through this object, so HDF5 takes no locks and shares nothing with a writer in the same
+    process. SWMR, HDF5's own mode for reading a file that is being written, is not used because it retries indefinitely
+    when it meets a damaged byte. As a writer may extend the file at any moment, the file appears to be very long; bytes
+    beyond its actual end read as zero.
 
     Attributes:
         unclosed: whether the flags are set; None if the file is not HDF5 with a superblock of version 3.
-        end: size of the file according to the superblock, bytes; valid if the file was closed.
+        end: size of the file according to the superblock, bytes; valid only if the file was closed.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,10 +73,10 @@ class ReadableFile(io.FileIO):
             (self.end,) = struct.unpack_from("<Q", block, 28)
 
     def __del__(self) -> None:
-        self.close()  # HDF5 does not close it
+        self.close()  # HDF5 does not close this file
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Change the position in the file. The end, which HDF5 seeks to get the size, may be too far for `lseek`."""
+        """Change the position in the file; the apparent end, which HDF5 seeks, may be too far for `lseek`."""
         self._at_end = whence == os.SEEK_END
         return _FAR if self._at_end else super().seek(offset, whence)
 
@@ -99,9 +98,9 @@ class ReadableFile(io.FileIO):
 
 
 def _cleared(block: bytes, end: int) -> bytes:
-    """Return a superblock with cleared flags for a file of `end` bytes.
+    """Return the superblock with cleared flags, for a file of `end` bytes.
 
-    If a file was not closed, its superblock contains the end of the file at the last flush.
+    The end is replaced, too, because in a file that was not closed it is the end at the time of the last flush.
     """
     if len(block) < _SIZE or struct.unpack_from("<I", block, _SIZE - 4)[0] != lookup3(block[:-4]):
         raise ValueError("the superblock's checksum does not match")

@@ -1,4 +1,4 @@
-"""Write tables: rows arrive in batches of any size and are stored in whole chunks."""
+"""Write tables, whose rows arrive in batches of any size and are stored in whole chunks."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,18 +14,18 @@ from idealgas.log.hdf5.commit import DATASET, Commit, table_of
 
 
 class TableWriter:
-    """Writer of a table, whose columns have the same number of rows, in whole chunks.
+    """Writer of a table in whole chunks; all columns of the table have the same number of rows.
 
     Attributes:
-        columns: datasets, by path.
+        columns: datasets of the columns, by path.
         chunk: number of rows in a chunk.
         whole: number of rows in full chunks.
-        fill: number of rows in the growing chunk, the last one, which is not full.
-        tail: number of rows of the growing chunk that are in the file.
+        fill: number of rows in the growing chunk, which is the last chunk and not yet full.
+        tail: number of rows of the growing chunk that have been written to the file.
     """
 
     def __init__(self, columns: Mapping[str, StoredColumn], commit: Commit, rows: int) -> None:
-        """Continue a table after its first `rows` committed rows."""
+        """Continue a table after its first `rows` rows, which are committed."""
         self.columns = dict(columns)
         self.chunk = next(iter(columns.values())).chunk[0]
         self.whole = rows // self.chunk * self.chunk
@@ -39,15 +39,15 @@ class TableWriter:
                 pending[: self.fill] = committed[: self.fill]
 
     def append(self, start: int, stop: int, data: Sequence[np.ndarray]) -> None:
-        """Append the rows `start` up to, but not including, `stop` of the data, and write every chunk that gets full.
+        """Append the rows `start` up to, but not including, `stop` of the data, and write every chunk that fills up.
 
-        Rows of the data before `start` may be overwritten: if the pending rows fit there, they are copied in front of
-        the new rows, which is faster than copying all new rows behind the pending ones.
+        Rows of the data before `start` may be overwritten. If the pending rows fit there, they are copied in front of
+        the new rows, which is faster than copying all new rows behind the pending rows.
 
         Args:
             start: first row to append.
             stop: row after the last row to append.
-            data: arrays of all columns, in their order.
+            data: arrays of the columns, in the order of `columns`.
         """
         while start < stop:
             number = min(stop - start, self.chunk - self.fill)
@@ -77,7 +77,7 @@ class TableWriter:
         """Write the growing chunk, uncompressed, so that it can be rewritten in place.
 
         Args:
-            last: whether the chunk will not grow any further and can be compressed.
+            last: whether the chunk will not grow any further; it is then compressed instead.
         """
         if self.tail != self.fill:
             self._plain |= not last
@@ -85,10 +85,10 @@ class TableWriter:
             self.tail = self.fill
 
     def trim(self) -> None:
-        """Remove rows beyond the last one from the file, and rewrite the growing chunk, which may be half written.
+        """Remove all later rows from the file, and rewrite the growing chunk, which may be half written.
 
-        Datasets are truncated before this chunk, as HDF5 loses the filter mask of a directly written chunk if it
-        truncates a dataset within the chunk.
+        Datasets are truncated at the beginning of this chunk, because HDF5 loses the filter mask of a directly written
+        chunk when it truncates a dataset within the chunk.
         """
         for column in self.columns.values():
             if column.extent > self.whole + self.fill:
@@ -103,7 +103,7 @@ class TableWriter:
         return self.whole + self.tail
 
     def checksums(self) -> dict[str, int]:
-        """Return the CRC-32 of the stored rows of each column in the growing chunk, by path; 0 if there are none."""
+        """Return the CRC-32 of the stored rows in each column's growing chunk, by path; 0 if there are no such rows."""
         return {
             path: isal_zlib.crc32(pending[: self.tail]) if self.tail else 0
             for path, pending in zip(self.columns, self._pending, strict=True)
@@ -116,7 +116,7 @@ class TableWriter:
 
 @contextmanager
 def _named(path: str) -> Iterator[None]:
-    """Add the path of the dataset to the message of an error."""
+    """Add the path of the dataset to the message of any error raised in the context."""
     try:
         yield
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -124,13 +124,13 @@ def _named(path: str) -> Iterator[None]:
 
 
 def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dict[str, TableWriter]:
-    """Return writers of the tables of a file.
+    """Return writers for the tables of a file, by name.
 
-    Call this before HDF5 enters SWMR mode, in which it retries indefinitely where an index is damaged.
+    Call this function before HDF5 enters SWMR mode, in which HDF5 retries indefinitely if an index is damaged.
 
     Args:
         file: the file.
-        commit: its newest commit.
+        commit: newest commit of the file.
         keep: number of rows, by table, after which the writers continue.
     """
     columns: dict[str, dict[str, StoredColumn]] = {name: {} for name in commit.rows}
@@ -143,7 +143,7 @@ def open_tables(file: h5py.File, commit: Commit, keep: Mapping[str, int]) -> dic
 
 
 def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, fsync: bool = False) -> None:
-    """Flush the file, and then write the commit record of its rows. fsync: whether to force both to the disk."""
+    """Flush the file, and then write the commit record for its rows. fsync: whether to force both to the disk."""
     descriptor = file.id.get_vfd_handle()
     file.flush()
     if fsync:
@@ -154,7 +154,7 @@ def commit_tables(file: h5py.File, tables: Mapping[str, TableWriter], sequence: 
 
 
 def write_commit(file: h5py.File, tables: Mapping[str, TableWriter], sequence: int, size: int) -> None:
-    """Write the commit record of all stored rows. size: size of the file, bytes."""
+    """Write the commit record for all stored rows. size: size of the file, bytes."""
     rows = {name: table.stored for name, table in tables.items()}
     tails = {path: crc for table in tables.values() for path, crc in table.checksums().items()}
     Commit(sequence, size, rows, tails).write(file[DATASET].id)

@@ -13,11 +13,11 @@ from idealgas.log.hdf5.commit import Commit, commit_of
 from idealgas.log.hdf5.superblock import clear_consistency_flags
 
 OPTIONS: dict[str, Any] = {"libver": ("v110", "v110"), "locking": False}
-"""Options of `h5py.File`. HDF5 drops its own lock in SWMR mode, and on some systems it conflicts with `WriteLock`."""
+"""Options of `h5py.File`, without HDF5's own lock, which SWMR mode drops and which may conflict with `WriteLock`."""
 
 
 class ChangedError(Exception):
-    """A file has been written to since it was read."""
+    """A file has been changed since it was read."""
 
 
 class WritableFile:
@@ -32,13 +32,13 @@ class WritableFile:
 
         Args:
             path: path of the file.
-            commit: required newest commit of the file; None for any.
+            commit: newest commit that the file must have; None if any commit is accepted.
 
         Raises:
-            ChangedError: if the file has another commit.
+            ChangedError: if the newest commit of the file is a different one.
             BlockingIOError: if another writer has the file open.
             OSError: if the file cannot be opened for writing.
-            ValueError: if its superblock is damaged.
+            ValueError: if the superblock of the file is damaged.
         """
         self._lock = WriteLock(path)
         try:
@@ -56,7 +56,7 @@ class WritableFile:
 
     @property
     def _alone(self) -> bool:
-        """Whether no other code in this process has opened the file with HDF5, which would then share it."""
+        """Whether no other code in this process has the file open in HDF5, which would then be shared with it."""
         return h5py.h5f.get_obj_count(self.file.id, h5py.h5f.OBJ_FILE) == 1
 
     @property
@@ -67,8 +67,9 @@ class WritableFile:
     def close(self) -> None:
         """Close the file.
 
-        If other code in this process has the file open, HDF5 closes it only when that code does, and it remains locked
-        until then. HDF5 may crash when it closes a file that cannot be written, so it is only made to flush the file.
+        If other code in this process has the file open, HDF5 closes the file only when that code does, and the file
+        remains locked until then. HDF5 may crash while closing a file that cannot be written, so HDF5 only flushes the
+        file, and the file is then closed without HDF5 writing to it again.
 
         Raises:
             OSError: if flushing fails; the file is then abandoned.
@@ -85,7 +86,7 @@ class WritableFile:
             clear_consistency_flags(self._lock.descriptor)
 
     def abandon(self) -> None:
-        """Close a file that cannot be written to, and leave it as if its writer had been killed."""
+        """Close a file that can no longer be written, and leave it as if its writer had been killed."""
         if self._alone:
             self._discard_writes()
             self._lock.close()
@@ -94,7 +95,7 @@ class WritableFile:
                 self.file.close()
 
     def _discard_writes(self) -> None:
-        """Make HDF5 close the file without writing to it, as it would clear the flags even after a failed write."""
+        """Make HDF5 close the file without writing to it, because HDF5 clears the flags even after a failed write."""
         nowhere = os.open(os.devnull, os.O_RDWR)
         os.dup2(nowhere, self.file.id.get_vfd_handle())
         os.close(nowhere)
