@@ -1,7 +1,8 @@
 """Compilation: `njit` for entry points and decorators for the functions that they call, prefetching, aligned memory.
 
 numba's cache checks only the source file of an entry point and would return outdated code after a function in another
-file has changed. Here machine code is cached with digests of everything from which it was made, see `dependencies`.
+file has changed. This package caches machine code with digests of everything from which it was made; see
+`dependencies`.
 
 numba is imported when the first entry point is called, so that commands that compile nothing start quickly. Beyond what
 numba documents, this module uses the options `_nrt` and `no_cfunc_wrapper`; a dispatcher's `compile` and `_cache`,
@@ -35,8 +36,8 @@ CACHE_LINE = 64  # bytes
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """Options of entry points. Without numba's runtime (`_nrt`) arrays are not reference-counted, and none can be created.
 
-The caller must keep arrays alive. Reference counting needs an atomic operation wherever LLVM cannot prove it
-unnecessary, and makes the event loop five times slower.
+The caller must keep arrays alive. Reference counting needs an atomic operation wherever LLVM cannot prove that it is
+unnecessary, and would make the event loop five times slower.
 """
 _PART: dict[str, Any] = {"no_cpython_wrapper": True, **_OPTIONS}
 _INLINE: dict[str, Any] = {"forceinline": True, **_PART}
@@ -46,10 +47,10 @@ _NEEDLESS = {
     "FindLiterallyCalls", "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "AnnotateTypes",
     "DumpParforDiagnostics", "NopythonRewrites",
 }  # fmt: skip
-"""Passes of numba's compiler for language features that this package does not use; passes take most of the time."""
+"""Passes of numba's compiler for language features that this package does not use; passes dominate the compile time."""
 
 _declared: list[Callable[[], object]] = []
-"""Declarations to numba, to be made before an entry point is compiled or loaded."""
+"""Declarations to numba, which must be made before an entry point is compiled or loaded."""
 _compiling: list[tuple[str, set[str]]] = []
 """Keys of the functions that are being compiled, callers first, each with the keys of all parts that it uses."""
 _lock = threading.RLock()
@@ -85,7 +86,7 @@ class _Function(Part):
             return compiled
 
     def compile(self, signature: Any) -> Any:
-        """Compile for argument types, unless this has been done, and record which parts are used.
+        """Compile for argument types, unless this has been done before, and record which parts are used.
 
         numba calls this method for every call of the function in the code of another function.
         """
@@ -107,7 +108,7 @@ class _Function(Part):
 
     def _obtain(self, kinds: tuple) -> None:
         """Compile the function, unless it does nothing for these argument types."""
-        if not isinstance(self, EntryPoint):  # Python calls entry points, so that they cannot be left out
+        if not isinstance(self, EntryPoint):  # Python calls entry points, so they cannot be left out
             with suppress(Exception):
                 _compiling[-1][1].update(leave_out(self, kinds))
                 return
@@ -119,7 +120,7 @@ class _Function(Part):
 
 
 class EntryPoint(_Function):
-    """A function that is compiled when it is first called: without fastmath, without the GIL, and cached on disk."""
+    """A function that is compiled at its first call, without fastmath, and cached on disk; it runs without the GIL."""
 
     def __init__(self, function: Callable) -> None:
         """Make an entry point of a Python function."""
@@ -149,14 +150,14 @@ class EntryPoint(_Function):
             try:
                 _declare()
                 return super().compile(signature)
-            except (OSError, RuntimeError, ValueError) as error:  # callers would take these for errors of a file
+            except (OSError, RuntimeError, ValueError) as error:  # callers would mistake these for errors of a file
                 raise UserError(f"compilation failed: {' '.join(str(error).split())}") from error
             finally:
                 _seconds = before + time.perf_counter() - started  # includes entry points that this one calls
 
 
 class _Stored:
-    """Machine code of an entry point on disk, in the form of the cache of numba's dispatcher."""
+    """Machine code of an entry point on disk, with the interface of the cache of a numba dispatcher."""
 
     cache_path = None
 
@@ -164,18 +165,18 @@ class _Stored:
         self._name = name
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return the compiled result for argument types, or None if none that is up to date can be loaded."""
+        """Return the compiled result for argument types, or None if no result that is up to date can be loaded."""
         from numba.core.compiler import CompileResult
 
         target.refresh()
-        with suppress(Exception):  # damaged files raise almost anything
+        with suppress(Exception):  # damaged files may raise almost any error
             keys, code = files.load(self._name, _described(signature), digest)
             result = CompileResult._rebuild(target, *pickle.loads(code))
             _compiling[-1][1].update(keys)
             return result
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Store the compiled result for argument types, if the disk can be written."""
+        """Store the compiled result for argument types, if the disk is writable."""
         from numba.core.serialize import dumps
 
         if not result.library.has_dynamic_globals:
@@ -191,7 +192,7 @@ def _described(types: Any) -> str:
 
 @cache
 def _pipeline() -> dict[str, Any]:
-    """Compiler option that selects numba's usual passes except `_NEEDLESS`."""
+    """Return the compiler option that selects numba's usual passes except `_NEEDLESS`."""
     from numba.core.compiler import CompilerBase, DefaultPassBuilder
 
     class Short(CompilerBase):
@@ -211,33 +212,34 @@ def _declare() -> None:
 
 
 def njit(function: Callable) -> Any:
-    """Make a function an entry point of compiled code, see `EntryPoint`."""
+    """Make a function an entry point of compiled code; see `EntryPoint`."""
     return function if INTERPRETED else EntryPoint(function)
 
 
 def when_compiling(declare: Callable[[], object]) -> Callable[[], object]:
-    """Decorate a function with declarations to numba; it is called before the first entry point is compiled."""
+    """Decorate a function that makes declarations to numba; it is called before the first entry point is compiled."""
     Part(declare, declare.__module__, chooses=True)
     _declared.append(declare)
     return declare
 
 
 def inline(function: Callable) -> Any:
-    """Compile a small function, which LLVM inlines into the entry points that call it; Python calls it unchanged."""
+    """Decorate a small function, which LLVM inlines into the entry points that call it; Python calls it unchanged."""
     _Function(function, **_INLINE)
     return function
 
 
 def noinline(function: Callable) -> Any:
-    """Compile a long or rarely called function as part of its entry points; Python calls it unchanged."""
+    """Decorate a long or rarely called function, which is compiled without inlining; Python calls it unchanged."""
     _Function(function, forceinline=False, **_PART)
     return function
 
 
 def overload(function: Callable) -> Callable:
-    """Decorate a function that chooses inlined code by the types of its arguments; Python calls `function` instead.
+    """Decorate a function that chooses, by argument types, the code inlined for calls of `function` in compiled code.
 
-    For a function of another package, such as an operator, it is called only if an argument has a type of this package.
+    Python calls `function` itself. If `function` belongs to another package, as operators do, the decorated function is
+    called only if an argument has a type of this package.
     """
     ours = is_ours(function.__module__)
     target = part_of(function) or Part(function) if ours else None
@@ -265,7 +267,7 @@ def overload(function: Callable) -> Callable:
 
 
 class _Intrinsic(Part):
-    """A function that writes LLVM instructions, in the form required by numba's `intrinsic`."""
+    """A function that generates LLVM instructions, in the form required by numba's `intrinsic`."""
 
     def __init__(self, function: Callable) -> None:
         super().__init__(function, chooses=True)
@@ -330,7 +332,7 @@ _Intrinsic(_prefetch(CACHE_LINE, 1)).is_named(prefetch_next_line)
 
 
 def aligned(n: int, dtype: np.dtype) -> Any:
-    """Array of n zeros that shares no cache line with other data; a record array if the dtype is structured."""
+    """Return an array of n zeros that shares no cache line with other data; a record array if dtype is structured."""
     raw = np.zeros((-(-n * dtype.itemsize // CACHE_LINE) + 1) * CACHE_LINE, np.uint8)
     start = -raw.__array_interface__["data"][0] % CACHE_LINE
     kind: Any = np.recarray if dtype.names else np.ndarray

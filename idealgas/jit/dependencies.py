@@ -75,12 +75,12 @@ class Part:
 
     @property
     def digest(self) -> str:
-        """Digest of the code and of the values of its names; other parts enter with their keys only."""
+        """Digest of the code and of the values of its names; other parts are represented only by their keys."""
         return self._read[0]
 
     @property
     def mentions(self) -> frozenset[str]:
-        """Keys of the parts that the code names, and of the declarations in the modules of the classes it names."""
+        """Keys of the parts that the code names, and of declarations in the modules of the classes that it names."""
         return self._read[1] | {self.py_func.__module__}
 
 
@@ -90,13 +90,13 @@ def part_of(value: Any) -> Part | None:
 
 
 def digest(key: str) -> str:
-    """Return the digest of the parts with a key."""
+    """Return the digest of the parts with a given key."""
     text = " ".join(part.digest for part in _parts.get(key, ()))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def reached(keys: Iterable[str]) -> set[str]:
-    """Return the keys of all parts that are in the machine code or determined at compile time what is in it.
+    """Return the keys of all parts that are in the machine code or that determined at compile time what is in it.
 
     Args:
         keys: keys of the parts that were compiled.
@@ -125,7 +125,7 @@ def _codes(code: CodeType) -> list[CodeType]:
 def names_of(function: FunctionType) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the values of the global names in the code of a function, and of its closure.
 
-    A module that is not fixed is reduced to those of its names that the code contains.
+    A module of which `is_fixed` is false is reduced to those of its names that the code contains.
     """
     names = sorted({name for code in _codes(function.__code__) for name in code.co_names})
 
@@ -147,7 +147,7 @@ def is_ours(module: str) -> bool:
 
 
 def is_fixed(value: Any) -> bool:
-    """Whether a value is identified by its module and name, because its package has a fixed version."""
+    """Whether a value is identified by its module and name alone, because its package has a fixed version."""
     if isinstance(value, ModuleType):
         return value.__name__.partition(".")[0] in _FIXED
     module = getattr(value, "__module__", None) or type(value).__module__
@@ -155,7 +155,7 @@ def is_fixed(value: Any) -> bool:
 
 
 def copied(function: FunctionType) -> FunctionType:
-    """Copy a function; the global names and the closure of the copy have no values yet."""
+    """Return a copy of a function in which global names and the closure have no values yet."""
     names = {"__name__": function.__module__, "__builtins__": builtins}
     closure = tuple(CellType() for _ in function.__code__.co_freevars)
     copy = FunctionType(function.__code__, names, function.__name__, function.__defaults__, closure)
@@ -164,7 +164,7 @@ def copied(function: FunctionType) -> FunctionType:
 
 
 def fill(copy: FunctionType, names: tuple[dict[str, Any], dict[str, Any]]) -> FunctionType:
-    """Give the names of a copied function their values; parts are replaced by the objects that numba receives."""
+    """Give the names of a copied function their values; parts are replaced with the objects that numba receives."""
     copy.__globals__.update(_replaced(names[0]))
     for cell, value in zip(copy.__closure__ or (), _replaced(names[1]).values(), strict=True):
         cell.cell_contents = value
@@ -251,4 +251,4 @@ class _Reader:
 
         if isinstance(value, types.Type):
             return f"type {value}"
-        raise TypeError(f"compiled code cannot use {value!r}: it cannot be seen what has changed in it")
+        raise TypeError(f"compiled code cannot use {value!r}: changes in it cannot be detected")

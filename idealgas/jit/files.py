@@ -1,7 +1,7 @@
-"""Machine code on disk: a folder for each version of the compilers and kind of processor, a file for each result.
+"""Machine code on disk: a folder for each combination of compiler versions and processor, and a file for each result.
 
-A file contains the machine code of an entry point for given argument types, and the digests of everything from which it
-was made. There may be several files with different digests, for example from several branches of the sources.
+A file contains the machine code of an entry point for given argument types, and the digests of everything from which
+the code was made. There may be several files with different digests, for example from several branches of the source.
 """
 
 import atexit
@@ -23,7 +23,7 @@ import numpy as np
 from idealgas import system
 
 _FOLDERS, _SIGNATURES, _VERSIONS = 5, 500, 5
-"""Numbers of folders, of entry points with argument types, and of versions of each, that are kept at any age."""
+"""Numbers of folders, of entry points with argument types, and of versions of each, kept at any age."""
 _LIFETIME = 24 * 3600  # seconds since the last use after which any other file or folder is removed
 
 
@@ -31,9 +31,10 @@ _LIFETIME = 24 * 3600  # seconds since the last use after which any other file o
 def cache_folder() -> Path:
     """Return the folder for the machine code of this process, which is created on the first call.
 
-    It is in NUMBA_CACHE_DIR if this is set, otherwise in `idealgas` in the user's cache folder or, if that is not
-    usable, in a folder of the user among the temporary files; if none of these is usable, it is a temporary folder.
-    Machine code is loaded without further checks, so a folder that another user owns or can write is not used.
+    The folder is in NUMBA_CACHE_DIR if this variable is set, otherwise in `idealgas` in the user's cache folder. If
+    that is not usable, it is in a folder of the user among the temporary files and, as a last resort, it is a temporary
+    folder. Machine code is loaded without further checks, so a folder that another user owns or can write to is not
+    used.
     """
     import numba
 
@@ -53,7 +54,7 @@ def cache_folder() -> Path:
 
 
 def _compilers() -> str:
-    """Return a digest of everything on which machine code depends apart from the functions in it."""
+    """Return a digest of everything on which machine code depends, apart from the functions themselves."""
     import numba
     from llvmlite import binding
 
@@ -70,13 +71,13 @@ def _compilers() -> str:
 
 
 def _remove_if_own(folder: Path, process: int) -> None:
-    """Remove the temporary folder of a process; forked children also call this function, and leave the folder alone."""
+    """Remove the temporary folder of a process; forked children also call this function but leave the folder alone."""
     if os.getpid() == process:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def _remove_old(paths: Iterable[Path], kept: int) -> None:
-    """Remove all paths except those used last; another process may be doing the same."""
+    """Remove all paths except the most recently used; another process may be doing the same."""
     with suppress(OSError):
         used = sorted(((path.stat().st_mtime, path) for path in paths), reverse=True)
         for last, path in used[kept:]:
@@ -95,7 +96,7 @@ def load(name: str, signature: str, digest: Callable[[str], str]) -> tuple[set[s
     Args:
         name: name of an entry point.
         signature: types of its arguments.
-        digest: function that returns the current digest of the functions with a key.
+        digest: function that returns the current digest of the functions with a given key.
 
     Returns:
         The keys of the functions on which the machine code depends, and the machine code.
@@ -105,7 +106,7 @@ def load(name: str, signature: str, digest: Callable[[str], str]) -> tuple[set[s
     """
     folder = _folder(name, signature)
     for path in folder.iterdir() if folder.is_dir() else ():
-        with suppress(Exception):  # damaged files may raise almost anything
+        with suppress(Exception):  # damaged files may raise almost any error
             data = path.read_bytes()
             if zlib.crc32(data[4:]) == int.from_bytes(data[:4], "little"):
                 stored, digests, code = pickle.loads(data[4:])

@@ -1,4 +1,4 @@
-"""Functions that do nothing if effects are absent: they are detected by a trial in Python, and are not compiled.
+"""Functions that do nothing if effects are absent: a trial in Python detects them, and they are not compiled.
 
 Compiling a function takes about 40 ms, whatever its size, and half of the functions for a plain gas return at once,
 because their argument for an effect is None. In a trial all arguments except None are stand-ins on which every
@@ -29,13 +29,13 @@ class _Argument(int):
 
 
 def leave_out(part: Part, kinds: tuple) -> set[str]:
-    """Replace calls of a function by its result, if the function does nothing for these argument types.
+    """Replace calls of a function with its result if the function does nothing for these argument types.
 
     Returns:
         The keys of the functions that were run in the trial.
 
     Raises:
-        Exception: the function does something; the exception may be of any type.
+        Exception: the function does something; the exception can be of any type.
     """
     from numba.extending import lower_builtin
 
@@ -113,7 +113,7 @@ def _type(result: Any, kinds: tuple) -> Any:
 
 
 def _value(context: Any, builder: Any, result: Any, kind: Any, values: Any) -> Any:
-    """Write the LLVM instructions for a result."""
+    """Generate the LLVM instructions for a result."""
     if isinstance(result, tuple):
         items = [_value(context, builder, *each, values) for each in zip(result, kind, strict=True)]
         return context.make_tuple(builder, kind, items)
