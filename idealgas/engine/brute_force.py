@@ -123,7 +123,7 @@ def pair_event(record, i, j, effects, best):
 
 @inline
 def image_range(periodic, along_y):
-    """Range of the neighbouring images along an axis: -1 to 1 if it is periodic, otherwise only 0."""
+    """Range of the neighbouring images along an axis: -1 to 1 if the axis is periodic, otherwise only 0."""
     return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
 
 
@@ -141,7 +141,7 @@ def sheared_range(shear, most, unsheared):
 
 @inline
 def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
-    """Local time of a disc's next crossing of a periodic side along an axis, and whether its direction is positive.
+    """Local time of a disc's next crossing of a periodic side along an axis, and whether it moves forwards then.
 
     Under gravity the time is computed from the disc's state at local time `now`, up to which crossings are counted.
     """
@@ -162,7 +162,7 @@ def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
 def boundary_crossing_event(record, i, periodic, gravity, now, best):
     """The earlier of the event `best` and disc i's next crossing of a periodic side.
 
-    A crossing changes no position or velocity, only the images in which contacts of the disc are searched.
+    A crossing does not change a position or a velocity, but only the images in which contacts of the disc are searched.
     """
     if periodic is not None:
         for axis in range(2):
@@ -191,8 +191,8 @@ def next_event(record, box, effects, now):
     """Return the earliest event as (local time, kind, disc, partner, image_x, image_y); records are in order of id.
 
     now: local time up to which all events have happened. For a BOUNDARY_CROSSING the partner is the axis, and image_x
-    the direction. Events are compared in the order that applies if they are simultaneous: by the smaller id, then
-    walls, then the heat bath, then the other id.
+    the direction. Events are searched in the order of simultaneous events, by the smaller id, then walls, then the
+    heat bath, then the other id, so that the first of them is returned.
     """
     best = (NEVER, DISC, 0, 0, 0, 0)
     for i in range(record.shape[0]):

@@ -52,10 +52,10 @@ def epoch_length(
     thermostat_collisions: float = 0.0,
     fall: float = 0.0,
 ) -> float:
-    """Return the length of an epoch, time: a power of two, in which each disc has 32 to 64 events.
+    """Return the length of an epoch, time: a power of two such that 32 to 64 events per disc are expected.
 
     In a dilute gas there are fewer events per disc, but at least 256 to 512 events in all; otherwise starting an epoch
-    would take longer than its events. If the last digits of the sum of the speeds decide on the power of two, the sum
+    would take longer than its events. If the last digits of the sum of the speeds determine the power of two, the sum
     is correctly rounded, so that the length depends on neither the order of the discs nor the processor.
 
     Args:

@@ -39,7 +39,7 @@ class Threads(NamedTuple):
         aborted: number of these slices that one thread had to repeat.
         min_events: smallest number of events per call of `advance` that several threads can share.
         serial_events: largest number of events per call for which one thread works alone and leaves another core free;
-            0 if a core is free anyway or none can be.
+            0 if a core is free anyway or none can be freed.
     """
 
     number: int = 1

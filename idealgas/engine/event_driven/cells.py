@@ -143,7 +143,7 @@ def order_by_cell(position: np.ndarray, cells: Cells) -> np.ndarray:
 
 @inline
 def own_cells(cells, coarse, disc):
-    """Return the coarse or the fine cells, whichever a disc belongs in."""
+    """Return the cells, coarse or fine, in which a disc is listed."""
     if coarse is not None:
         return coarse.cells if disc.r > coarse.limit else cells
     return cells

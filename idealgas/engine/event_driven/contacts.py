@@ -25,7 +25,7 @@ U = np.uintp
 
 @inline
 def images_to(state, k, has_images, record, i, j, periodic):
-    """Shift (x, y), in box lengths, from the recorded position of disc j to its image near disc i, candidate k."""
+    """Shift (x, y), in box lengths, from the recorded position of disc j, candidate k, to its image near disc i."""
     if periodic is not None:
         seen = state.images[U(k)]
         image = (np.int64(seen.x), np.int64(seen.y)) if has_images else NO_IMAGES
@@ -103,7 +103,7 @@ def predict_tied_contact(record, ids, state, count, has_images, i, effects):
 
 @inline
 def own_walls(walls, coarse_walls, coarse, disc):
-    """Return the wall segments of the coarse or of the fine cells, whichever a disc belongs in."""
+    """Return the wall segments of the cells, coarse or fine, in which a disc is listed."""
     if coarse is not None:
         return coarse_walls if disc.r > coarse.limit else walls
     return walls

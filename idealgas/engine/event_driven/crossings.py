@@ -44,8 +44,8 @@ def accelerated_crossing(disc, along_y, axis, now, pull):
     """Find the next cell crossing or side contact along one axis under gravity.
 
     Arguments and results are as in `straight_crossing`; pull: acceleration along the axis, length/time². Cell crossings
-    are computed from the disc's position at local time `now`, which is in its cell, and side contacts from its stored
-    position.
+    are computed from the disc's state at local time `now`, when the disc is in its cell, and side contacts from its
+    stored state.
     """
     cell, size, cells_across, length, boundary_crossings, is_periodic = axis
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)

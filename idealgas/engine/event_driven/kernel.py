@@ -1,8 +1,8 @@
 """The loop over the events of the event-driven method.
 
-A predicted contact belongs to the disc whose events were predicted more recently. If its partner has had an event since
-then, the contact is stale and is predicted again. One thread owns all discs, or each of several threads owns the discs
-in a slab of the box; see `synchronization`.
+A predicted contact belongs to that disc of the pair whose events were predicted more recently. If the partner has had
+an event since then, the contact is stale and is predicted again. Either one thread owns all discs, or each of several
+threads owns the discs in a slab of the box; see `synchronization`.
 """
 
 from enum import IntEnum

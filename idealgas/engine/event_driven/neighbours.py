@@ -1,4 +1,4 @@
-"""Search for the discs that a disc may meet, in the cells around it and, if discs differ greatly, in coarse cells."""
+"""Search for the discs that a disc may meet, in the cells around it and, if sizes differ greatly, in coarse cells."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Pistons in the schedule. The leaf of a piston in the tree holds its earliest contact with any of the discs."""
+"""Pistons in the schedule. Each piston has a leaf in the tree, which holds its earliest contact with any disc."""
 
 import numpy as np
 

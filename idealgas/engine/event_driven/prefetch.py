@@ -22,7 +22,7 @@ U = np.uintp
 
 
 def make_pipeline(n: int, levels: int) -> np.ndarray | None:
-    """Make (3,) i8: the indices of two discs whose memory is being fetched, and the level of the branches.
+    """Make the pipeline, (3,) i8: indices of two discs whose memory is being fetched, and the level of the branches.
 
     Returns None for a gas of few discs. levels: number of levels of the schedule, of which the last is the root.
     """

@@ -27,7 +27,7 @@ from idealgas.physics.absorbing import inside
 from idealgas.physics.periodic import periodic_axes
 
 SLICE_FRACTION = 0.8
-"""Planned number of events in a slice over the number up to a limit; a slice that exceeds the limit is wasted."""
+"""Planned fraction, in a slice, of the events that remain before a limit; a slice that exceeds the limit is wasted."""
 
 TRIAL_FACTOR = 2
 """Number of events in a slice that measures the speed, in units of the smallest number in a shared slice.
