@@ -227,7 +227,7 @@ class Simulation:
         return gas, self.effects._replace(periodic=periodic, flow=flow)
 
     def _dated(self, error: Exception) -> UserError:
-        """Return the error of a kernel with the time of the last event, because a kernel cannot format the time."""
+        """Add the time of the last event to the error of a kernel, which cannot format the time itself."""
         return UserError(f"after t = {self.last_event_time:g}: {error}")
 
     def _synchronised(

@@ -67,7 +67,7 @@ def read_state(path: Path, time: Instant) -> State:
 
 
 def _inside(columns: dict[str, Any]) -> dict[str, Any]:
-    """Return the columns without discs that have left the gas, whose position and velocity are nan in frames."""
+    """Return the columns without the discs that have left the gas; their positions and velocities are nan in frames."""
     motion = [np.asarray(columns.get(name, 0.0), float) for name in ("position", "velocity")]
     if motion[0].shape != motion[1].shape or motion[0].ndim != 2:
         return columns
@@ -139,7 +139,7 @@ def _lines(file: IO[str]) -> Iterator[str]:
 
 
 def _chunks(rows: Iterable[Sequence[str]], width: int) -> Iterator[np.ndarray]:
-    """Yield the text of the cells (n, width) in chunks of rows."""
+    """Yield the cells of the rows as text, in chunks (n, width) of n rows."""
     rows = iter(rows)
     while chunk := list(islice(rows, ROWS)):
         if any(len(row) != width for row in chunk):
@@ -188,7 +188,7 @@ def _csv(path: Path, time: Instant) -> State:
             raise StartError("file", "unknown or repeated column", wrong[0], ", ".join(sorted(known)))
         if "time" not in names:
             if time != "end":
-                raise StartError("time", "no column time in the file", f"{time:g}", '"end"')
+                raise StartError("time", "no time column in the file", f"{time:g}", '"end"')
             moment.begin(0.0)
             moment.add(_state_columns(dict.fromkeys(names, np.empty(0, object))))
         for cells in _chunks((row for row in rows if row), len(names)):

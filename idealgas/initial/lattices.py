@@ -102,7 +102,8 @@ def _triangular(low: np.ndarray, high: np.ndarray, columns: int, rows: int) -> n
 def lattice_sites(lattice: TriangularLattice) -> np.ndarray:
     """Return the sites (M, 2), length, of a triangular lattice that fills a periodic box.
 
-    The first site is a quarter of a spacing, along the rows, and half a row from the lower left corner.
+    Along the rows, the first site is a quarter of a spacing from the lower left corner of the box; across the rows, it
+    is half the distance between rows from this corner.
     """
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(lattice.columns), np.arange(lattice.rows)))
     along, across = (column + row % 2 / 2 + 0.25) * lattice.spacing, (row + 0.5) * lattice.height

@@ -68,7 +68,10 @@ def place_at_random(
 
 
 def _linked_lists(room: Room, position: np.ndarray, placed: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first of the discs `placed` in each cell, and the next disc after each of n discs; -1 for none."""
+    """List the discs `placed` by cell.
+
+    Returns the first disc in each cell and, for each of n discs, the next disc in the same cell; -1 if there is none.
+    """
     placed = placed[::-1]  # the last come first, because positions are most often blocked by discs on lattices
     cell = cells_of(room, position[placed])
     order = np.argsort(cell, kind="stable")
@@ -126,10 +129,11 @@ def _take_out(room, lists, i):
 
 
 def insert(room, lists, radius, bounds, ids, random, placed, max_refusals):
-    """Place discs at random in the order of `ids`, the first `placed` being in place; return the new number in place.
+    """Place discs at random in the order of `ids`; return the number of discs that are then in place.
 
-    lists: (first, behind, xs, ys), the linked lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see
-    `place_at_random`. In Python all of these are lists; in compiled code they are arrays.
+    placed: number of discs, the first of `ids`, that are already in place. lists: (first, behind, xs, ys), the linked
+    lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see `place_at_random`. In Python all lists and
+    bounds are lists; in compiled code they are arrays.
     """
     first, behind, xs, ys = lists
     refused = 0

@@ -19,7 +19,10 @@ from idealgas.state import MOST_PAIRED, Gas
 ENERGY, ACTION, MOMENTUM, HEAT = "energy", "energy time", "mass length/time", "energy length"
 TENSOR = ("xx", "xy", "yy", "yx")
 LEAST_SHARE = 2.0**-40
-"""Smallest ratio of the typical energy to the largest energy that effects may add, so that sums stay < 2^100 units."""
+"""Smallest ratio of the typical energy to the largest energy that effects may add.
+
+The typical energy is raised to this share so that sums remain far below 2^100 units.
+"""
 
 
 def make_effects(scene: Scene, gas: Gas) -> Effects:

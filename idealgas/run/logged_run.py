@@ -66,7 +66,7 @@ class RunHistory(NamedTuple):
     Attributes:
         start_energy: energy account at time 0.
         overlap: deepest overlap of two discs, divided by the sum of their radii.
-        outside: largest distance by which a disc protruded beyond a side, divided by its diameter.
+        outside: largest distance by which a disc protruded beyond a side, divided by the diameter of the disc.
         snapshots: number of snapshots.
         begun: whether the log already contains the start of the run.
     """
@@ -162,7 +162,7 @@ class LoggedRun:
         self._seconds += time.perf_counter() - started
 
     def _begin(self, least: int) -> None:
-        """Store the start of a new run, and compile before the time is measured; least: fewest events in a slice."""
+        """Store the initial state of a new run, and compile before timing starts; least: fewest events in a slice."""
         self._slice_events = max(4096, least)
         if not self._begun:
             if self._scene.log.snapshot_every:

@@ -102,7 +102,7 @@ def _scene_to_resume(log: Log, overrides: Sequence[str]) -> tuple[str, Scene]:
 
 
 def _check_end(log: Log, scene: Scene) -> None:
-    """Raise LogError if the new end is before the end of the log, or at a number that has already been reached."""
+    """Raise LogError if the new end is before the end of the log, or is a number that has already been reached."""
     run, n = scene.run, len(log.discs)
     stop, time = stop_of(scene, n), log.end_time
     events, collisions, trials = log.counts.values()

@@ -133,7 +133,7 @@ def open_run(
 
 
 def warm_up(scene: Scene) -> float:
-    """Compile the machine code for a scene and return the time taken in seconds, which is short if code was cached.
+    """Compile the machine code for a scene; return the time in seconds, which is short if the code was cached.
 
     The scene is run up to its first event, and the log is deleted. Raises the same errors as `simulate`.
     """

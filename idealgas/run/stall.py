@@ -40,7 +40,7 @@ OVERDUE = 8
 
 
 class StallDetector:
-    """Detects runs that will not end, because there are no events, or no pair collisions if only these end the run.
+    """Detects runs that will not end because there are no events or, if only these end the run, no pair collisions.
 
     In a resumed run, counting restarts from zero.
     """
@@ -56,7 +56,7 @@ class StallDetector:
         self._expected = 0.0  # pair collisions expected in these epochs
         self._missed = 0.0  # pair collisions expected since the last one, if only pair collisions end the run
         self._overdue: float = OVERDUE
-        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id in the epochs since:
+        self._hits = np.zeros(len(simulation.gas), int)  # collisions of each disc by id since `_hits_since`
         self._hits_since = simulation.time
 
     def end_epoch(self) -> None:
@@ -129,7 +129,7 @@ class StallDetector:
 
 
 def _expected_collisions(gas: Gas, duration: float, absorbing: np.ndarray | None = None) -> float:
-    """Number of pair collisions expected in a time from kinetic theory and the velocities relative to their mean."""
+    """Number of pair collisions expected during a time from kinetic theory, with velocities relative to their mean."""
     here = inside(gas.position[:, 0], absorbing)
     gas = replace(gas, velocity=gas.velocity[here], radius=gas.radius[here], mass=gas.mass[here])
     if (n := len(gas)) < 2:

@@ -133,7 +133,7 @@ class SteeredRun(LoggedRun):
         if self.time == 0:
             raise UserError("the run has not begun: change the scene itself")
         if len(setting.encode()) > LONGEST_SETTING:
-            raise UserError(f"a setting of {len(setting.encode())} bytes (allowed at most {LONGEST_SETTING})")
+            raise UserError(f"setting: too long (got {len(setting.encode())} bytes; allowed <= {LONGEST_SETTING})")
         simulation, change = self._simulation, SceneChange(self.time, setting)
         self._scene = changed_scene(self._scene, change)
         self._stall.end_epoch()

@@ -88,7 +88,7 @@ def count_simultaneous(time, now, events_at_this_time, sub):
 
 @inline
 def check_rows(time, sub):
-    """Note the time of an event with rows; abort if it is that of the previous one and a disc was received in between.
+    """Note an event with rows; abort if the previous one had the same time and a disc was received in between.
 
     If the received disc takes part in the event, the order of the two events is undefined, and the merge cannot detect
     this because their rows are adjacent.
@@ -281,8 +281,8 @@ def may_happen(record, ids, state, i, time, sub):
 
     Returns 1 if it may, with its interfaces locked, 0 if not, or ABORTED. An event of the interior may happen unless it
     is far ahead of the neighbours. A halo event is announced, so that a neighbour can see whether both have predicted
-    the same event. Once the event appears to be the first, its interfaces are locked, and the decision is repeated:
-    before it was locked out, the neighbour may still have collided with the partner, moved it, or sent a disc.
+    the same event. Once the event appears to be the first, its interfaces are locked, and the decision is repeated,
+    because the neighbour may have collided with the partner, moved it or sent a disc before they were locked.
     """
     private = sub.private[0]
     where = 0

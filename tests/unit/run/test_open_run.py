@@ -123,7 +123,7 @@ def test_a_closed_log_takes_nothing_more_and_what_cannot_be_steered_is_one_line(
                 run.set_velocities(velocity, discs)
         run.set_velocities(np.empty((0, 2)), [])
         run.advance(until=1)
-        with pytest.raises(UserError, match=r"^a setting of 315 bytes \(allowed at most 256\)$"):
+        with pytest.raises(UserError, match=r"^setting: too long \(got 315 bytes; allowed <= 256\)$"):
             run.change(f"wall.{'x' * 300}.open=true")
         run.advance()
         with pytest.raises(UserError, match=r"^the run has reached the end of its scene$"):
