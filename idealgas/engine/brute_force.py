@@ -141,9 +141,10 @@ def sheared_range(shear, most, unsheared):
 
 @inline
 def boundary_crossing_along(disc, along_y, crossings, length, gravity, now):
-    """Local time of a disc's next crossing of a periodic side along an axis, and whether it moves forwards then.
+    """Find a disc's next crossing of a periodic side along an axis.
 
-    Under gravity the time is computed from the disc's state at local time `now`, up to which crossings are counted.
+    Returns its local time, and whether the crossing is in the positive direction. Under gravity the time is computed
+    from the disc's state at local time `now`, up to which crossings are counted.
     """
     position, velocity = (disc.y, disc.vy) if along_y else (disc.x, disc.vx)
     if gravity is not None:

@@ -132,8 +132,8 @@ def insert(room, lists, radius, bounds, ids, random, placed, max_refusals):
     """Place discs at random in the order of `ids`; return the number of discs that are then in place.
 
     placed: number of discs, the first of `ids`, that are already in place. lists: (first, behind, xs, ys), the linked
-    lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see `place_at_random`. In Python all lists and
-    bounds are lists; in compiled code they are arrays.
+    lists of the cells and the (N,) coordinates, length. bounds: (N, 4), see `place_at_random`. In Python these values,
+    `radius` and `ids` are lists; in compiled code they are arrays.
     """
     first, behind, xs, ys = lists
     refused = 0

@@ -24,7 +24,7 @@ from idealgas.system import cores
 
 
 class Tuning(NamedTuple):
-    """Parameters of the threads that only change their speed.
+    """Parameters of the threads, which affect only the speed.
 
     Attributes:
         min_rows: smallest number of rows of cells in a slab.

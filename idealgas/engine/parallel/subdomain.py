@@ -39,7 +39,7 @@ clock stands still or runs backwards, or an error occurred."""
 MAX_SIMULTANEOUS = 10_000  # consecutive events of a slab at one instant, after which one thread repeats the slice
 
 FLAG, ACTIVE = 0, LINE  # words: reason why the slice is aborted, or 0; number of threads with events left
-FIRST_LINE = 2  # number of lines before the slabs' lines, each with a clock and the time and disc of a halo event
+FIRST_LINE = 2  # lines before those of the slabs, each of which holds a clock, and the time and disc of a halo event
 BEFORE_ALL = -1.0  # a time before all events
 
 U = np.uintp
