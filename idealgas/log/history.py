@@ -284,7 +284,7 @@ class LogHistory(LogHeader):
         return Replay(start, self.columns, self.box, self.wrapped_axes, gravity_at, self.escapes)
 
     def _start_arrays(self) -> dict[str, np.ndarray]:
-        """Return the initial state of the discs as arrays, named as in a checkpoint."""
+        """Return the initial state of the discs as arrays by name, as in a checkpoint."""
         names = self._file.names("checkpoints")
         arrays = {"velocity": self.discs.velocity, "position": self.discs.position}
         if not self.has_positions:

@@ -77,7 +77,7 @@ class Checkpoint(NamedTuple):
 
 
 class Checkpoints(Sequence[Checkpoint]):
-    """The checkpoints of a log, each read from the file when it is indexed."""
+    """The checkpoints of a log; each is read from the file when it is indexed."""
 
     def __init__(self, file: LogFile, rows: int, check: Callable[[float, int], None]) -> None:
         """Read the times and rows of the checkpoints up to event row `rows`.

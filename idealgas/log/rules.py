@@ -33,7 +33,7 @@ ORDERED = ("time", "row", "epoch", "step", "trial")
 """Columns whose values are never negative and never decrease."""
 
 MOST_PACKED = 1100
-"""Largest allowed number of bytes per byte of a compressed file; deflate cannot exceed 1032."""
+"""Largest allowed ratio of a dataset's size to the size of the file; deflate compresses at most by a factor of 1032."""
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST, SLOWEST = 1e-100, 1e50, 1e150, 1e-61
@@ -123,7 +123,7 @@ class Rules:
             raise ValueError(f"entries of shape {stored.chunk[1:]} (allowed {column.shape})")
 
     def _declaration(self, path: str, stored: StoredColumn) -> Column:
-        """Return the declared type and shape of a column, which for observables and effects may be any."""
+        """Return the declared type and shape of a column, including columns of observables and effects."""
         table, *names = path.split("/")
         if path in self._declared:
             return self._declared[path]

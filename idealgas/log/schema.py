@@ -55,7 +55,7 @@ class Wall(NamedTuple):
 
 
 CHECKPOINT_COLUMNS = (Column("time", "f8", (), "time"), Column("row", "i8"), Column("epoch", "i8"))
-"""Columns of all checkpoints: the time, and the numbers of event rows and of epochs before it."""
+"""Columns of all checkpoints: the time, and the numbers of event rows and epochs before the checkpoint."""
 CHECKPOINT_ARRAYS = (POSITION, VELOCITY)
 """Default columns of a checkpoint that have an entry for each disc."""
 SAMPLE_COLUMNS = (Column("step", "i8"), Column("time", "f8", (), "time"))
@@ -87,9 +87,9 @@ VERSIONS = ("idealgas", "python", *PACKAGES, "hdf5", "trajectory")
 """Attributes of the root and of the group `versions`."""
 
 SHORTEST_CHUNK = 8192
-"""Smallest number of event rows in a chunk, not smaller because even a short run may be resumed to a later end."""
+"""Smallest number of event rows in a chunk, even for a short run, which may be resumed to a later end."""
 DISC_RECORDS = 4096
-"""Approximate number of discs times states in a chunk of checkpoints or snapshots, which has at least one state."""
+"""Approximate number of disc states in a chunk of checkpoints or snapshots, which contains all discs at least once."""
 SAMPLES = 1024
 """Number of rows in a chunk of `observables`."""
 SUMMARY_ROWS = 64
@@ -188,7 +188,7 @@ def write_header(file: h5py.File, gas: Gas, layout: LogLayout, seed: int, trajec
 
 
 def create_tables(file: h5py.File, discs: int, layout: LogLayout, text_sizes: Mapping[str, int]) -> None:
-    """Create all tables that have columns, without rows, and the commit record, which lists their datasets.
+    """Create all tables that have columns, still without rows, and the commit record, which lists the datasets.
 
     Args:
         file: the new file.

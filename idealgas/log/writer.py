@@ -164,7 +164,7 @@ class LogWriter:
         self._flushed = self.rows = self._events.stored if self._events else 0
         self._due = math.inf
         self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
-        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the latest buffer is still in the CPU cache
+        self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the buffer used last is still in the CPU cache
         for _ in range(BUFFERS if self._events else 0):
             self._free.put(empty_batch(BLOCK + 1, columns_named(self._names)))
         self._queue: queue.Queue[object] = queue.Queue(2 * BUFFERS)

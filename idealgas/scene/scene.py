@@ -73,7 +73,7 @@ class Scene(Document, metaclass=_SceneType):
         return self
 
     def report(self, issues: Sequence[Issue]) -> list[str]:
-        """Return a line with file name and line number for each issue; for issues detected after the scene's check."""
+        """Return a line, with file name and line number, for each issue detected after the scene was checked."""
         return self._origin.report(issues)
 
 

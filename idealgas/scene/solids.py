@@ -86,7 +86,7 @@ def _curves(
 ) -> tuple[list[list[tuple[WallTable, bool]]], tuple[tuple[int, Point], ...]]:
     """Return the closed curves and the loose ends of walls.
 
-    A curve is a list of walls, each with a flag that says whether the curve runs from the start of the wall to its end.
+    A curve is a list of walls, each with a flag that is true if the curve runs from the start of the wall to its end.
     A loose end is the number of a wall and the point at which no other wall, or more than one, continues it.
     """
     at: dict[tuple[str | None, Point], list[int]] = defaultdict(list)

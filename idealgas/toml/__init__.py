@@ -1,1 +1,1 @@
-"""TOML files: parsing with line numbers, overrides, and error messages, for documents of any model."""
+"""Read TOML files with line numbers, apply overrides, and format error messages; independent of scenes."""

@@ -1,1 +1,1 @@
-"""Export of logs to files that other programs read."""
+"""Export logs to files that other programs can read."""

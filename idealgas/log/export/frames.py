@@ -110,7 +110,7 @@ def write_h5md3d(log: Log, times: Sequence[float], path: Path) -> int:
 
 
 class _Target(io.RawIOBase):
-    """A file that hides failures from HDF5, which might crash after a failed write; it then ignores all calls.
+    """A file that hides failures from HDF5, which may crash if a write fails; after a failure, all calls are ignored.
 
     Attributes:
         failure: error raised by the first call that failed; None if no call failed.

@@ -26,7 +26,7 @@ RANDOM_PACKING = 0.65
 """Largest packing fraction at which discs can be placed at random; see `idealgas.initial.placement`."""
 
 RESOLUTION = 1e-9
-"""Smallest radius relative to the longer side of the box; at smaller radii, rounding would blur contacts and gaps."""
+"""Smallest radius relative to the longer side of the box; below it, floats may not distinguish a contact from a gap."""
 
 PERIODIC_ONLY = ("triangular", "compressed")
 """Placements that require a box with four periodic sides and fill all of it."""
@@ -66,7 +66,7 @@ def species_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _given_species_issues(scene: Document, tables: dict[str, int]) -> Iterator[Issue]:
-    """Check that given discs have the radius and mass of their species, and a species if velocities are to be drawn."""
+    """Check that given discs agree with their species, and that they have a species if new velocities are drawn."""
     discs = scene.explicit_discs
     for k, name in enumerate(discs.names):
         if name not in tables:
@@ -229,7 +229,7 @@ def placement_issues(scene: Document) -> Iterator[Issue]:
 
 
 def _compressed(scene: Document, kinds: list[tuple[int, Species]], i: int) -> Iterator[Issue]:
-    """Check that compressed discs have a wide enough box without walls, and that all other discs are compressed too."""
+    """Check that compressed discs have a sufficiently wide box without walls, and that all discs are compressed."""
     key: Key = ("species", i, "placement")
     uncompressed = [f"species.{s.name}.placement = {s.placement}" for _, s in kinds if s.placement != "compressed"]
     uncompressed += ["[start]" if scene.start else "[[disc]]"] if len(scene.explicit_discs) else []

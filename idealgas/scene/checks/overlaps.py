@@ -70,9 +70,9 @@ def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
 
 
 def overlapping(discs: InitialDiscs, box: Box | None, accepted: float = 0.0) -> Iterator[tuple[int, int, float]]:
-    """Yield the indices and the distance of discs that overlap by more than rounding errors and the accepted overlap.
+    """Yield the indices and distance of each pair of discs that overlap by more than rounding and the accepted overlap.
 
-    At most MOST_OVERLAPS pairs are returned.
+    At most MOST_OVERLAPS pairs are yielded.
 
     Args:
         discs: the discs.
@@ -108,7 +108,7 @@ def images(position: np.ndarray, radius: np.ndarray, box: Box | None) -> tuple[n
 def overlaps(
     centre: np.ndarray, radius: np.ndarray, extent: float, accepted: float = 0.0
 ) -> Iterator[tuple[int, int, float]]:
-    """Yield the indices of each two discs that overlap, lower index first, and the distance between their centres.
+    """Yield the indices of each pair of overlapping discs, lower index first, and the distance between their centres.
 
     Args:
         centre: (M, 2), length.
@@ -217,7 +217,7 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
 
 
 def _distance_to_ends(points: np.ndarray, wall: WallTable) -> np.ndarray:
-    """Return the distances of points (M, 2) from the ends of a wall that discs pass; infinite if it lets both ways."""
+    """Return the distances of points (M, 2) from the ends of a permeable wall; infinite if discs pass both ways."""
     if wall.permeable_from is None:
         return np.full(len(points), np.inf)
     return np.min([np.hypot(*(points - end).T) for end in (wall.start, wall.end)], axis=0)

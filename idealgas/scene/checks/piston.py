@@ -28,7 +28,7 @@ CLOSE_PACKING = math.pi / math.sqrt(12)
 
 
 def piston_names(pistons: Sequence[PistonTable]) -> list[str]:
-    """Return the names of the pistons in messages: 'the piston' if there is only one, else 'piston NAME or NUMBER'."""
+    """Return the names of the pistons in messages: 'the piston' if there is only one, else 'piston' and its name."""
     return ["the piston"] if len(pistons) == 1 else [f"piston {p.name or k}" for k, p in enumerate(pistons)]
 
 
@@ -329,7 +329,7 @@ def _crushed_issues(scene: Document, gases: list[np.ndarray]) -> Iterator[Issue]
 def _given_places(scene: Document) -> list[tuple[int, list[tuple[float, float]]]]:
     """Return numbers and tracks of the obstacles that never yield: sides and pistons with prescribed velocities.
 
-    The sides have the numbers -1 and K, where K is the number of pistons. A piston at a side replaces this side.
+    The sides have the numbers -1 and K, where K is the number of pistons. Such a piston at a side replaces that side.
     """
     tables, length = scene.piston, scene.box.size[scene.piston[0].axis]
     tracks = [(k, track(scene, piston)) for k, piston in enumerate(tables) if piston.mass is None]

@@ -66,7 +66,7 @@ def method_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]
 def _step_issues(scene: Document) -> Iterator[Issue]:
     got = f'method = "{TIME_DRIVEN}"'
     if scene.run.dt is None:
-        yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the step in time")
+        yield Issue((("run", "dt"), ("run", "method")), "missing", got, "a number > 0, the time step")
     for place in _keys(scene, "allows_time_steps"):
         yield Issue((place, ("run", "method")), "not supported by time steps", got, f"event_driven, {BRUTE_FORCE}")
 
@@ -74,7 +74,7 @@ def _step_issues(scene: Document) -> Iterator[Issue]:
 def _precision_issues(scene: Document) -> Iterator[Issue]:
     """Check for effects, which are supported only in double precision.
 
-    The exception is steering in float32, because reversed velocities are the same in every precision.
+    The exception is steering in float32: a reversal rounds velocities to float64, which is exact for float32.
     """
     for place in _keys(scene):
         if place == ("steering",) and scene.run.precision == "float32":
@@ -124,7 +124,7 @@ def _monte_carlo_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[
 
 
 def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
-    """Check that v_ref is not too small, which the run itself might not detect before it ends."""
+    """Check that v_ref is large enough; the run itself might not detect a small value before it ends."""
     for i, s in enumerate(scene.species) if scene.draws_velocities else scene.placed:
         still = s.velocities or s.count <= 1
         least = 0.0 if still else mean_speed([s], np.empty((0, 2))) * s.largest_radius / scene.largest_radius
@@ -136,7 +136,7 @@ def _slow_issues(scene: Document, v_ref: float) -> Iterator[Issue]:
 
 
 def number_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
-    """Check that the run is not too long for the clock and has not too many snapshots, steps or trials."""
+    """Check that the run is not too long for the clock and does not have too many snapshots, steps or trials."""
     run, end = scene.run, scene.expected_end
     if run.until is not None and LONGEST * scene.mean_free_time < end:
         got = f"{run.until}, about {run.until / scene.mean_free_time:.3g} mean free times"
