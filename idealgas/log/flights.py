@@ -22,7 +22,7 @@ BATCH = 2 * BLOCK
 """Largest number of pieces of flights in a batch, unless a single flight has more."""
 
 NO_EVENT = 255
-"""Kind of a flight that does not end with an event, because it is cut at an edge or not over at the last edge."""
+"""Kind of a flight that does not end with an event, because it is cut or still in progress at the last edge."""
 NOBODY = -(2**31)
 """Value of `partner` for a flight that does not end with an event."""
 
@@ -79,7 +79,7 @@ _STATE = {"position", "velocity", "image", "angular_velocity"}
 
 
 class Flights(NamedTuple):
-    """Flights of discs, ordered by the events at their ends; flights that are not over at the last edge come last.
+    """Flights of discs, ordered by the events at their ends; flights still in progress at the last edge come last.
 
     The two flights that end in a collision of two discs are in the same batch, with the flight of the smaller id first;
     only pieces of the second flight lie between their last pieces. The pieces of a flight are consecutive. A column
@@ -206,7 +206,7 @@ class FlightReader:
                 yield self._flights(self._join.pass_on(rows), rows["time"], rows)
 
     def open(self) -> Iterator[Arrays]:
-        """Yield the uncut flights that are not over at the last edge, in batches; to be called after `whole`.
+        """Yield the uncut flights that are still in progress at the last edge, in batches; to be called after `whole`.
 
         There is one such flight for each disc that has not left the gas.
         """
@@ -260,7 +260,7 @@ class FlightReader:
         Args:
             state: states of the discs at the starts of the flights, as columns by name.
             end: (n,), times at which the flights end.
-            rows: event rows at the ends of the flights; None if the flights are not over at the last edge.
+            rows: event rows at the ends of the flights; None if the flights are still in progress at the last edge.
         """
         start, made = state["time"], self._made
         columns = {"disc": state["disc"], "block": self._block_of(end), "start": start, "end": end}

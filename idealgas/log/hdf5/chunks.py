@@ -52,11 +52,11 @@ def _gather_byte(items, byte, start, stop, out, place):
 
 @njit
 def shuffle(items, noise, blocks, planes):
-    """Gather the bytes of items in planes: the first bytes of all items, then the second bytes, and so on.
+    """Gather the bytes of items into planes: the first bytes of all items, then the second bytes, and so on.
 
     Args:
         items: (n,) unsigned integers.
-        noise: number of planes, from the first on, that are written to `blocks`.
+        noise: number of planes, counted from the first, that are written to `blocks`.
         blocks: output, bytes of deflate's stored blocks, each with room for its header.
         planes: output, bytes of the remaining planes.
     """
@@ -87,7 +87,7 @@ def _shuffle_in_numpy(items, noise, blocks, planes):
 
 @inline
 def _scatter_byte(items, byte, start, stop, plane):
-    """Set one byte of each item from `start` up to, but not including, `stop`; byte 0 clears the other bytes."""
+    """Set one byte of each item from `start` up to, but not including, `stop`; setting byte 0 clears the others."""
     shift = np.uint64(8 * byte)
     for k in range(start, stop):
         value = np.uint64(plane[np.uintp(k)]) << shift
@@ -96,7 +96,7 @@ def _scatter_byte(items, byte, start, stop, plane):
 
 @njit
 def unshuffle(planes, items):
-    """Compose unsigned items (n,) from their planes (itemsize, n)."""
+    """Reassemble unsigned items (n,) from their planes (itemsize, n)."""
     n = len(items)
     for first in range(0, n, _TILE):
         for byte in range(items.itemsize):

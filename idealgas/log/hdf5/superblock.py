@@ -21,7 +21,7 @@ _MASK = 0xFFFFFFFF
 
 
 def has_consistency_flags(block: bytes) -> bool | None:
-    """Return whether the flags are set, given the first bytes of a file; None if it is not HDF5 of version 3."""
+    """Return whether the flags are set, given the first bytes of a file; None if not a superblock of version 3."""
     return block[11] != 0 if len(block) >= _SIZE and block.startswith(_SIGNATURE) and block[8] == 3 else None
 
 
