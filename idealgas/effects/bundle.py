@@ -78,7 +78,7 @@ def present(effects: Effects) -> Iterator[tuple[Effect[Any], Any]]:
 
 
 def begin_epoch(effects: Effects, time: float, length: float) -> None:
-    """Prepare all effects for an epoch that begins at a time of the run; length: duration of the epoch."""
+    """Prepare all effects for an epoch that begins at a given time in the run; length: duration of the epoch."""
     for effect, state in present(effects):
         effect.begin_epoch(state, time, length)
 

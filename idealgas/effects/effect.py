@@ -86,7 +86,7 @@ class Later(NamedTuple):
 
 
 class Effect(ABC, Generic[State]):
-    """An effect. A subclass defines its tables, its state in a run and its columns in the log; its law is in `physics`.
+    """Base of all effects. A subclass defines the tables of the effect, its state in a run and its columns in the log.
 
     The state consists of arrays and numbers, which `make` returns and the engine changes. Most methods take the state
     as their first argument. Methods that an effect does not override leave the gas unchanged.
@@ -94,7 +94,7 @@ class Effect(ABC, Generic[State]):
     Attributes:
         name: name in output and messages.
         field: field of the bundle of all effects (`idealgas.effects.bundle`).
-        key: key of its table in a scene; empty if the effect is only a kind of side, or a key of other tables.
+        key: key of its table in a scene; empty if it has no table but is a kind of side or a key in other tables.
         table: its table, a Pydantic model.
         many: whether the scene has an array of such tables.
         description: description of the table for the JSON Schema.
@@ -102,7 +102,7 @@ class Effect(ABC, Generic[State]):
         side_text: how such a side is written in a scene.
         energy_part: field of `idealgas.run.energy.Energy` that contains `energy`; empty if the effect adds no energy.
         energy_column: column of this energy in the samples; None if the samples do not contain it.
-        energy_is_inner: whether this energy belongs to the discs and collisions may convert it into kinetic energy.
+        energy_is_inner: whether this energy is of the discs, so that collisions may convert it into kinetic energy.
         events: kind of event that only this effect causes and that is counted; None if there is none.
         shearable: whether the effect is the same everywhere, so that the gas may be sheared.
         samples: additions to the scene of the benchmark.
@@ -197,10 +197,10 @@ class Effect(ABC, Generic[State]):
         return 0.0
 
     def begin_epoch(self, state: State, time: float, length: float) -> None:
-        """Prepare the state for an epoch that begins at a time of the run; length: duration of the epoch."""
+        """Prepare the state for an epoch that begins at a given time in the run; length: duration of the epoch."""
 
     def end_epoch(self, state: State, length: float) -> None:
-        """Make local times count from the end of the epoch; length: duration of the epoch."""
+        """Measure local times from the end of the epoch; length: duration of the epoch."""
 
     def reverse(self, state: State) -> None:
         """Reverse the velocities in the state; called at the start of an epoch."""

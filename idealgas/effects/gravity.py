@@ -75,7 +75,7 @@ class GravityEffect(Effect[law.Gravity]):
     def energy(self, gravity: law.Gravity, gas: Gas, _: float) -> float:
         """Return the potential energy.
 
-        Along periodic sides, the decrease in this energy is the work done by gravity on the flowing gas.
+        If gravity acts along a periodic axis, the decrease in this energy is the work done on the flowing gas.
         """
         return -float((gas.mass * (gas.position @ np.array(gravity))).sum())
 

@@ -145,7 +145,7 @@ class Properties:
 
     @property
     def free_fall_axes(self) -> tuple[bool, bool]:
-        """Whether gravity acts along x, and along y, between periodic sides, where nothing stops the fall."""
+        """Whether gravity acts along x, and along y, with periodic sides, so that nothing stops the fall."""
         x, y = (on and g != 0 for on, g in zip(self.periodic, self.strongest_pull, strict=True))
         return x, y
 
@@ -183,5 +183,5 @@ def combine(effects: tuple[ActiveEffect, ...]) -> Properties:
 
 
 def lacking(effects: tuple[ActiveEffect, ...], *names: str) -> tuple[str, ...]:
-    """Names of the effects that lack at least one of these properties."""
+    """Names of the effects that lack at least one of the given properties."""
     return tuple(e.name for e in effects if not all(getattr(e.properties, name) for name in names))

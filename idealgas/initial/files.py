@@ -159,7 +159,7 @@ class _Moment:
         self.time, self._parts, self._discs = time, list[dict[str, np.ndarray]](), 0
 
     def wants(self, time: float) -> bool:
-        """Whether parts at this time may belong to the requested state."""
+        """Whether files written at this time may be parts of the requested state."""
         self._range = min(self._range[0], time), max(self._range[1], time)
         return time >= self.time if self._wanted == "end" else time == self._wanted
 

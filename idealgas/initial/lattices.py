@@ -18,7 +18,7 @@ def place_on_lattice(
     Occupied sites are left out, and the discs are distributed evenly over the free sites.
 
     Args:
-        room: room for the discs.
+        room: region in which the discs are placed.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
         bounds: (4,), limits x0, y0, x1, y1 of the centre of the largest disc, length.

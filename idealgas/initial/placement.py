@@ -40,7 +40,7 @@ def place_at_random(
     rest, with the same result bit for bit.
 
     Args:
-        room: room for the discs.
+        room: region in which the discs are placed.
         position: (N, 2), length, changed in place.
         radius: (N,), length.
         bounds: (N, 4), limits x0, y0, x1, y1 of the centre of each disc, length.

@@ -40,7 +40,7 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
     if (rate := scene.properties.shear) and not _in_step(time, rate, scene.box.size):
         width, height = scene.box.size
         allowed = f"multiples of {width / (rate * height):.6g}, at which the periodic images are aligned"
-        raise UserError(f"{log.path}: cannot start between sheared sides from t = {time:g} (allowed {allowed})")
+        raise UserError(f"{log.path}: with sheared sides, cannot start from t = {time:g} (allowed {allowed})")
     spin = np.zeros(len(discs)) if state.angular_velocity is None else state.angular_velocity
     here = state.inside
     if not here.any():

@@ -45,7 +45,7 @@ def make_shear(rate: float, size: tuple[float, float]) -> Shear:
 
 
 def begin_epoch(shear: Shear, time: float, length: float) -> None:
-    """Make local times count from a given time of the run, and compute the offset, which is rounded only once.
+    """Measure local times from a given time in the run, and compute the offset, which is rounded only once.
 
     time: time of the run at which the epoch begins. length: duration of the epoch, time.
     """
@@ -54,7 +54,7 @@ def begin_epoch(shear: Shear, time: float, length: float) -> None:
 
 
 def at(shear: Shear | None, time: float) -> Shear | None:
-    """Return the shear for an epoch of length 0 at a time of the run; None without shear."""
+    """Return the shear for an epoch of length 0 at a given time in the run; None without shear."""
     if shear is None:
         return None
     frozen = shear._replace(offset=np.zeros(2))
@@ -141,9 +141,9 @@ def crossing_time(disc, side, length, shear, contact):
 
 @inline
 def cross(disc, side, shear):
-    """Move a disc that is crossing a sheared side to the opposite side; return 1 for the top, -1 for the bottom.
+    """When a disc crosses a sheared side, move it to the opposite one; return 1 if it crossed the top, or else -1.
 
-    The disc must be at the time of the crossing. Its new x coordinate may be outside the box.
+    The state of the disc must be that at the time of the crossing. Its new x coordinate may be outside the box.
     """
     rows = 1 if side == 3 else -1
     disc.x -= offset_at(shear, disc.t) * rows

@@ -31,7 +31,7 @@ U = np.uintp
 
 
 def begin_epoch(vibration: np.recarray, time: float, _: float) -> None:
-    """Make local times count from a given time of the run; the phase of the vibration is computed without rounding."""
+    """Measure local times from a given time in the run; its phase is computed without rounding error."""
     for side in vibration:
         if side.amplitude > 0.0:
             side.start = -math.fmod(time, 2.0 * side.half)

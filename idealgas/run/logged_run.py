@@ -145,7 +145,7 @@ class LoggedRun:
                 self._log.close()
                 raise UserError(
                     f"{self._log.path}: disc {disc} is stuck at t = {simulation.last_event_time:g}: "
-                    f"more than {STUCK} collisions per contact duration; the log can be read"
+                    f"more than {STUCK} collisions within one contact duration; the log can still be read"
                 )
             if simulation.epoch_over and not simulation.finished(stop):
                 self._stall.end_epoch()

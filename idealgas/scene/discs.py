@@ -12,7 +12,7 @@ from idealgas.effects.properties import ActiveEffect
 from idealgas.effects.wall import FixedDisc
 
 EXPLICIT = "disc"
-"""Name of the species of individually given discs that do not name their species."""
+"""Name of the species of individually specified discs that do not name their species."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,13 +130,13 @@ NO_DISCS = discs_of_tables(())
 
 @dataclass(eq=False)
 class ExplicitDiscs:
-    """The individually given discs of a scene, with cached values that follow from its tables.
+    """The individually specified discs of a scene, with cached values that follow from its tables.
 
     All instances compare equal, because the digest in the table [start] distinguishes the discs.
 
     Attributes:
-        discs: the individually given discs.
-        update: keys of the table [start] that follow from the state it names.
+        discs: the individually specified discs.
+        update: keys of the [start] table that follow from the state it names.
         tables: tables [[disc]] from which the discs were made; None if the discs come from the table [start].
         walls: fixed discs of the tables `walls_of`.
         walls_of: tables [[disc]] from which `walls` were made.

@@ -118,7 +118,7 @@ class Document(_DiscsAndEffects):
 
     @property
     def placed(self) -> list[tuple[int, Species]]:
-        """Valid tables [[species]] with their indices; individually given discs are subtracted from their counts."""
+        """Valid tables [[species]] with their indices; individually specified discs reduce their counts."""
         given = self.explicit_discs
         tables = [(i, s) for i, s in enumerate(self.species) if s is not None]
         if not given.names:
@@ -137,12 +137,12 @@ class Document(_DiscsAndEffects):
 
     @property
     def draws_velocities(self) -> bool:
-        """Whether individually given discs receive new velocities, drawn as their species prescribe."""
+        """Whether individually specified discs receive new velocities, drawn as their species prescribe."""
         return self.start is not None and self.start.velocities == "new"
 
     @property
     def accepted_overlap(self) -> float:
-        """Overlap of individually given discs that is accepted in addition to rounding errors, length."""
+        """Overlap of individually specified discs that is accepted in addition to rounding errors, length."""
         return self._explicit.update.get("overlap", self.start and self.start.overlap) or 0.0
 
     def tables_of(self, effect: Effect[Any]) -> Tables:
@@ -173,7 +173,7 @@ class Document(_DiscsAndEffects):
         return combine(self.active_effects)
 
     def lacking(self, *properties: str) -> tuple[str, ...]:
-        """Return the names of the effects for which at least one of these properties is false."""
+        """Return the names of the effects for which at least one of the given properties is false."""
         return lacking(self.active_effects, *properties)
 
     @property

@@ -47,7 +47,7 @@ class StartError(ValueError):
 def read_start(
     scene: Document, folder: Path = Path(), columns: Mapping[str, Any] | None = None, discs: InitialDiscs | None = None
 ) -> tuple[InitialDiscs, dict[str, Any]]:
-    """Return the discs from which a scene starts, and the keys of its table [start] that follow from them.
+    """Return the initial discs of a scene, and the keys of its [start] table that follow from them.
 
     Args:
         scene: the scene, with valid tables.

@@ -74,7 +74,7 @@ LOGS = [
     ("resume run.h5 --until -1", "…run.until: out of range…"),
     ("resume run.h5 --events 1.5", "…'1.5' is not a valid integer…"),
 ]
-PARTS = "…parts must be 1 or more, for events or flights in parquet…"
+PARTS = "…parts must be 1 or more, and apply only to events or flights in parquet…"
 EXPORTS = [
     ("--frames 3", "--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)…"),
     ("--frames 3 -o gas.xyz", "--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)…"),

@@ -155,7 +155,7 @@ def test_the_stress_heats_the_gas():
     assert energy[1] - energy[0] == pytest.approx(work, rel=1e-12)
     assert result.reduced_rate == pytest.approx(0.4 / (2 * 2810 / 45 / log.end_time), rel=0.2)
     raised(
-        r"cannot start between sheared sides from t = 1 \(allowed multiples of 3.21",
+        r"with sheared sides, cannot start from t = 1 \(allowed multiples of 3.21",
         continued_scene,
         log,
         1.0,

@@ -1,7 +1,7 @@
 """Measure density, temperature, flow and pressure in strips along an axis, and the heat given by walls.
 
 Theory predicts a uniform gas in a closed or periodic box and, if the gas is dilute, the barometric law under gravity.
-Between two thermal sides T^(3/2) is linear in the position, with temperature jumps at the sides, and n T Z is constant.
+Between two thermal sides T^(3/2) is linear in position, with temperature jumps at the sides, and n T Z is constant.
 A flow that gravity drives along periodic sides is compared with Poiseuille flow.
 """
 

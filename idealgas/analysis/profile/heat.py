@@ -48,7 +48,7 @@ def heat_flow(log: Log, axis: int, window: Window) -> Estimate | None:
 def _fourier(log: Log, axis: int) -> Theory | None:
     """Return the heat per time according to Fourier's law; None if theory is not available.
 
-    The conductivity is proportional to √T, so that T^(3/2) is linear in the position.
+    The conductivity is proportional to √T, so that T^(3/2) is linear in position.
     """
     gas, ends = log.discs, conduction(log, axis)
     if ends is None or gas.packing_fraction > hard_discs.HIGHEST:

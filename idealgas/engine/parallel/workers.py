@@ -17,7 +17,7 @@ STOP = "stop"
 
 
 class Workers:
-    """Threads, memory and measurements that last for a run.
+    """Threads, memory and measurements that are kept for the whole run.
 
     Attributes:
         counts: numbers of shared slices, of aborted slices by reason, and of migrations and their side effects.

@@ -78,9 +78,9 @@ def export(
     if rows not in tables.END_OF:
         raise unknown("table of rows", rows, tuple(tables.END_OF))
     if parts is not None and (kind != "parquet" or times is not None or parts < 1):
-        raise LogError(f"parts must be 1 or more, for events or flights in parquet (got {parts}, {kind})")
+        raise LogError(f"parts must be 1 or more, and apply only to events or flights in parquet (got {parts}, {kind})")
     if times is None and not file_format.has_events:
-        raise LogError(f"{kind} has no events (allowed frames; csv and parquet have events)")
+        raise LogError(f"{kind} files cannot contain events (allowed frames; use csv or parquet for events)")
     if times is None:
         log.require_events()
     if times is not None and not file_format.has_events and not log.has_positions:

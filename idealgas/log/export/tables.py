@@ -39,8 +39,8 @@ def write_parquet(log: Log, times: Sequence[float] | Rows, path: Path) -> int:
 def write_parts(log: Log, what: Rows, folder: Path, number: int, force: bool = False) -> int:
     """Write event rows or flights as Parquet files in a new folder, and return the number of rows.
 
-    The duration of the log is divided into equal intervals, and each file contains the rows whose times, or whose
-    flights' end times, are in one interval. The folder appears once it is complete.
+    The duration of the log is divided into equal intervals, and each file contains the events that occur, or the
+    flights that end, in one of these intervals. The folder appears once it is complete.
 
     Args:
         log: log to export.

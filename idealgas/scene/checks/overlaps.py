@@ -1,4 +1,4 @@
-"""Checks for overlaps of individually given discs with each other, with the sides of the box and with walls."""
+"""Checks for overlaps of individually specified discs with each other, with the sides of the box and with walls."""
 
 from __future__ import annotations
 
