@@ -305,7 +305,7 @@ def test_a_file_of_the_same_kind_is_replaced(log, kind, made, tmp_path):
 
 @pytest.mark.parametrize("kind", ["gsd", "extxyz", "h5md3d"])
 def test_events_need_a_table(log, kind, tmp_path):
-    with pytest.raises(LogError, match="has no events"):
+    with pytest.raises(LogError, match="files cannot contain events"):
         export(log, kind, tmp_path / "out")
 
 
