@@ -80,7 +80,7 @@ EXPORTS = [
     ("--frames 3 -o gas.xyz", "--format: missing (allowed csv, parquet, gsd, extxyz, h5md3d)…"),
     ("--format gsd --frames 3 -o -", "…gsd cannot be written to a pipe (allowed csv, extxyz)…"),
     ("--format extxyz --frames no", "…invalid choice of frames…"),
-    ("--format gsd --events", "…gsd has no events…"),
+    ("--format gsd --events", "…gsd files cannot contain events…"),
     ("--format csv", "…one of --events, --flights and --frames is required…"),
     ("--format csv --events --frames 3", "…one of --events, --flights and --frames is required…"),
     ("--format csv --events --parts 3", PARTS),

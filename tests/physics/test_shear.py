@@ -165,7 +165,7 @@ def test_the_stress_heats_the_gas():
     for analysis in registry.analyses():
         if not analysis.supports_shear:
             raised(
-                r"but sides shear it; use|equal discs in each species, but",
+                r"but this gas is sheared; use|equal discs in each species, but",
                 analysis.analyse,
                 log,
                 error=NotApplicableError,
