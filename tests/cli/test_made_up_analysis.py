@@ -30,6 +30,14 @@ class Fastest(Result):
     speeds: np.ndarray
     speed: Estimate
 
+    def plain_tables(self):
+        return [estimates("Of one disc", [("speed", self.speed)], ["at the end"])]
+
+    def figure(self):
+        figure, (ax,) = panels(1)
+        ax.plot(self.speeds)
+        return figure
+
 
 class FastestDisc(Analysis):
     results = (Fastest,)
@@ -45,16 +53,6 @@ class FastestDisc(Analysis):
         if rank > len(speeds):
             raise UserError(f"{log.path}: has {len(speeds)} discs")
         return Fastest(speeds, Estimate(float(speeds[-rank]), 0.0, 1.0))
-
-    @staticmethod
-    def tables(found):
-        return [estimates("Of one disc", [("speed", found.speed)], ["at the end"])]
-
-    @staticmethod
-    def figure(found):
-        figure, (ax,) = panels(1)
-        ax.plot(found.speeds)
-        return figure
 '''
 
 SCENE = """

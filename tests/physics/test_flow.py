@@ -69,7 +69,7 @@ def test_poiseuille_flow_with_slip():
         log = log_of("poiseuille", f"scene.seed={seed}")
         actual.append(profile(log, start=400))
         if seed == 1:
-            assert "steady from 357 on" in " ".join(profile(log, start=0).caveats)
+            assert "it is steady after 357" in " ".join(profile(log, start=0).caveats)
     assert not any("The flow relaxes" in sentence for each in actual for sentence in each.caveats)
     assert {(each.axis, each.flow) for each in actual} == {("y", "x")}
     strips = np.array([[e.value for e in each.species[0].velocity] for each in actual])

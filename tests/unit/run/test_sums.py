@@ -208,7 +208,7 @@ def test_sums_that_were_not_asked_for(tmp_path):
     with logged(scene_of("quickstart", "run.events=3000", "log.events=false"), path) as log:
         assert not {*SUMS, "face_hits"} & log.observables.keys()
         assert not [name for name in log.checkpoints[0].arrays if "flow" in name or "face" in name]
-        with pytest.raises(UserError, match=r"no events .* and no sums \(log.pressure = true\)"):
+        with pytest.raises(UserError, match=r"has neither events .* nor sums \(these require log.pressure = true\)"):
             pressure(log)
         assert status(log).compressibility_factor is None
 

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.slow
 MARKERS = {
     "gravity": {"crossings.accelerated_crossing", "motion.time_to_plane", "wall.accelerated_body_delay"},
     "periodic sides": {"periodic.images_between", "state.record_image", "periodic.wrapped"},
-    "sheared sides": {"shear.cross", "shear.crossing_time", "neighbours.append_sheared_row"},
+    "sheared sides": {"shear.cross", "neighbours.append_sheared_row"},
     "wall segments": {"wall.segment_contact", "wall.segment_normal"},
     "arcs": {"arc.arc_contact", "arc.arc_frame"},
     "permeable walls": {"permeable.closed_face_delay", "permeable.touches_face"},
@@ -44,7 +44,7 @@ sys.setprofile(None)
 names = {f"{module.rpartition('.')[2]}.{name}" for module, name in called if module and name}
 compiled = [keys for each in gc.get_objects() if isinstance(each, EntryPoint) for keys in each.reached.values()]
 names |= {".".join(key.split(".")[-2:]) for keys in compiled for key in keys}
-types = [str(kind) for signature in getattr(advance_events, "reached", ()) for kind in signature[3].types]
+types = [str(kind) for signature in getattr(advance_events, "reached", ()) for kind in signature[2].types]
 print(json.dumps([sorted(names), types]))
 """
 
