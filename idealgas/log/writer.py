@@ -25,18 +25,16 @@ from idealgas.log.hdf5.writable_file import OPTIONS, WritableFile
 from idealgas.log.schema import LogLayout
 from idealgas.state import Gas
 
-BUFFERS = 8
-"""Number of buffers for event rows."""
-FLUSH_ROWS = 4 * BLOCK
-"""Number of event rows after which the log is committed."""
-FLUSH_SECONDS = 1.0
-"""Time after which the log is committed, s."""
+BUFFERS = 8  # number of buffers for event rows
+FLUSH_ROWS = 4 * BLOCK  # number of event rows after which the log is committed
+FLUSH_SECONDS = 1.0  # time after which the log is committed, s
 
 
 class _Rows(NamedTuple):
     """Rows `start` up to, but not including, `stop` of the columns `data`, queued to be stored in a table.
 
-    If `buffer` is not None, the buffer is returned to the pool once the rows are stored.
+    If `buffer` is not None, the buffer is returned to the pool once the rows are stored. Rows that are `held` are
+    committed together with the next checkpoint, never before it.
     """
 
     table: TableWriter
@@ -44,6 +42,7 @@ class _Rows(NamedTuple):
     stop: int
     data: list[np.ndarray]
     buffer: Any = None
+    held: bool = False
 
 
 _END = object()
@@ -162,7 +161,7 @@ class LogWriter:
         self.path, self._file, self._tables, self._sequence, self._fsync = path, file, tables, sequence, fsync
         self._events = tables.get("events")
         self._flushed = self.rows = self._events.stored if self._events else 0
-        self._due = math.inf
+        self._due, self._held = math.inf, False
         self._names = [path.partition("/")[2] for path in self._events.columns] if self._events else []
         self._free: queue.LifoQueue[EventBatch] = queue.LifoQueue()  # the buffer used last is still in the CPU cache
         for _ in range(BUFFERS if self._events else 0):
@@ -189,13 +188,16 @@ class LogWriter:
         """Whether more than one buffer is still waiting to be stored."""
         return self._events is not None and self._free.qsize() < BUFFERS - 1
 
-    def write(self, rows: int) -> None:
-        """Store the first `rows` rows of the buffer from `batch`, which may be read until `batch` is called again."""
+    def write(self, rows: int, held: bool = False) -> None:
+        """Store the first `rows` rows of the buffer from `batch`, which may be read until `batch` is called again.
+
+        held: whether they are committed only together with the next checkpoint, because `resume` cannot repeat them.
+        """
         assert self._events is not None, "this log has no events"
         start = self.rows % BLOCK
         self.rows += rows
         data = [getattr(self._lent, name) for name in self._names]
-        self._put(_Rows(self._events, start, start + rows, data, self._lent))
+        self._put(_Rows(self._events, start, start + rows, data, self._lent, held))
 
     def checkpoint(
         self, time: float, epoch: int, arrays: Mapping[str, np.ndarray], values: Mapping[str, float] | None = None
@@ -291,7 +293,7 @@ class LogWriter:
         item: object = None
         while item is not _END:
             try:
-                wait = None if self._due == math.inf else max(0.0, self._due - time.monotonic())
+                wait = None if self._held or self._due == math.inf else max(0.0, self._due - time.monotonic())
                 item = self._queue.get(timeout=wait)
             except queue.Empty:
                 item = None
@@ -307,14 +309,15 @@ class LogWriter:
         """Store the rows of an item, if any, and commit them if due; a first checkpoint is committed immediately."""
         if isinstance(item, _Rows):
             item.table.append(item.start, item.stop, item.data)
+            self._held = item.held or (self._held and item.table is not self._tables["checkpoints"])
             delay = FLUSH_SECONDS if self._tables["checkpoints"].stored else 0.0
             self._due = min(self._due, time.monotonic() + delay)
         if item is _END:
             for _ in range(2):  # so that both slots of the commit record contain the end
                 self._commit(tails=True, last=True)
-        elif time.monotonic() >= self._due:
+        elif not self._held and time.monotonic() >= self._due:
             self._commit(tails=True)
-        elif self._events and self._events.whole - self._flushed >= FLUSH_ROWS:
+        elif not self._held and self._events and self._events.whole - self._flushed >= FLUSH_ROWS:
             self._commit(tails=False)
 
     def _commit(self, tails: bool, last: bool = False) -> None:

@@ -191,9 +191,9 @@ class LoggedRun:
         batch = self._log.batch()
         self._write(batch, self._simulation.advance(self._goal, batch, events, self._next_snapshot))
 
-    def _write(self, batch: EventBatch, rows: int) -> None:
-        """Write the first `rows` rows of a buffer of the log."""
-        self._log.write(rows)
+    def _write(self, batch: EventBatch, rows: int, held: bool = False) -> None:
+        """Write the first `rows` rows of a buffer of the log; held: see `LogWriter.write`."""
+        self._log.write(rows, held)
         if self._on_events is not None and rows:
             self._on_events(batch.rows(0, rows))
 
@@ -219,7 +219,7 @@ class LoggedRun:
             UserError: the run stalls; the log is closed first.
         """
         simulation, stall = self._simulation, self._stall
-        self._log_steered()
+        self._log_steered(changed)
         reason = stall.stall_reason()
         if stall.sample_due or reason or changed:
             self._observe(simulation.time, simulation.gas, simulation.effects, simulation.check_invariants())
@@ -236,14 +236,17 @@ class LoggedRun:
             "the log can be read and resumed (use --until to set an end time)"
         )
 
-    def _log_steered(self) -> None:
-        """Write the rows of the discs whose velocities were changed at the start of this epoch."""
+    def _log_steered(self, changed: bool) -> None:
+        """Write the rows of the discs whose velocities were changed at the start of this epoch.
+
+        changed: whether a program changed them, which `resume` cannot repeat.
+        """
         ids = self._simulation.steered
         while len(ids) and self._scene.log.events:
             batch = self._log.batch()
             discs, ids = np.split(ids, [len(batch.time) - 1])
             write_steered(batch, discs, self._simulation)
-            self._write(batch, len(discs))
+            self._write(batch, len(discs), held=changed)
 
     def _checkpoint(self) -> None:
         """Store the state at the start of an epoch."""

@@ -1,5 +1,7 @@
 """Runs that a program advances and steers: the log of one run, and changes that replay, resume and account know."""
 
+import shutil
+import time
 from contextlib import suppress
 
 import numpy as np
@@ -10,6 +12,8 @@ from helpers.support import ROOT
 from idealgas import SceneError, UserError, load_scene, open_log, open_run, parse_scene, resume, simulate
 from idealgas.columns import Kind
 from idealgas.errors import OutputError
+from idealgas.log import writer as log_writer
+from idealgas.log.writer import LogWriter
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "steering.toml"
 BOX = """
@@ -106,6 +110,33 @@ def test_a_lost_program_leaves_a_log_that_goes_on_after_the_last_change(tmp_path
 
 
 @pytest.mark.usefixtures("uncompiled")
+def test_rows_of_a_change_are_committed_with_their_checkpoint(tmp_path, monkeypatch):
+    """If the log is committed after every item and the program dies just before the checkpoint of a change."""
+    killed, checkpoint = tmp_path / "killed.h5", LogWriter.checkpoint
+
+    def copy_then_store(writer, *given):
+        while not writer._queue.empty():
+            time.sleep(0.01)
+        time.sleep(0.1)  # the thread stores the last item
+        shutil.copy(writer.path, killed)
+        checkpoint(writer, *given)
+
+    monkeypatch.setattr(log_writer, "FLUSH_SECONDS", 0.0)
+    with open_run(parse_scene(BOX), tmp_path / "run.h5") as run:
+        run.advance(until=2)
+        monkeypatch.setattr(LogWriter, "checkpoint", copy_then_store)
+        run.set_velocities(-run.state().velocity)
+        monkeypatch.setattr(LogWriter, "checkpoint", checkpoint)
+        run.advance(until=3)
+    with open_log(killed) as log:
+        assert 1.5 < log.end_time <= 2
+        assert not any((rows.kind == Kind.STEERED).any() for rows in log.chunks(("kind",)))
+    resume(killed)
+    unchanged = simulate(parse_scene(BOX), tmp_path / "unchanged.h5")
+    assert unchanged.completed
+    assert differences(killed, tmp_path / "unchanged.h5") == []
+
+
 def test_a_closed_log_takes_nothing_more_and_what_cannot_be_steered_is_one_line(tmp_path):
     with open_run(parse_scene(BOX, overrides=["steering="]), tmp_path / "plain.h5") as run:
         run.advance(until=1)
