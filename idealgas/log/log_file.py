@@ -181,7 +181,7 @@ class LogFile:
         self._file = h5py.File(source, "r")
         self._opened.append(self._file)
         if "format" not in self._file.attrs or _text_or_integer(self._file, "format") != schema.FORMAT:
-            raise LogError(f"{self.path}: not an idealgas log, but an HDF5 file written by another program")
+            raise LogError(f"{self.path}: not a log of idealgas, but an HDF5 file written by another program")
         version = _text_or_integer(self._file, "format_version")
         if version != schema.VERSION:
             raise LogError(f"{self.path}: has format {version}; this version of idealgas reads format {schema.VERSION}")

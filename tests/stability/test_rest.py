@@ -89,7 +89,7 @@ def test_an_arch_between_walls_ends_the_run_with_one_line(tmp_path):
     """30 discs in a box five diameters wide, some wedged: else millions of collisions per disc and time."""
     pile = ["box.size=[4, 40]", "species.gas.count=30", "species.gas.radius=0.4", "species.gas.region="]
     losses = ["scene.seed=0", "restitution={ normal = 0.7, wall = 0.7 }", "run.until=200", "log.compression='none'"]
-    with pytest.raises(UserError, match=r"is stuck at t = .*: more than 1000 collisions per contact duration"):
+    with pytest.raises(UserError, match=r"is stuck at t = .*: more than 1000 collisions within one contact duration"):
         run(tmp_path / "run.h5", *pile, *losses)
     with open_log(tmp_path / "run.h5") as log:
         assert not log.complete

@@ -193,7 +193,7 @@ def test_a_stuck_disc_ends_the_run_with_one_line(tmp_path):
         disc = [{ position = [0.5000005, 1], velocity = [1, 0], radius = 0.5 }]
     """)
     with pytest.raises(
-        UserError, match=r"run\.h5: disc 0 is stuck at t = 0\.\d+: more than 1000 collisions per contact"
+        UserError, match=r"run\.h5: disc 0 is stuck at t = 0\.\d+: more than 1000 collisions within one contact"
     ):
         simulate(scene, tmp_path / "run.h5")
     with open_log(tmp_path / "run.h5") as log:
