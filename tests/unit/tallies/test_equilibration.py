@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from idealgas.tallies.equilibration import MARGIN, _Series, detect_equilibration, unsteady
+from idealgas.tallies.equilibration import MARGIN, Window, _Series, detect_equilibration, unsteady
 from idealgas.tallies.observables import Observable
 
 
@@ -122,3 +122,9 @@ def test_a_mean_of_what_is_not_steady_is_said():
     assert drift.startswith("x changes too slowly for this window")
     (walk,) = unsteady("x", noise(rng, 60, 1.0), time)
     assert walk == drift
+
+
+def test_a_window_is_described_in_one_line():
+    edges = np.array([0.0, 1.0, 2.5])
+    assert str(Window(edges, 1, True)) == "window: t = 1 to 2.5 (from detected equilibrium)"
+    assert str(Window(edges, 0, False)) == "window: t = 0 to 2.5 (as asked)"
