@@ -1,5 +1,6 @@
 """Base class of the results of all analyses: caveats, the run they come from, headline, tables and figures."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -40,7 +41,7 @@ class Origin:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Result:
+class Result(ABC):
     """Base class of the results of all analyses.
 
     Attributes:
@@ -58,13 +59,13 @@ class Result:
     origin: Annotated[Origin | None, OMITTED] = None
     title: Annotated[str, OMITTED] = ""
 
+    @abstractmethod
     def plain_tables(self) -> "list[Table]":
         """Return the tables of the result, without its caveats."""
-        raise NotImplementedError
 
+    @abstractmethod
     def figure(self) -> "Figure":
         """Draw the result, without a title."""
-        raise NotImplementedError
 
     def summary(self) -> str:
         """Return the headline, which gives the result and whether it agrees with theory."""
@@ -129,8 +130,12 @@ class Result:
 class RunResult(Result):
     """Base class of results of single runs that are displayed in the same form as a combination of several runs."""
 
+    def plain_tables(self) -> "list[Table]":
+        """Return the tables of this run alone, without caveats."""
+        return self._alone().plain_tables()
+
     def tables(self) -> "list[Table]":
-        """Return the tables of this run alone."""
+        """Return the tables of this run alone, with the caveats of its combination."""
         return self._alone().tables()
 
     def figure(self) -> "Figure":
