@@ -80,7 +80,7 @@ def is_on_orbit(gas: Gas) -> bool:
 
 @dataclass(frozen=True)
 class Survival:
-    """Lifetime of the orbit in one precision: time at speed 1 until a collision that the exact motion does not have.
+    """Lifetime of the orbit in one precision: time, at speed 1, until a collision that is not part of the exact orbit.
 
     Attributes:
         precision: name of the arithmetic.
@@ -165,7 +165,7 @@ def orbit_gas(orbit: Orbit, box: tuple[float, float], radius: float) -> Gas:
 
 
 def survival(box: tuple[float, float], radius: float, precision: str) -> float:
-    """Return the time of the first collision that the exact motion does not have.
+    """Return the time of the first collision that is not part of the exact orbit.
 
     The result is infinity if there is no such collision within MOST_PERIODS periods.
     """

@@ -34,7 +34,7 @@ TRAJECTORY = 4
 
 
 class Stop(NamedTuple):
-    """The end of a run: a time and numbers of events; the run ends when the first of them is reached.
+    """Limits of a run: a time and numbers of events. The run ends as soon as one of them is reached.
 
     Attributes:
         time: time since the start of the run.

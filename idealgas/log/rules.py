@@ -37,7 +37,7 @@ MOST_PACKED = 1100
 
 LARGEST = sys.float_info.max
 LEAST, MOST, LONGEST, SLOWEST = 1e-100, 1e50, 1e150, 1e-61
-"""Bounds on values, which ensure that products and sums of squares are finite.
+"""Bounds on the values in a log, within which products and sums of squares do not overflow or underflow.
 
 LEAST is the lower bound on masses, radii and positive times; MOST is the upper bound on masses, radii and velocities;
 LONGEST is the upper bound on times, angular velocities and observables; SLOWEST is the lower bound on the largest

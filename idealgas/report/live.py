@@ -1,4 +1,4 @@
-"""Page that shows a log in the browser, even during the run, and its server, which only this machine can reach."""
+"""Page that shows a log in the browser, even during the run, and a server that accepts only local connections."""
 
 import json
 import math

@@ -178,7 +178,7 @@ def unit_of(series: np.ndarray) -> float:
 
 
 def is_constant(series: np.ndarray) -> bool:
-    """Return whether a series changes only by rounding, or by so little that the squares of the changes are 0."""
+    """Return whether a series is constant except for rounding, or for changes whose squares underflow to 0."""
     return not (changes(series) and np.ptp(series) > LEAST)
 
 

@@ -105,7 +105,7 @@ def fixed_energy_column(
 
 
 class ColumnRates(NamedTuple):
-    """Rates of a column in equilibrium, 1/time, from Enskog theory with the local density in thin layers.
+    """Rates of events in a column in equilibrium, 1/time, from Enskog theory at the local density of each thin layer.
 
     Attributes:
         per_disc: (S,), collisions of one disc of each species.

@@ -244,7 +244,7 @@ def _virial_coefficients(states: Sequence[PressureState]) -> tuple[Estimate | No
 
 
 def _draw_dense(ax: "Axes", most: float) -> None:
-    """Draw the theory beyond the virial series: published points, the coexistence region, and the crystal."""
+    """Draw what is known at densities beyond the virial series: published points, coexistence, and the crystal."""
     from idealgas.presentation.style import COLOURS, GREY
 
     published, pressure = np.array(list(PUBLISHED)), np.array([value for value, _ in PUBLISHED.values()])

@@ -198,9 +198,10 @@ class WorkAnalysis(Analysis):
 
 
 def _pairs(forward: np.ndarray, back: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean work (n,), energy, and the numbers (2, n) of forward and reverse strokes, in bins with both.
+    """Return the mean work and the numbers of strokes in each bin that contains forward and reverse strokes.
 
-    Strokes with W = 0 are counted in a separate bin, because no disc may hit the piston.
+    The mean work (n,) is an energy, and the numbers (2, n) are of forward and of reverse strokes. Strokes with W = 0
+    are counted in a separate bin, because no disc may hit the piston.
     """
     works, rows = (forward, back), []
     for low, high in pairwise(edges):
