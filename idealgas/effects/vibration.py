@@ -1,5 +1,8 @@
 """Vibrating sides of the box."""
 
+import math
+from typing import Literal
+
 import numpy as np
 from pydantic import Field
 
@@ -17,17 +20,25 @@ class Vibration(Table):
 
     amplitude: Positive = Field(description="length > 0: half the distance between the extreme positions")
     frequency: Positive = Field(description="number of periods per unit time > 0, 1/time")
+    motion: Literal["parabolas", "sine"] = Field(
+        default="parabolas",
+        description='"parabolas" in time, nearly harmonic and with contact times in closed form, or "sine"',
+    )
 
 
 class VibratingSide(Table):
-    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that starts at rest and moves on parabolas in time."""
+    """`{ vibrating = { amplitude = A, frequency = f } }`: a side that starts at rest and moves up and down.
+
+    It moves on parabolas in time or, with `motion = "sine"`, harmonically.
+    """
 
     vibrating: Vibration = Field(description="amplitude and frequency")
 
     @property
     def action(self) -> str:
         """Short description for output."""
-        return f"vibrating, amplitude {self.vibrating.amplitude:g}, frequency {self.vibrating.frequency:g}"
+        sine = ", sine" if self.vibrating.motion == "sine" else ""
+        return f"vibrating, amplitude {self.vibrating.amplitude:g}, frequency {self.vibrating.frequency:g}{sine}"
 
 
 def reach(side: object) -> float:
@@ -63,13 +74,17 @@ class VibrationEffect(Effect[np.recarray]):
             if isinstance(side, VibratingSide):
                 record.amplitude, record.half = side.vibrating.amplitude, 0.5 / side.vibrating.frequency
                 record.acceleration = 8 * record.amplitude / record.half**2
+                if side.vibrating.motion == "sine":
+                    record.omega = math.pi / record.half
+                    record.acceleration = record.amplitude * record.omega**2
         return vibration
 
     def gives_energy(self, vibration: np.recarray) -> bool:
         return True
 
     def driving_speed(self, vibration: np.recarray, gas: Gas) -> float:
-        return 0.5 * float((vibration.acceleration * vibration.half).max())
+        sine, parabolas = vibration.amplitude * vibration.omega, 0.5 * (vibration.acceleration * vibration.half)
+        return float(np.where(vibration.omega > 0.0, sine, parabolas).max())
 
     def begin_epoch(self, vibration: np.recarray, time: float, length: float) -> None:
         law.begin_epoch(vibration, time, length)

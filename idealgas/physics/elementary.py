@@ -41,7 +41,7 @@ def log(x):
 
 @inline
 def cos_sin_turns(turns):
-    """Cosine and sine of 2π turns, for turns in [0, 1] that are multiples of 2^-53, as all random numbers are."""
+    """Cosine and sine of 2π turns, for turns in [0, 1]."""
     quarters = np.int64(4.0 * turns + 0.5)
     remainder = turns - 0.25 * np.float64(quarters)  # exact, at most ⅛
     high, low = split(remainder)

@@ -141,7 +141,8 @@ def _tables_at(key: Key, model: type[BaseModel]) -> list[type[BaseModel]]:
     models = [model]
     for name in key:
         if isinstance(name, str):
-            models = [t for t in _types_in(_keys(models[0])[name].annotation) if issubclass(t, BaseModel)]
+            fields = [keys[name] for keys in map(_keys, models) if name in keys]
+            models = [t for field in fields for t in _types_in(field.annotation) if issubclass(t, BaseModel)]
     return models
 
 

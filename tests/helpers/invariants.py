@@ -20,7 +20,7 @@ from idealgas.engine.simulation import Simulation
 from idealgas.physics.arc_geometry import nearest_points
 from idealgas.physics.permeable import OPEN, SOLID, TOUCHING
 from idealgas.physics.piston import piston_motion
-from idealgas.physics.vibration import height_on, parabola_at
+from idealgas.physics.vibration import motion_at
 from idealgas.run.energy import energy_of
 
 
@@ -207,7 +207,7 @@ class InvariantChecker(Paths):
             if vibration is not None and vibration[wall].amplitude > 0:
                 own, inward = vibration[wall], -1.0 if upper else 1.0
                 local = time - simulation.time
-                height, speed, turn = height_on(own, parabola_at(own, local), local)
+                height, speed, turn = motion_at(own, local)
                 edge, stand = edge + inward * height, inward * speed
             distance = abs(place[axis] - edge)
         elif wall - 4 >= len(self.gates):

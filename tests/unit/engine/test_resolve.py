@@ -113,7 +113,7 @@ def test_a_thermal_side_gives_heat_and_loses_none():
 def test_a_vibrating_side_does_work_on_the_disc():
     """At its mean height it moves with a t = 2 into the box: from -1 the disc comes to 5, and gains ½ · 2 (25 - 1)."""
     vibration = np.zeros(4, VIBRATION).view(np.recarray)
-    vibration[2] = (0.5, 4.0, 1.0, 0.0)  # amplitude, acceleration, half a period, start
+    vibration[2] = (0.5, 4.0, 1.0, 0.0, 0.0)  # amplitude, acceleration, half a period, start, no sine
     for restitution, lost, after in ((None, 0.0, 5.0), (inelastic(), 9 * 0.75, 3.5)):
         effects = effects_of(vibration=vibration, restitution=restitution)
         record = disc(4, 1.5, 3, -1, time=0.5)

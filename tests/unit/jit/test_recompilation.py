@@ -184,7 +184,7 @@ def test_an_edit_of_the_package_compiles_what_depends_on_it(tmp_path):
     edit(folder, "effects/gravity.py", "[gx, gy], length/time²", "[gx, gy] in length/time²")
     edit(folder, "engine/event_driven/kernel.py", "import numpy as np\n", "import numpy as np  # why\n\n\n")
     assert run() == [[], [], []]
-    edit(folder, "physics/vibration.py", "MOST_PARABOLAS = 64", "MOST_PARABOLAS = 65")
+    edit(folder, "physics/vibration.py", "MOST_PIECES = 64", "MOST_PIECES = 65")
     assert run() == [[], ["idealgas.engine.event_driven.kernel.advance_events"], []]
     edit(folder, "statistics/autoregression.py", "total = 0.0", "total = 0.0 * p")
     assert run() == [[], [], [kernel]]
