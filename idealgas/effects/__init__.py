@@ -25,6 +25,7 @@ NAMES = (
     "piston",
     "thermostat",
     "steering",
+    "noninteracting",
 )
 """Names of the files of the effects."""
 

@@ -45,6 +45,7 @@ class Properties:
         allows_monte_carlo: the effect is defined for discs without positions.
         allows_time_steps: the time-driven method can simulate the effect.
         constant_restitution: discs collide with constant coefficients of restitution and roughness.
+        interacting: discs collide with each other.
         is_scalable: the box may grow or shrink around the gas, because nothing in it has a fixed position.
 
     Attributes that are False by default. A scene has such a property if any of its effects has it:
@@ -79,6 +80,7 @@ class Properties:
     allows_monte_carlo: bool = _property(True, operator.and_)
     allows_time_steps: bool = _property(True, operator.and_)
     constant_restitution: bool = _property(True, operator.and_)
+    interacting: bool = _property(True, operator.and_)
     is_scalable: bool = _property(True, operator.and_)
     driven: bool = _property(False, operator.or_)
     dissipative: bool = _property(False, operator.or_)

@@ -122,6 +122,16 @@ def pair_event(record, i, j, effects, best):
 
 
 @inline
+def pair_events(record, i, noninteracting, effects, best):
+    """The earlier of the event `best` and disc i's next collision with a disc of a larger id."""
+    if noninteracting is None:
+        for j in range(i + 1, record.shape[0]):
+            if not has_left(record[j], effects.absorbing):
+                best = pair_event(record, i, j, effects, best)
+    return best
+
+
+@inline
 def image_range(periodic, along_y):
     """Range of the neighbouring images along an axis: -1 to 1 if the axis is periodic, otherwise only 0."""
     return (-1, 2) if is_periodic(periodic, along_y) else (0, 1)
@@ -201,9 +211,7 @@ def next_event(record, box, effects, now):
             continue
         best = wall_event(record, i, effects, box[0], box[1], best)
         best = thermostat_event(i, effects.thermostat, best)
-        for j in range(i + 1, record.shape[0]):
-            if not has_left(record[j], effects.absorbing):
-                best = pair_event(record, i, j, effects, best)
+        best = pair_events(record, i, effects.noninteracting, effects, best)
         best = boundary_crossing_event(record, i, effects.periodic, effects.gravity, now, best)
     return stop_event(effects.piston, best)
 

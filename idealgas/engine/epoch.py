@@ -8,6 +8,7 @@ import numpy as np
 from idealgas.effects.bundle import Effects, present
 from idealgas.physics.collision_rates import collisions_per_length
 from idealgas.physics.motion import MAX_DISPLACEMENT
+from idealgas.physics.noninteracting import wall_hits_per_length
 from idealgas.physics.periodic import periodic_axes
 from idealgas.state import Gas
 
@@ -31,6 +32,20 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
     return collisions_per_length(n, mean_diameter, float(gas.radius.max()), phi, gas.box, periodic)
 
 
+def encounters_of_effects(gas: Gas, effects: Effects) -> float:
+    """Return the number of encounters of all discs per distance that each disc travels, 1/length.
+
+    For discs that do not interact, walls inside the box are counted instead of other discs.
+    """
+    periodic = periodic_axes(effects.periodic)
+    if effects.noninteracting is None:
+        return encounters_per_length(gas, periodic)
+    largest = float(gas.radius.max())
+    sides = collisions_per_length(1, 2.0 * largest, largest, 0.0, gas.box, periodic)
+    segments = () if effects.segments is None else effects.segments[["length", "radius"]].tolist()
+    return len(gas) * (sides + wall_hits_per_length(segments, gas.area))
+
+
 def narrow_side_hit_rate(gas: Gas, periodic: Sequence[bool]) -> float:
     """Estimate the rate of hits, 1/time, on sides that leave the largest disc less room than its diameter.
 
@@ -51,12 +66,17 @@ def epoch_length(
     periodic: Sequence[bool] = (False, False),
     thermostat_collisions: float = 0.0,
     fall: float = 0.0,
+    interacting: bool = True,
 ) -> float:
     """Return the length of an epoch, time: a power of two such that 32 to 64 events per disc are expected.
 
     In a dilute gas there are fewer events per disc, but at least 256 to 512 events in all; otherwise starting an epoch
     would take longer than its events. If the last digits of the sum of the speeds determine the power of two, the sum
     is correctly rounded, so that the length depends on neither the order of the discs nor the processor.
+
+    For discs that do not interact, neither their number nor their radius matters, so that in a gas of equal discs with
+    equal speeds, each disc moves exactly as it would in a gas of one disc. Rounding errors of the speeds do not matter
+    either, and discs at rest (for example, because they have left the gas) are ignored.
 
     Args:
         gas: the gas at the start of the epoch.
@@ -66,12 +86,14 @@ def epoch_length(
         thermostat_collisions: rate of the collisions with the heat bath, 1/time.
         fall: acceleration along periodic axes, length/time². The epoch is so short that no disc gains more than the
             largest speed from this acceleration.
+        interacting: whether discs collide with each other.
 
     Returns:
         The length of the epoch; infinite if there are no events.
     """
     n = len(gas)
     speeds = np.sqrt(gas.velocity[:, 0] ** 2 + gas.velocity[:, 1] ** 2)
+    in_motion = n if interacting else int(np.count_nonzero(speeds)) or 1
     fastest = float(speeds.max()) + extra_speed
     other_events = narrow_side_hit_rate(gas, periodic) + thermostat_collisions
     displacement = 2.0 * MAX_DISPLACEMENT * float(gas.radius.min())
@@ -81,8 +103,11 @@ def epoch_length(
 
     def exponent(sum_of_speeds: float) -> float:
         """Base-2 logarithm of the longest duration of an epoch; infinite if there are no events."""
-        rate = (sum_of_speeds / n + extra_speed) * encounters + other_events
+        rate = (sum_of_speeds / in_motion + extra_speed) * encounters + other_events
         longest = fastest / fall if fall else math.inf
+        if not interacting and fastest > 0.0:
+            in_all = EVENTS_PER_DISC * n / rate if rate > 0.0 else math.inf
+            return math.log2(min(in_all, round_the_box / fastest, longest)) + UNDECIDED
         if rate == 0.0:
             return math.log2(longest)
         shortest = min(max(FEWEST_PER_DISC * n, FEWEST_EVENTS) / rate, round_the_box / fastest)

@@ -93,5 +93,10 @@ class Method(ABC):
         """
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Return the deepest overlap of two discs over the sum of their radii; effects: effects at the gas's time."""
+        """Return the deepest overlap of two discs over the sum of their radii; effects: effects at the gas's time.
+
+        Overlaps do not count if discs do not interact.
+        """
+        if effects.noninteracting is not None:
+            return 0.0
         return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

@@ -18,7 +18,7 @@ from idealgas.effects.bundle import (
     present,
 )
 from idealgas.engine.diagnostics import Diagnostics, check_invariants
-from idealgas.engine.epoch import driving_speed, encounters_per_length, epoch_length, fall_along_sides
+from idealgas.engine.epoch import driving_speed, encounters_of_effects, epoch_length, fall_along_sides
 from idealgas.engine.method import Limits, Method
 from idealgas.engine.records import COUNTERS, LATEST, UNLIMITED, Discs, InelasticCollapseError, synchronise
 from idealgas.errors import UserError
@@ -104,7 +104,7 @@ class Simulation:
 
     def __post_init__(self) -> None:
         """Begin the first epoch."""
-        self._encounters = encounters_per_length(self.gas, periodic_axes(self.effects.periodic))
+        self._encounters = encounters_of_effects(self.gas, self.effects)
         self.effects = changed(self.effects, 0.0, self.time)
         self._begin()
 
@@ -119,7 +119,8 @@ class Simulation:
             bath_collisions = 0.0 if thermostat is None else len(self.gas) * thermostat.rate
             periodic, extra_speed = periodic_axes(self.effects.periodic), driving_speed(self.gas, self.effects)
             fall = fall_along_sides(self.effects)
-            length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions, fall)
+            interacting = self.effects.noninteracting is None
+            length = epoch_length(self.gas, self._encounters, extra_speed, periodic, bath_collisions, fall, interacting)
             self.length = min(length, until_change, shear.longest_epoch(self.effects.shear))
         begin_epoch(self.effects, self.time, self.length)
         self.method.start(self.gas, for_kernels(self.effects))

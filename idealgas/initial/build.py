@@ -130,7 +130,7 @@ def _placed(scene: Scene, radius: np.ndarray) -> np.ndarray:
     space = scene.room
     walls = [wall for wall in scene.walls if wall.is_present(0.0)]
     bounds, position = np.empty((len(radius), 4)), np.empty((len(radius), 2))
-    room = make_room(box.size, radius, periodic, walls, scene.solids.walls)
+    room = make_room(box.size, radius, periodic, walls, scene.solids.walls, not scene.properties.interacting)
     random = rng(scene.scene.seed, "placement")
     ids = np.split(
         np.arange(len(radius)), np.cumsum([len(scene.explicit_discs), *(s.count for _, s in scene.placed)])[:-1]

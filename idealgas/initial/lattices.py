@@ -56,6 +56,8 @@ def fits(room: Room, position: np.ndarray, radius: np.ndarray, placed: np.ndarra
 
 def overlapping(room: Room, position: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield, in chunks, the indices (n,) of both discs of all overlapping pairs; position: (M, 2), radius: (M,)."""
+    if room.shared:
+        return
     for i, k in near_pairs(position, radius, (room.period_x, room.period_y)):
         (dx, dy), contact = (position[i] - position[k]).T, radius[i] + radius[k]
         dx = nearest_image(dx, room.period_x, room.period_x > 0)

@@ -103,7 +103,7 @@ def _is_free(room, lists, radius, x, y, i):
             if not wraps_y and not 0 <= r < room.rows:
                 continue
             k = first[c % room.columns * room.rows + r % room.rows]
-            while k >= 0:
+            while k >= 0 and not room.shared:
                 dx = nearest_image(x - xs[k], room.period_x, wraps_x)
                 dy = nearest_image(y - ys[k], room.period_y, wraps_y)
                 contact = radius[i] + radius[k]

@@ -51,6 +51,7 @@ class Room(NamedTuple):
         inside: walls of the closed curves inside which there is no gas, in the form of `wall`.
         outside: walls of the closed curves outside which there is no gas, in the form of `wall`; empty without such
             curves.
+        shared: whether discs may overlap each other, because they do not interact.
     """
 
     columns: int
@@ -64,6 +65,7 @@ class Room(NamedTuple):
     wall_item: Any
     inside: Any
     outside: Any
+    shared: bool = False
 
 
 def make_room(
@@ -72,6 +74,7 @@ def make_room(
     periodic: tuple[bool, bool] = (False, False),
     walls: Sequence[Any] = (),
     solids: Mapping[str, Sequence[Any]] = NO_SOLIDS.walls,
+    shared: bool = False,
 ) -> Room:
     """Make the room in which discs are to be placed.
 
@@ -81,6 +84,7 @@ def make_room(
         periodic: whether the sides along x and along y are periodic.
         walls: walls, with the attributes start, end, arc and radius.
         solids: walls of solids, as in `Solids`.
+        shared: whether discs may overlap each other.
     """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))
@@ -94,7 +98,7 @@ def make_room(
     start = np.searchsorted(cell[order], np.arange(shape[0] * shape[1] + 1))
     placed, inside, outside = map(_placed, (images, _numbers(solids["inside"]), _numbers(solids["outside"])))
     (width, height), (period_x, period_y) = size.tolist(), period.tolist()
-    return Room(*shape, width, height, period_x, period_y, placed, start, item[order], inside, outside)
+    return Room(*shape, width, height, period_x, period_y, placed, start, item[order], inside, outside, shared)
 
 
 def for_kernels(room: Room) -> Room:

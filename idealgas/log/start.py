@@ -54,7 +54,8 @@ def _columns(log: Log, time: float) -> tuple[dict[str, Any], float]:
         "species": [discs.species_names[k] for k in discs.species[here].tolist()],
     }
     walls = [wall for wall in scene.segments if wall.is_present(time)]
-    return columns, deepest_overlap(make_discs(columns, columns["species"]), scene.box, walls)
+    placed, interacting = make_discs(columns, columns["species"]), scene.properties.interacting
+    return columns, deepest_overlap(placed, scene.box, walls, interacting)
 
 
 def _in_step(time: float, rate: float, size: tuple[float, float]) -> bool:

@@ -9,7 +9,7 @@ from idealgas.columns import FIRST_SEGMENT, Column, Values
 from idealgas.effects import EFFECTS
 from idealgas.effects.bundle import Effects, inner_energy, present
 from idealgas.effects.effect import GasAtStart
-from idealgas.engine.epoch import driving_speed, encounters_per_length
+from idealgas.engine.epoch import driving_speed, encounters_of_effects
 from idealgas.physics.exact_sum import make_sums, restore, stored, values
 from idealgas.physics.stress import COLLISIONAL, KINETIC, StressAccumulator, empty_buffer
 from idealgas.scene import Scene
@@ -89,14 +89,14 @@ def with_sums(
         dissipated=make_sums([energy] * (1 + walls)) if loses_energy else None,
         bath_energy=None if scene.properties.bath is None else make_sums([energy]),
         step_energy=make_sums([energy]) if potentials_change or effects.steering is not None else None,
-        flow=_make_flow(scene, gas, speed) if scene.log.pressure else None,
+        flow=_make_flow(scene, gas, effects, speed) if scene.log.pressure else None,
     )
 
 
-def _make_flow(scene: Scene, gas: Gas, speed: float) -> StressAccumulator:
+def _make_flow(scene: Scene, gas: Gas, effects: Effects, speed: float) -> StressAccumulator:
     """Make the sums of the momentum flow; speed: typical speed of the discs, length/time."""
     momentum = float(gas.mass.mean()) * speed
-    encounters = encounters_per_length(gas, scene.properties.periodic)
+    encounters = encounters_of_effects(gas, effects)
     flight = len(gas) / encounters if encounters > 0 else max(gas.box)
     apart = 2.0 * float(gas.radius.mean())
     tensor = [momentum * flight] * 3 + [momentum * apart] * (4 if scene.properties.spins else 3)

@@ -54,7 +54,10 @@ def threads_of(scene: Scene, gas: Gas) -> Threads:
     """Return how threads will share the work of a run; gas: discs at time 0."""
     if scene.run.method != "event_driven":
         return Threads()
-    return expected_threads(gas, _threads(scene.run), bool(scene.piston), bool(scene.properties.shear))
+    properties = scene.properties
+    return expected_threads(
+        gas, _threads(scene.run), bool(scene.piston), bool(properties.shear), properties.interacting
+    )
 
 
 def simulate(

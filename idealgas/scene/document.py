@@ -16,6 +16,7 @@ from idealgas.effects.piston import PistonTable, inner_pistons
 from idealgas.effects.properties import ActiveEffect, Properties, combine, lacking
 from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
+from idealgas.physics.noninteracting import wall_hits_per_length
 from idealgas.scene.defaults import RestingDisc, mean_kinetic_energy, mean_speed, reference_speed
 from idealgas.scene.discs import ExplicitDiscs, InitialDiscs, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
@@ -246,8 +247,12 @@ class Document(_DiscsAndEffects):
         size, area = (right - left, top - bottom), self.free_area
         phi = self.covered_area / area
         diameter, largest = self._sum_of_diameters / n, self.largest_radius
-        encounters = collisions_per_length(n, diameter, largest, phi, size, self.box.periodic) / n
+        met = n if self.properties.interacting else 1  # number of discs that meet each other
+        encounters = collisions_per_length(met, diameter, largest, phi, size, self.box.periodic) / met
         encounters *= size[0] * size[1] / area
+        if not self.properties.interacting:
+            segments = ((math.dist(wall.start, wall.end), wall.radius) for wall in self.segments)
+            encounters += wall_hits_per_length(segments, area)
         path = 1.0 / max(encounters, 1.0 / sum(size))
         speed = math.sqrt(speed**2 + abs(pull[0]) * size[0] + abs(pull[1]) * size[1])
         return path / speed if speed > 0 else math.inf

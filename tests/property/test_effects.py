@@ -12,13 +12,17 @@ from idealgas.engine.simulation import Stop
 
 SETS = [set(), *({name} for name in NAMES)]
 SETS += [pair for pair in map(set, combinations(NAMES, 2)) if allowed(pair)]
-LOCAL = tuple(name for name in NAMES if name != "thermostat")
-"""A thermostat collision concerns one disc and nothing that it meets: pairs with the thermostat are enough."""
+LOCAL = tuple(name for name in NAMES if name not in ("thermostat", "noninteracting"))
+"""A thermostat collision concerns one disc and nothing that it meets: pairs with the thermostat are enough.
+
+So are pairs with discs that do not interact, as these only lack events.
+"""
 SETS += [set(triple) for triple in combinations(LOCAL, 3) if allowed(set(triple))]
-ALL = set(NAMES) - {"periodic", "inner", "shear"}
-ALL_PERIODIC = set(NAMES) - {"piston", "inner", "shear"}
-ALL_PISTONS = set(NAMES) - {"periodic", "shear"}
-SETS += [ALL, ALL_PERIODIC, ALL_PISTONS]
+ALL = set(NAMES) - {"periodic", "inner", "shear", "noninteracting"}
+ALL_PERIODIC = set(NAMES) - {"piston", "inner", "shear", "noninteracting"}
+ALL_PISTONS = set(NAMES) - {"periodic", "shear", "noninteracting"}
+ALL_ALONE = set(NAMES) - {"periodic", "shear"}
+SETS += [ALL, ALL_PERIODIC, ALL_PISTONS, ALL_ALONE]
 
 
 def assert_same_log(names: set[str], seed: int, events: int, shape=(4, 3)) -> None:

@@ -1,6 +1,7 @@
 """The event-driven method writes the log of the brute-force method, float for float, whatever its cells and batches."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from helpers.support import gas_of, record, same_rows
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from idealgas.effects.bundle import Effects
 from idealgas.engine.brute_force import BruteForce
 from idealgas.engine.event_driven.method import EventDriven
 from idealgas.engine.simulation import Simulation, Stop
@@ -78,6 +80,21 @@ def test_same_log_as_the_oracle(case):
 @given(cases.filter(lambda case: case.number < 12))
 def test_same_log_as_the_oracle_in_a_few_discs(case):
     assert_same_log(case, 40)
+
+
+@pytest.mark.usefixtures("uncompiled")
+@settings(max_examples=6, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(cases.filter(lambda case: case.number < 12))
+def test_same_log_as_the_oracle_of_discs_that_do_not_interact(case):
+    """All discs start at the same place, so that events of all discs are simultaneous, many more if gridded."""
+    gas = make(case)
+    gas = replace(gas, position=np.full_like(gas.position, min(gas.box) / 2))
+    effects, stop = Effects(noninteracting=True), Stop(events=60)
+    oracle = record(Simulation(gas, BruteForce(), effects), stop)
+    assert len(oracle.time) == (60 if gas.velocity.any() else 0)
+    assert (oracle.partner < 0).all()
+    for filling, rows in ((None, 65_536), (0.1, 7), (1e9, 257)):
+        assert same_rows(record(Simulation(gas, EventDriven(filling), effects), stop, rows), oracle), (filling, rows)
 
 
 @pytest.mark.long

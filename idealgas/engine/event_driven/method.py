@@ -29,8 +29,11 @@ from idealgas.state import Gas
 MAX_UNSORTED = 4096
 """Number of discs that fit into the processor's caches; up to this number, discs are sorted in memory once per run."""
 
+SEGMENTS_PER_CELL = 2.0
+"""Number of wall segments per cell, if discs do not interact."""
 
-def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool) -> Threads:
+
+def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool, interacting: bool = True) -> Threads:
     """Return how the work will be shared among threads.
 
     Args:
@@ -38,15 +41,18 @@ def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool) -
         threads: requested number of threads, as in `EventDriven`.
         piston: whether the gas has a piston.
         shear: whether the box has sheared sides.
+        interacting: whether discs collide with each other.
     """
     cells, coarse = make_levels(gas.radius, gas.box, discs_per_cell(gas.packing_fraction))
-    return _share(cells, coarse, threads, len(gas), _far(piston, shear))
+    return _share(cells, coarse, threads, len(gas), _far(piston, shear, interacting))
 
 
-def _far(piston: bool, shear: bool) -> str:
-    """Return the reason why discs may collide with distant partners; an empty string if they cannot."""
+def _far(piston: bool, shear: bool, interacting: bool) -> str:
+    """Return the reason why slabs of the box cannot be simulated apart; an empty string if they can."""
     if piston:
         return "any disc may meet the piston"
+    if not interacting:
+        return "discs that do not interact are in few, large cells"
     return "any disc may meet others through sheared sides" if shear else ""
 
 
@@ -102,12 +108,16 @@ class EventDriven(Method):
     def _allocate(self, gas: Gas, effects: Effects) -> None:
         """Allocate cells and memory for a run, during which only positions and velocities change."""
         self._radius = gas.radius
+        interacting = effects.noninteracting is None
         filling = self._filling or discs_per_cell(gas.packing_fraction)
+        if not interacting and self._filling is None:  # cells are only needed to find walls
+            segments = 0 if effects.segments is None else len(effects.segments)
+            filling = SEGMENTS_PER_CELL * len(gas) / max(segments, 1)
         cells, coarse = make_levels(gas.radius, gas.box, filling)
-        if effects.shear is not None:  # coarse cells do not support neighbours across sheared sides
+        if effects.shear is not None or not interacting:  # coarse cells only help in the search for partners
             cells, coarse = make_cells(len(gas), gas.box, float(gas.radius.max()), filling), None
         self._state = make_state(len(gas), cells, coarse, effects)
-        far = _far(effects.piston is not None, effects.shear is not None)
+        far = _far(effects.piston is not None, effects.shear is not None, interacting)
         self._shared = _share(cells, coarse, self._threads, len(gas), far, self.workers.tuning)
 
     def _sort(self, gas: Gas, effects: Effects) -> None:

@@ -116,7 +116,7 @@ def room_issues(scene: Document, invalid: AbstractSet[str]) -> Iterator[Issue]:
         if radius < smallest:
             wrong = f"{which}too small for the box in double precision"
             yield Issue((*keys, ("box", "size")), wrong, f"{radius}", f">= {smallest}")
-    if not outside and not {"species", "disc"} & invalid:
+    if not outside and not {"species", "disc"} & invalid and scene.properties.interacting:
         yield from _crowding(scene, _name_of(box, space), kinds)
 
 

@@ -59,7 +59,12 @@ def label(scene: Document, number: int) -> str:
 
 
 def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
-    """Check for given discs that overlap, also across periodic sides; at most MOST_OVERLAPS pairs are reported."""
+    """Check for given discs that overlap, also across periodic sides; at most MOST_OVERLAPS pairs are reported.
+
+    Discs that do not interact may overlap.
+    """
+    if not scene.properties.interacting:
+        return
     discs = scene.explicit_discs
     for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
         low, high = int(discs.index[a]), int(discs.index[b])
@@ -166,10 +171,14 @@ def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iter
             yield between(large, small)
 
 
-def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable]) -> float:
-    """Return the deepest overlap of discs with each other, with sides or with walls, length; 0 if within rounding."""
+def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable], interacting: bool) -> float:
+    """Return the deepest overlap of discs with each other, with sides or with walls, length; 0 if within rounding.
+
+    Overlaps of discs with each other count only if discs are `interacting`.
+    """
     radius = discs.radius
-    depths = [radius[a] + radius[b] - distance for a, b, distance in overlapping(discs, box)]
+    pairs = overlapping(discs, box) if interacting else ()
+    depths = [radius[a] + radius[b] - distance for a, b, distance in pairs]
     depths += [radius[k] - distance for k, _, distance in wall_overlaps(discs, box, dict(enumerate(walls)))]
     for axis in (a for a in range(2) if not box.periodic[a]):
         x = discs.position[:, axis]

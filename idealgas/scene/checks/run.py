@@ -199,16 +199,21 @@ def _keys(scene: Document, missing: str | None = None) -> Iterator[Key]:
 def endless_issues(scene: Document) -> Iterator[Issue]:
     """Check that the run has a stop rule that will be met."""
     run = scene.run
+    if run.collisions_per_disc is not None and not scene.properties.interacting:
+        place: tuple[Key, ...] = (("run", "collisions_per_disc"), ("interactions", "discs"))
+        yield Issue(place, "discs that do not interact never collide", f"{run.collisions_per_disc}", "until or events")
+        return
     keys: tuple[Key, ...] = (("run",), ("run", "until"), ("run", "events"), ("run", "collisions_per_disc"))
     if run.until is not None or run.trials is not None:
         return
     if run.events is None and run.collisions_per_disc is None:
         yield Issue(keys, "no stop rule", "nothing", "at least one of until, events and collisions_per_disc")
         return
-    alone = scene.number_of_discs == 1
+    alone = scene.number_of_discs == 1 or not scene.properties.interacting
     if not scene.properties.drives_discs and not (scene.has_discs and scene.mean_speed):
         yield Issue(keys, "nothing moves, so no event ends the run", "speeds that are all 0", "a run with until")
     elif run.events is None and alone:
         yield Issue(keys, "a single disc never collides", "collisions_per_disc alone", "a run with until or events")
     elif alone and all(scene.properties.periodic) and scene.properties.empty and scene.properties.isolated:
-        yield Issue(keys, "a single disc meets nothing in a periodic box", "events alone", "a run with until")
+        what = "a single disc meets" if scene.properties.interacting else "discs that do not interact meet"
+        yield Issue(keys, f"{what} nothing in a periodic box", "events alone", "a run with until")

@@ -130,3 +130,26 @@ def test_python_and_compiled_code_place_discs_alike(monkeypatch, few_refusals):
 def test_a_seed_gives_the_same_gas_as_ever():
     position = make_gas(parse_scene(MIXTURE)).position
     assert hashlib.sha256(position.tobytes()).hexdigest()[:16] == "a90c622c4310f29a"
+
+
+def test_discs_that_do_not_interact_are_spread_evenly_over_the_room_between_walls():
+    """Discs as wide as half the box, where pairs would fit side by side only: distances to walls stay, overlaps too."""
+    scene = parse_scene("""
+        run.until = 1
+        interactions.discs = false
+        box.size = [4, 4]
+        wall = [{ from = [3, 0], to = [3, 4] }]
+        disc = [{ position = [0, 2], radius = 0.5, fixed = true }]
+        species = [{ name = "gas", count = 4000, radius = 0.4, speed = 1 }]
+    """)
+    x, y = make_gas(scene).position.T
+    assert (np.hypot(x, y - 2) >= 0.9).all()
+    right, left = x > 3, x < 3
+    assert x[left].max() <= 2.6
+    assert x[right].min() >= 3.4
+    # the centres reach (2.6 - 0.4) 3.2 less a segment of the circle of 0.9, and 0.2 × 3.2
+    segment = 0.81 * math.acos(0.4 / 0.9) - 0.4 * math.sqrt(0.81 - 0.16)
+    share = 0.64 / (2.2 * 3.2 - segment + 0.64)
+    assert right.mean() == pytest.approx(share, abs=3.5 * math.sqrt(share * (1 - share) / 4000))
+    upper = np.count_nonzero(y > 2) / 4000
+    assert upper == pytest.approx(0.5, abs=3.5 * math.sqrt(0.25 / 4000))

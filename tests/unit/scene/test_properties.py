@@ -27,6 +27,7 @@ TABLES = {
     "thermal walls": ["box.bottom={thermal=2}"],
     "piston": ["piston=[{side='top', position=9, velocity=0}]"],
     "thermostat": ["thermostat={temperature=3, rate=0.5}"],
+    "non-interacting discs": ["interactions.discs=false"],
 }
 """Each effect alone, in a form that goes with the others."""
 NAMES = tuple(TABLES)
@@ -49,7 +50,8 @@ def test_a_plain_box_has_all_defaults_and_all_effects_lack_several():
     assert scene().active_effects == ()
     assert scene().lacking("uniform", "isolated", "conserves_motion") == ()
     everything = scene(*together(*NAMES))
-    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in NAMES if e != "periodic sides")
+    kept = ("periodic sides", "non-interacting discs")
+    assert everything.lacking("uniform", "conserves_motion") == tuple(e for e in NAMES if e not in kept)
     assert everything.lacking() == ()
 
 
@@ -62,8 +64,17 @@ LACKING = {
     "isolated": {"thermal walls", "thermostat"},
     "conserves_energy": {"gravity", "restitution", "piston"},
     "conserves_motion": {"gravity", "rotation", "restitution", "thermal walls", "piston", "thermostat"},
-    "allows_monte_carlo": {"gravity", "periodic sides", "wall segments", "thermal walls", "piston", "thermostat"},
-    "allows_time_steps": {"wall segments", "piston", "thermostat"},
+    "allows_monte_carlo": {
+        "gravity",
+        "periodic sides",
+        "wall segments",
+        "thermal walls",
+        "piston",
+        "thermostat",
+        "non-interacting discs",
+    },
+    "allows_time_steps": {"wall segments", "piston", "thermostat", "non-interacting discs"},
+    "interacting": {"non-interacting discs"},
     "is_scalable": {"wall segments", "piston"},
     "empty": {"wall segments"},
 }

@@ -27,7 +27,8 @@ MARKERS = {
     "thermostat": {"thermostat.uniform", "thermostat.andersen_collision"},
 }
 """Functions that only make sense with an effect. Restitution has none, as its numbers would be
-read in those of others, and steering none, as it happens between epochs."""
+read in those of others; steering none, as it happens between epochs; and discs that do not interact none, as they only
+lack events."""
 
 PROGRAM = """
 import gc, json, sys
@@ -83,4 +84,4 @@ def test_with_the_effects_the_same_functions_run(tmp_path):
     (tmp_path / "shear").mkdir()
     sheared, _ = run(tmp_path / "shear", "sheared sides", NUMBA_DISABLE_JIT="1")
     assert set().union(*MARKERS.values()) <= called | sheared
-    assert set(MARKERS) | {"restitution", "steering"} == set(EFFECT_NAMES)
+    assert set(MARKERS) | {"restitution", "steering", "non-interacting discs"} == set(EFFECT_NAMES)
