@@ -94,7 +94,7 @@ def concave_share(side, pull):
     """Half the length of an even piece, in half periods, for a disc with an acceleration into the box; ½ for parabolas.
 
     The gap to a sine is concave where cos ω t > pull/(A ω²). Hastings' arccosine (Abramowitz & Stegun 4.4.46) has an
-    error δ below 2e-8, and a piece that is not concave in its last δ deviates from a concave one by less than A δ³.
+    error δ below 3e-8, and a piece that is not concave in its last δ deviates from a concave one by less than A δ³.
     """
     if side.omega == 0.0:
         return 0.5

@@ -256,7 +256,8 @@ def tables_of(draw) -> dict[str, Any]:
                 tables["box"][side] = "periodic"
             elif "vibration" in called and draw(st.booleans()):
                 amplitude = pick(draw, 1e-3, 0.02, 0.1) * min(size)
-                tables["box"][side] = {"vibrating": {"amplitude": amplitude, "frequency": pick(draw, 0.1, 1.0, 30.0)}}
+                motion = {"frequency": pick(draw, 0.1, 1.0, 30.0), "motion": pick(draw, "parabolas", "sine")}
+                tables["box"][side] = {"vibrating": {"amplitude": amplitude, **motion}}
             elif "thermal" in called and draw(st.booleans()) and not any(p.get("side") == side for p in pistons):
                 tables["box"][side] = {"thermal": in_steps(draw, *(masses[-1] * x for x in (1.0, 1e-4, 100.0)))}
     if len(walls):

@@ -102,6 +102,7 @@ SLOW = {
     "shear": Run("golden/sheared", (), ("run.events=1500",), 9 * ROUNDED, of_shear),
     "shear, rough in a heat bath": Run("golden/sheared", ROUGH, ("run.events=1500",), 9 * ROUNDED, of_shear),
     "vibrating sides": Run("golden/vibrating", (), ("run.until=2.7",), 1e-14, of_vibrations),
+    "sides that follow sines": Run("golden/vibrating-sine", (), ("run.until=2.7",), 1e-14, of_vibrations),
 }  # fmt: skip
 
 

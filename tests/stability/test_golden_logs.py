@@ -32,7 +32,7 @@ COMMAND = "PYTHONPATH=tests python tests/stability/test_golden_logs.py"
 SCENES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 UNCOMPILED = (
     "absorbing", "chute", "fixed-discs", "gravity-in-steps", "noninteracting", "permeable", "resting", "steps",
-    "thermal", "thermostat", "vibrating",
+    "thermal", "thermostat", "vibrating", "vibrating-sine",
 )  # fmt: skip
 """Scenes of few events, or with effects that few tests have: in Python they take less time, and give the same bits."""
 
