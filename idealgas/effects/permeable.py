@@ -48,22 +48,22 @@ class PermeableEffect(Effect[law.Permeable]):
 
     def check(self, tables: Tables) -> Iterator[Issue]:
         """Yield issues of walls without a side `permeable_from`, and of gates that let discs pass from one side."""
-        for i, wall in enumerate(tables.walls):
+        for wall in tables.walls:
             if wall is None or wall.permeable_from is None:
                 continue
-            key, got = ("wall", i, "permeable_from"), f'"{wall.permeable_from}"'
+            key, got = wall.key("permeable_from"), f'"{wall.permeable_from}"'
             if wall.via is not None:
                 yield Issue(
-                    (key, ("wall", i, "via")),
+                    (key, wall.key("via")),
                     "an arc cannot be permeable from one side only",
                     got,
                     "a straight wall, or both sides",
                 )
             elif wall.start != wall.end and _to_left(wall) == 0:
                 sides = SIDES[2:] if wall.permeable_from in SIDES[:2] else SIDES[:2]
-                yield Issue((key,), "not a side of this wall", got, " or ".join(f'"{side}"' for side in sides))
+                yield Issue((key,), f"not a side of {wall.title}", got, " or ".join(f'"{side}"' for side in sides))
             if wall.absences:
-                keys = (key, ("wall", i, "opens_at"), ("wall", i, "closes_at"))
+                keys = (key, wall.key("opens_at"), wall.key("closes_at"))
                 allowed = "a wall that is always present; if necessary, add a gate at the same place"
                 yield Issue(keys, "a gate that lets discs pass from one side", got, allowed)
 

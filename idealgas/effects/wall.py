@@ -2,30 +2,34 @@
 
 import math
 from collections.abc import Container, Iterator
-from dataclasses import dataclass
 from itertools import pairwise, zip_longest
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, PrivateAttr, model_validator
 
 from idealgas.columns import SIDES
-from idealgas.effects.arc import FLATTEST
 from idealgas.effects.effect import BenchmarkSample, Effect, GasAtStart, Later, Tables
 from idealgas.effects.properties import Properties
 from idealgas.effects.schedule import Change, SteppedTable, Times, WallTemperature, as_times, description, times_key
 from idealgas.jit import aligned
 from idealgas.physics import wall as law
-from idealgas.physics.arc_geometry import Arc, arc_through, bounds
-from idealgas.toml.issues import Issue, Key
+from idealgas.physics.arc_geometry import Arc, arc_through
+from idealgas.toml.issues import Issue, Key, issues_error
 from idealgas.toml.table import Vector, Word
 
-SHORTEST = 1e-9
-"""Shortest wall in units of the box's longer side; double precision cannot separate the ends of a shorter wall."""
+_CURVES = "straight walls, polygons (points) and arcs through three points (from, via, to)"
+_ELLIPSE = (
+    f"{_CURVES}: 32 arcs follow an ellipse with half-axes 2a and a to 2.3e-4 a, and their error falls as 1/n³; "
+    "see Ellipses in configs/README.md"
+)
+_CIRCLE = f"{_CURVES}; of a circle, from and to are one and the same point, and via is the point opposite"
 
 
 class WallTable(SteppedTable):
     """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
+
+    A table with `points` declares several segments, the pieces of a polygonal line, to which all its other keys apply.
 
     A gate is present until `opens_at`, and again from `closes_at` on. If only `closes_at` is given, the gate is absent
     until then. Lists of times open and close the gate repeatedly; if `opens_at` begins with 0, the gate is absent at
@@ -40,12 +44,22 @@ class WallTable(SteppedTable):
 
     in_steps = ("temperature",)
     radius: ClassVar[float] = 0.0
+    refused: ClassVar = {
+        **dict.fromkeys(("ellipse", "axes", "semi_axes"), ("no elliptical walls", _ELLIPSE)),
+        **dict.fromkeys(("circle", "centre", "center", "radius"), ("no centre or radius of an arc", _CIRCLE)),
+    }
 
-    start: Vector = Field(alias="from", description="[x, y] of one end, length")
-    end: Vector = Field(alias="to", description="[x, y] of the other end, length")
+    from_: Vector | None = Field(default=None, alias="from", description="[x, y] of one end, length")
+    to: Vector | None = Field(default=None, description="[x, y] of the other end, length")
     via: Vector | None = Field(
         default=None,
         description="[x, y] of a point on the arc between the ends, length; for a circle, the point opposite its start",
+    )
+    points: Annotated[tuple[Vector, ...], Field(strict=False)] | None = Field(
+        default=None, description="[x, y] of the corners of a polygonal line, instead of from and to, length"
+    )
+    closed: bool | None = Field(
+        default=None, description="with points: whether the last point is joined to the first, as in a polygon"
     )
     solid: Literal["inside", "outside"] | None = Field(
         default=None, description="side without gas: inside or outside the closed curve of walls that have this key"
@@ -65,6 +79,83 @@ class WallTable(SteppedTable):
     name: Word | None = Field(
         default=None, description="unique name in the log, a word; if absent, the number of the wall is used"
     )
+
+    _number: int = PrivateAttr(0)  # of the table
+    _corners: tuple[int, ...] = PrivateAttr(())  # numbers of the points that a piece of a polygonal line joins
+
+    @model_validator(mode="after")
+    def _check_shape(self) -> Self:
+        """Raise an error unless there are either both ends or enough points."""
+        ends = {"from": self.from_, "to": self.to, "via": self.via}
+        missing = [key for key in ("from", "to") if ends[key] is None]
+        given, fewest, issue = [key for key in ends if ends[key] is not None], 3 if self.closed else 2, None
+        if self.points is None and self.closed is not None:
+            issue = Issue((("closed",),), "nothing to close", "no points", "closed together with points")
+        elif self.points is None and missing:
+            allowed = "[x, y] of the other end, length" if given else "from and to, [x, y] of both ends, or points"
+            issue = Issue(((missing[0],),), "missing", "nothing", allowed)
+        elif self.points is not None and given:
+            got = f"points and {', '.join(given)}"
+            issue = Issue((("points",),), "two shapes", got, "either points, or from and to")
+        elif self.points is not None and len(self.points) < fewest:
+            issue = Issue((("points",),), "too few points", str(len(self.points)), f">= {fewest}")
+        if issue:
+            raise issues_error([issue])
+        return self
+
+    def pieces(self, number: int) -> "tuple[WallTable, ...]":
+        """Return the walls that the table declares: the segments of a polygonal line, or a single wall.
+
+        Only the text of a scene contains polygonal lines; everything else deals with their pieces.
+
+        number: number of the table.
+        """
+        points = self.points or ()
+        corners = [*range(len(points)), *([0] if self.closed else [])]
+        pieces = []
+        for joined in pairwise(corners) if points else [()]:
+            ends = dict(zip(("from_", "to"), (points[k] for k in joined), strict=False))
+            piece = self.model_copy(update={**ends, "points": None, "closed": None})
+            piece._number, piece._corners = number, joined
+            pieces.append(piece)
+        return tuple(pieces)
+
+    @property
+    def start(self) -> Vector:
+        """First end of a piece."""
+        assert self.from_ is not None, "a polygonal line has pieces"
+        return self.from_
+
+    @property
+    def end(self) -> Vector:
+        """Second end of a piece."""
+        assert self.to is not None, "a polygonal line has pieces"
+        return self.to
+
+    @property
+    def piece(self) -> int | None:
+        """Number of a piece of a polygonal line, which begins at the point with this number; None for other walls."""
+        return self._corners[0] if self._corners else None
+
+    def key(self, *names: str | int) -> Key:
+        """Return the path of a key of the table in the scene."""
+        return ("wall", self._number, *names)
+
+    @property
+    def ends_keys(self) -> tuple[Key, ...]:
+        """Keys of both ends."""
+        return tuple(self.key("points", k) for k in self._corners) or (self.key("from"), self.key("to"))
+
+    @property
+    def place(self) -> Key:
+        """Key of the wall, which is that of its first point for a piece of a polygonal line."""
+        return self.ends_keys[0] if self._corners else self.key()
+
+    @property
+    def title(self) -> str:
+        """Name in messages."""
+        between = " between points {} and {}".format(*self._corners) if self._corners else ""
+        return f"wall {self.name or self._number}{between}"
 
     @property
     def arc(self) -> Arc | None:
@@ -127,7 +218,7 @@ class WallTable(SteppedTable):
 class PermanentWall:
     """A wall that is not declared in `[[wall]]`; it is always present, straight, not thermal and not permeable."""
 
-    temperature = permeable_from = arc = None
+    temperature = permeable_from = arc = solid = piece = None
     absences = ()
     is_permeable = absorbing = False
 
@@ -138,88 +229,6 @@ class PermanentWall:
     def lets_pass(self, _: str) -> bool:
         """Whether the wall lets discs of a species pass."""
         return False
-
-
-@dataclass(frozen=True)
-class FixedDisc(PermanentWall):
-    """A fixed disc: a wall around a point.
-
-    Attributes:
-        number: number of its `[[disc]]` table.
-        start: centre, length.
-        radius: length.
-    """
-
-    number: int
-    start: tuple[float, float]
-    radius: float
-
-    @property
-    def end(self) -> tuple[float, float]:
-        """Centre of the disc."""
-        return self.start
-
-    @property
-    def place(self) -> Key:
-        """Key that declares the disc as fixed."""
-        return ("disc", self.number, "fixed")
-
-    @property
-    def name(self) -> str:
-        """Name for the log."""
-        return f"fixed disc {self.number}"
-
-    @property
-    def action(self) -> str:
-        """Short description for output."""
-        return f"fixed disc, radius {self.radius:g}"
-
-
-def wall_issues(size: tuple[float, float], i: int, wall: WallTable) -> Iterator[Issue]:
-    """Yield issues of wall i, except for its name.
-
-    size: width and height of the box, length.
-    """
-    keys: tuple[Key, ...] = (("wall", i, "from"), ("wall", i, "to"))
-    ends = f"{list(wall.start)} to {list(wall.end)}"
-    length = math.dist(wall.start, wall.end)
-    if wall.via is not None:
-        keys, ends = (("wall", i, "via"), *keys), f"{list(wall.start)} via {list(wall.via)} to {list(wall.end)}"
-        arc, farthest = wall.arc, FLATTEST * max(size)
-        nearest = min(math.dist(wall.via, wall.start), math.dist(wall.via, wall.end))
-        if arc is None or arc.radius > farthest or nearest < SHORTEST * max(size):
-            yield Issue(keys, "no arc through these points", ends, f"points not on a line, a radius <= {farthest:g}")
-            return
-    low, high = bounds(wall.start, wall.end, wall.arc)
-    slack = SHORTEST * max(size) if wall.via else 0.0  # rounding of an arc
-    if not all(-slack <= low[axis] and high[axis] <= size[axis] + slack for axis in range(2)):
-        allowed = f"0 <= x <= {size[0]} and 0 <= y <= {size[1]} everywhere"
-        yield Issue((*keys, ("box", "size")), "wall not in the box", ends, allowed)
-    if wall.via is not None and wall.start == wall.end:
-        pass
-    elif length < SHORTEST * max(size):
-        yield Issue(keys, "wall too short", ends, f"a length >= {SHORTEST * max(size)}")
-    elif wall.via is None and any(wall.start[a] == wall.end[a] in (0, size[a]) for a in range(2)):
-        yield Issue(
-            keys, "a wall along a side of the box", ends, "walls inside the box; the sides of the box are already walls"
-        )
-    times = [time for absence in wall.absences for time in absence]
-    if wall.is_permeable and wall.solid:
-        keys = (("wall", i, "solid"), ("wall", i, "permeable_to"), ("wall", i, "permeable_from"))
-        yield Issue(keys, "a solid that lets discs pass", f'"{wall.solid}" and a permeable wall', "only one of them")
-    if wall.absorbing and wall.temperature is not None:
-        keys = (("wall", i, "absorbing"), ("wall", i, "temperature"))
-        yield Issue(keys, "an absorbing wall with a temperature", str(wall.temperature), "only one of them")
-    if times and wall.solid:
-        keys = (("wall", i, "solid"), ("wall", i, "opens_at"), ("wall", i, "closes_at"))
-        yield Issue(keys, "a solid that opens", f'"{wall.solid}" and a gate', "only one of them")
-    if any(later <= earlier for earlier, later in pairwise(times)):
-        keys = (("wall", i, "closes_at"), ("wall", i, "opens_at"))
-        opens, closes = as_times(wall.opens_at), as_times(wall.closes_at)
-        single = len(opens) == len(closes) == 1
-        allowed = f"> {wall.opens_at}" if single else "times in order, each opening before its closing"
-        wrong = "closes before it opens" if single else "openings and closings do not alternate"
-        yield Issue(keys, wrong, str(closes[0]) if single else f"{list(closes)} after {list(opens)}", allowed)
 
 
 def make_segments(
@@ -241,10 +250,10 @@ def make_segments(
 
 
 def _polygon(side: float, corners: int, height: float) -> str:
-    """`[[wall]]` tables of a regular polygon of radius 4 whose centre is at the given height in the box."""
-    turn = [2 * math.pi * k / corners for k in range(corners + 1)]
+    """`[[wall]]` table of a regular polygon of radius 4 whose centre is at the given height in the box."""
+    turn = [2 * math.pi * k / corners for k in range(corners)]
     points = [[side / 2 + 4.0 * math.cos(a), height + 4.0 * math.sin(a)] for a in turn]
-    return "".join(f"[[wall]]\nfrom = {start}\nto = {end}\n" for start, end in pairwise(points))
+    return f"[[wall]]\npoints = {points}\nclosed = true\n"
 
 
 class WallEffect(Effect[np.recarray]):
@@ -274,25 +283,6 @@ class WallEffect(Effect[np.recarray]):
             last_wall_removed_at=max(opens if math.isinf(closes) else math.inf for opens, closes in removed),
             changes=tuple(sorted(times - {0.0, math.inf})),
         )
-
-    def check(self, tables: Tables) -> Iterator[Issue]:
-        """Yield issues of individual walls, and of names that are taken."""
-        first: dict[str, int] = {}
-        for i, wall in enumerate(tables.table):
-            if wall is None:
-                continue
-            if isinstance(wall, FixedDisc):
-                if not all(0 <= x <= length for x, length in zip(wall.start, tables.size, strict=True)):
-                    allowed = f"0 <= x <= {tables.size[0]} and 0 <= y <= {tables.size[1]}"
-                    keys: tuple[Key, ...] = (("disc", wall.number, "position"), ("box", "size"))
-                    yield Issue(keys, "fixed disc not in the box", str(list(wall.start)), allowed)
-                continue
-            yield from wall_issues(tables.size, i, wall)
-            if wall.name in (*SIDES, "piston"):
-                taken = "the piston" if wall.name == "piston" else "a side of the box"
-                yield Issue((("wall", i, "name"),), f"name taken by {taken}", f'"{wall.name}"', "any other word")
-            elif wall.name is not None and first.setdefault(wall.name, i) != i:
-                yield Issue((("wall", i, "name"),), "second wall with this name", f'"{wall.name}"', "a unique name")
 
     def continued(self, table: tuple[WallTable, ...], later: Later) -> tuple[WallTable, ...]:
         walls = (wall.later(later.time) for wall in table)

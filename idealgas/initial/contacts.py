@@ -40,14 +40,14 @@ def _supports(scene: Scene, gas: Gas) -> Iterator[tuple[str, np.ndarray]]:
             touches = coordinate >= gas.box[axis] - gas.radius if is_upper(side) else coordinate <= gas.radius
             yield f"the {name} side", touches & (gas.velocity[:, axis] == 0)
     if accelerations.any():
-        for k, wall in enumerate(scene.segments):
+        for wall in scene.segments:
             if wall.is_present(0.0):
                 normal = gas.position - nearest_points(gas.position, wall.start, wall.end, wall.arc)
                 touches = (normal**2).sum(axis=1) <= (gas.radius + wall.radius) ** 2
                 if wall.is_permeable and wall.permeable_from is None:
                     touches &= ~np.array([wall.lets_pass(name) for name in gas.species_names])[gas.species]
                 pressed = _first(accelerations @ normal.T) < 0
-                yield f"wall {k}", touches & pressed & ((normal * gas.velocity).sum(axis=1) == 0)
+                yield wall.title, touches & pressed & ((normal * gas.velocity).sum(axis=1) == 0)
     for piston, name in zip(scene.piston, piston_names(scene.piston), strict=True):
         outward = piston.outward_from(gas.position, gas.box)
         gap = outward * (piston.start(gas.box) - gas.position[:, piston.axis]) - gas.radius

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from idealgas.effects.properties import ActiveEffect
-from idealgas.effects.wall import FixedDisc
+from idealgas.effects.wall import PermanentWall, WallTable
+from idealgas.toml.issues import Key
 
 EXPLICIT = "disc"
 """Name of the species of individually specified discs that do not name their species."""
@@ -89,6 +90,44 @@ class InitialDiscs:
         return sha.hexdigest()[:32]
 
 
+@dataclass(frozen=True)
+class FixedDisc(PermanentWall):
+    """A fixed disc: a wall around a point.
+
+    Attributes:
+        number: number of its `[[disc]]` table.
+        start: centre, length.
+        radius: length.
+    """
+
+    number: int
+    start: tuple[float, float]
+    radius: float
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """Centre of the disc."""
+        return self.start
+
+    @property
+    def place(self) -> Key:
+        """Key that declares the disc as fixed."""
+        return ("disc", self.number, "fixed")
+
+    @property
+    def name(self) -> str:
+        """Name for the log."""
+        return f"fixed disc {self.number}"
+
+    title = name
+    """Name in messages."""
+
+    @property
+    def action(self) -> str:
+        """Short description for output."""
+        return f"fixed disc, radius {self.radius:g}"
+
+
 def make_discs(columns: dict[str, Any], names: Sequence[str], index: Sequence[int] | None = None) -> InitialDiscs:
     """Make discs from columns, without checking them.
 
@@ -138,8 +177,9 @@ class ExplicitDiscs:
         discs: the individually specified discs.
         update: keys of the [start] table that follow from the state it names.
         tables: tables [[disc]] from which the discs were made; None if the discs come from the table [start].
-        walls: fixed discs of the tables `walls_of`.
-        walls_of: tables [[disc]] from which `walls` were made.
+        pieces: walls that are declared in the tables [[wall]]; None marks an invalid table.
+        fixed: fixed discs.
+        walls_of: tables [[wall]] and [[disc]] from which `pieces` and `fixed` were made.
         effects: active effects of the tables `effects_of`.
         effects_of: tables from which `effects` were determined.
     """
@@ -147,8 +187,9 @@ class ExplicitDiscs:
     discs: InitialDiscs = NO_DISCS
     update: Mapping[str, Any] = field(default_factory=dict)
     tables: Sequence[Any] | None = None
-    walls: Sequence[FixedDisc] = ()
-    walls_of: Sequence[Any] = ()
+    pieces: tuple[WallTable | None, ...] = ()
+    fixed: tuple[FixedDisc, ...] = ()
+    walls_of: Sequence[Any] = (None, None)
     effects: tuple[ActiveEffect, ...] = ()
     effects_of: Sequence[Any] = ()
 

@@ -4,6 +4,7 @@ All quantities are in reduced units (k_B = 1). The list of effects determines wh
 """
 
 import math
+from itertools import chain
 from operator import is_not
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,7 +19,7 @@ from idealgas.effects.rotation import loses
 from idealgas.physics.collision_rates import DENSEST, collisions_per_length, mean_trial_time
 from idealgas.physics.noninteracting import wall_hits_per_length
 from idealgas.scene.defaults import RestingDisc, mean_kinetic_energy, mean_speed, reference_speed
-from idealgas.scene.discs import ExplicitDiscs, InitialDiscs, discs_of_tables, fixed_discs
+from idealgas.scene.discs import ExplicitDiscs, FixedDisc, InitialDiscs, discs_of_tables, fixed_discs
 from idealgas.scene.lattice import TriangularLattice, triangular_lattice
 from idealgas.scene.sizes import Size
 from idealgas.scene.solids import NO_SOLIDS, Solids, covered_area, find_solids
@@ -83,12 +84,29 @@ class Document(_DiscsAndEffects):
             self._explicit = ExplicitDiscs(discs_of_tables(self.disc), tables=self.disc)
         return self._explicit.discs
 
+    def _with_walls(self) -> ExplicitDiscs:
+        """Return the cached values that follow from the tables, with the walls of the present tables."""
+        known, tables = self._explicit, (self.wall, self.disc)
+        if any(map(is_not, known.walls_of, tables)):
+            of_tables = (wall.pieces(i) if wall is not None else (None,) for i, wall in enumerate(self.wall))
+            known.pieces, known.fixed = tuple(chain.from_iterable(of_tables)), fixed_discs(self.disc)
+            known.walls_of = tables
+        return known
+
+    @property
+    def pieces(self) -> tuple[Any, ...]:
+        """Walls that are declared in the tables [[wall]]: segments and arcs, with None for invalid tables."""
+        return self._with_walls().pieces
+
+    @property
+    def fixed_discs(self) -> tuple[FixedDisc, ...]:
+        """Fixed discs among the tables [[disc]]."""
+        return self._with_walls().fixed
+
     @property
     def segments(self) -> tuple[Any, ...]:
-        """Tables [[wall]], with None for invalid tables, followed by the fixed discs."""
-        if self._explicit.walls_of is not self.disc:
-            self._explicit.walls, self._explicit.walls_of = fixed_discs(self.disc), self.disc
-        return (*self.wall, *self._explicit.walls)
+        """Walls that are declared in the tables [[wall]], with None for invalid tables, followed by the fixed discs."""
+        return (*self.pieces, *self.fixed_discs)
 
     @property
     def walls(self) -> tuple[Any, ...]:
@@ -105,8 +123,8 @@ class Document(_DiscsAndEffects):
         """Solids formed by the tables [[wall]]; their area includes the area covered by fixed discs."""
         width, height = self.box.size
         made = any(wall is not None and wall.solid for wall in self.wall)
-        solids = find_solids(tuple(self.wall), width * height) if made else NO_SOLIDS
-        if fixed := self.segments[len(self.wall) :]:
+        solids = find_solids(self.pieces, width * height) if made else NO_SOLIDS
+        if fixed := self.fixed_discs:
             return solids._replace(area=solids.area + covered_area(fixed, (width, height), self.box.periodic))
         return solids
 

@@ -8,13 +8,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 from pydantic import BaseModel, PrivateAttr, TypeAdapter, ValidationError, ValidationInfo, model_validator
-from pydantic_core import PydanticCustomError
 
 from idealgas.scene.checks import issues
 from idealgas.scene.discs import ExplicitDiscs, InitialDiscs
 from idealgas.scene.document import Document
 from idealgas.scene.start import StartError, read_start
-from idealgas.toml.issues import Issue, SceneError, as_issues, table_at
+from idealgas.toml.issues import Issue, SceneError, as_issues, issues_error, table_at
 from idealgas.toml.overrides import names_of
 from idealgas.toml.text import TextOrigin
 
@@ -44,12 +43,10 @@ class Scene(Document, metaclass=_SceneType):
             try:
                 self._explicit = ExplicitDiscs(*read_start(self, **info.context or {}))
             except StartError as error:
-                errors = [Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)]
-                raise PydanticCustomError(
-                    "issues", "{summary}", {"summary": str(errors[0]), "issues": errors}
-                ) from None
+                issue = Issue((("start", error.key), ("start",)), error.wrong, error.got, error.allowed)
+                raise issues_error([issue]) from None
         if errors := list(issues(self)):
-            raise PydanticCustomError("issues", "{summary}", {"summary": str(errors[0]), "issues": errors})
+            raise issues_error(errors)
         return self
 
     def resolved(self) -> Self:
@@ -156,7 +153,9 @@ def _sizes(scene: Scene) -> Counter[float]:
 
 
 def _tables(scene: Scene) -> dict[str, Any]:
-    return scene.resolved().model_dump(mode="json", by_alias=True, exclude_none=True)
+    """Return the tables with explicit defaults, in which walls are the same whether or not they are `points`."""
+    single = scene.resolved().model_copy(update={"wall": scene.pieces})
+    return single.model_dump(mode="json", by_alias=True, exclude_none=True)
 
 
 def _without_state(value: Any) -> Any:
@@ -203,8 +202,8 @@ def make_scene(
 def _all_issues(error: ValidationError, document: dict[str, Any]) -> list[Issue]:
     """Return the errors in single tables and the contradictions between tables that are valid in themselves."""
     findings = error.errors(include_url=False)
-    if findings[0]["type"] == "issues":
-        return findings[0]["ctx"]["issues"]
+    if not findings[0]["loc"]:  # from the check of the whole scene, whose tables are all valid
+        return as_issues(findings, Scene)
     parts, invalid = _valid_parts(document)
     return [*as_issues(findings, Scene), *issues(parts, invalid)]
 

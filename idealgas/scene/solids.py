@@ -15,7 +15,8 @@ from idealgas.physics.arc import toggles
 from idealgas.physics.arc_geometry import NO_ARC, Point, bounds
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import FixedDisc, WallTable
+    from idealgas.effects.wall import WallTable
+    from idealgas.scene.discs import FixedDisc
 
 
 class Solids(NamedTuple):
@@ -43,10 +44,10 @@ NO_SOLIDS = Solids({"inside": (), "outside": ()}, 0.0, ())
 
 @lru_cache(maxsize=4)
 def find_solids(walls: tuple[WallTable | None, ...], box_area: float) -> Solids:
-    """Find the solids that tables [[wall]] form in a box.
+    """Find the solids that walls form in a box.
 
     Args:
-        walls: the tables; None marks an invalid table.
+        walls: the walls; None marks an invalid table.
         box_area: area of the box, length².
     """
     numbered = [(k, wall) for k, wall in enumerate(walls) if wall is not None and wall.solid is not None]

@@ -76,11 +76,13 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         action = next((piston.action for piston in scene.piston if piston.wall == name), action)
         walls.append(NumberedWall(name, *ends, action))
     for k, wall in enumerate(scene.walls, FIRST_SEGMENT):
-        name = wall.name or f"wall {k}"
-        label = f"{name} {ARROWS[wall.permeable_from]}" if wall.permeable_from else name
-        if getattr(wall, "solid", None) and not wall.name:  # pistons and fixed discs do not have this key
-            # Solids consist of many short walls, whose labels would overlap in a picture.
+        name = label = wall.name or f"wall {k}"
+        if wall.piece is not None and wall.name:
+            name = f"{wall.name} {wall.piece}"
+        # The labels of the many short walls of a solid or a polygonal line would overlap in a picture.
+        if wall.piece if wall.name else wall.solid or wall.piece is not None:
             label = ""
+        label += f" {ARROWS[wall.permeable_from]}" if label and wall.permeable_from else ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))
     return walls

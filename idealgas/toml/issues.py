@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
-from pydantic_core import ErrorDetails
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 from idealgas.errors import UserError, did_you_mean
 from idealgas.toml.dump import toml_value
@@ -74,6 +74,11 @@ class SceneError(UserError, ValueError):
         self.errors = list(errors)
 
 
+def issues_error(issues: Sequence[Issue]) -> PydanticCustomError:
+    """Return an error for a validator of a model to raise; the keys of the issues are relative to the model."""
+    return PydanticCustomError("issues", "{summary}", {"summary": str(issues[0]), "issues": issues})
+
+
 def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[Issue]:
     """Convert the errors that pydantic reports for a document to issues.
 
@@ -84,16 +89,26 @@ def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[
         model: the model of the document.
     """
     above = {finding["loc"][:n] for finding in findings for n in range(len(finding["loc"]))}
-    return [
-        _issue(finding, model) for finding in findings if finding["type"] != "too_short" or finding["loc"] not in above
-    ]
+    issues: list[Issue] = []
+    for finding in findings:
+        if finding["type"] == "issues":
+            for issue in finding["ctx"]["issues"]:
+                keys = tuple((*finding["loc"], *key) for key in issue.keys)
+                issues += [issue._replace(keys=keys)]
+        elif finding["type"] != "too_short" or finding["loc"] not in above:
+            issues.append(_issue(finding, model))
+    return issues
 
 
 def _issue(finding: ErrorDetails, model: type[BaseModel]) -> Issue:
     key = tuple(step for step in finding["loc"] if not str(step).startswith("("))  # omits the tags of unions
     kind, got = finding["type"], finding["input"]
     if kind == "extra_forbidden":
-        known = [name for table in _tables_at(key[:-1], model) for name in _keys(table)]
+        tables = _tables_at(key[:-1], model)
+        for table in tables:
+            if refusal := getattr(table, "refused", {}).get(key[-1]):
+                return Issue((key,), refusal[0], str(key[-1]), refusal[1])
+        known = [name for table in tables for name in _keys(table)]
         wrong = f"unknown {'key' if key[1:] else 'table'}{did_you_mean(str(key[-1]), known)}"
         return Issue((key,), wrong, str(key[-1]), ", ".join(known))
     if kind == "missing" and isinstance(key[-1], int):

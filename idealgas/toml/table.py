@@ -1,7 +1,8 @@
 """The base class of all tables of a scene, the types of their numbers, and their JSON Schema."""
 
 import json
-from typing import Annotated, Any
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
@@ -48,6 +49,9 @@ class Table(BaseModel):
         allow_inf_nan=False,
         model_title_generator=lambda table: table.__name__.removesuffix("Table"),  # as users of the schema see it
     )
+
+    refused: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    """Keys that the table does not have but users may expect: what is wrong, and what is allowed instead."""
 
 
 def _key_of(table: type[Table]) -> str:

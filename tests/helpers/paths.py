@@ -39,17 +39,17 @@ class Paths:
         self.gas, self.max_errors = gas, max_errors
         self.pull = np.array(scene.properties.acceleration)
         self.size, self.periodic = np.array(gas.box), np.array(scene.box.periodic)
-        self.walls = np.array([(w.start, w.end) for w in scene.wall]).reshape(-1, 2, 2)
+        self.walls = np.array([(w.start, w.end) for w in scene.pieces]).reshape(-1, 2, 2)
         along = self.walls[:, 1] - self.walls[:, 0]
         along = along / np.where(along.any(axis=1), np.hypot(*along.T), 1.0)[:, None]
         self.left = np.column_stack((-along[:, 1], along[:, 0]))
         passage = np.zeros((len(scene.walls), len(gas.species_names)), int)
-        if scene.wall and any(wall.is_permeable for wall in scene.wall):
+        if any(wall.is_permeable for wall in scene.wall):
             passage = effects.permeable.passage
         self.passage = np.asarray(passage)[:, gas.species]
-        self.straight = np.array([w.arc is None for w in scene.wall], bool)
-        self.gates = scene.wall
-        self.fixed = [wall for wall in scene.walls[len(scene.wall) :] if wall.radius]  # not an inner piston
+        self.straight = np.array([w.arc is None for w in scene.pieces], bool)
+        self.gates = scene.pieces
+        self.fixed = [wall for wall in scene.walls[len(scene.pieces) :] if wall.radius]  # not an inner piston
         self.pistons = scene.piston
         self.outward = [piston.outward_from(gas.position, gas.box) for piston in scene.piston]
         pushes = [

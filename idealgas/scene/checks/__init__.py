@@ -15,6 +15,7 @@ from idealgas.scene.checks.overlaps import discs_in_walls, label, overlap_issues
 from idealgas.scene.checks.run import endless_issues, method_issues, number_issues
 from idealgas.scene.checks.sides import shear_issues, vibration_issues
 from idealgas.scene.checks.solids import solid_issues
+from idealgas.scene.checks.walls import walls_issues
 from idealgas.scene.sizes import wrong_radius
 from idealgas.toml.issues import Issue, Key
 
@@ -66,6 +67,7 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
         for effect in EFFECTS:
             if effect.find(tables := scene.tables_of(effect)) is not None:
                 yield from effect.check(tables)
+        yield from walls_issues(scene)
         yield from discs_in_walls(scene)
         if solid := list(solid_issues(scene)):
             yield from solid

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from idealgas.effects.wall import wall_issues
+from idealgas.effects.wall import WallTable
 from idealgas.pairs import MARGIN
 from idealgas.physics.arc_geometry import bounds, nearest_points
 from idealgas.physics.motion import MAX_DISPLACEMENT
+from idealgas.scene.checks.walls import wall_issues
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import WallTable
     from idealgas.scene.discs import InitialDiscs
     from idealgas.scene.document import Document
     from idealgas.scene.tables import Box
@@ -210,18 +210,16 @@ def discs_in_walls(scene: Document) -> Iterator[Issue]:
     """Check for given discs that overlap a wall that is present at the start; at most MOST_OVERLAPS are reported."""
     pairs: dict[tuple[int, int], float] = {}
     box, walls = scene.box, {i: wall for i, wall in enumerate(scene.walls) if wall is not None and wall.is_present(0.0)}
-    walls = {i: wall for i, wall in walls.items() if hasattr(wall, "place") or not list(wall_issues(box.size, i, wall))}
+    declared = {i: wall for i, wall in walls.items() if isinstance(wall, WallTable)}
+    walls = {i: wall for i, wall in walls.items() if i not in declared or not list(wall_issues(box.size, wall))}
     for k, i, distance in wall_overlaps(scene.explicit_discs, box, walls, scene.accepted_overlap):
         pairs[k, i] = min(distance, pairs.get((k, i), math.inf))
         if len(pairs) == MOST_OVERLAPS:
             break
     for (k, i), distance in sorted(pairs.items()):
         number, radius = int(scene.explicit_discs.index[k]), scene.explicit_discs.radius[k]
-        place: Key = getattr(walls[i], "place", ("wall", i))
-        keys: tuple[Key, ...] = (*disc_keys(scene, (number,), "position", "radius"), place)
-        wrong = (
-            f"{label(scene, number)}overlaps {f'wall {walls[i].name or i}' if place[0] == 'wall' else walls[i].name}"
-        )
+        keys = (*disc_keys(scene, (number,), "position", "radius"), walls[i].place)
+        wrong = f"{label(scene, number)}overlaps {walls[i].title}"
         yield Issue(keys, wrong, f"a distance of {distance} to it", f">= {radius}, the radius")
 
 

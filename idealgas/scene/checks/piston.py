@@ -229,7 +229,7 @@ def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
         depth = least_depth(scene, piston.axis)
     else:
         depth = min(_depth(scene, piston, place) for _, place in track(scene, piston))
-    for i, wall in enumerate(scene.segments):
+    for wall in scene.segments:
         reach = wall.radius + max(
             _depth(scene, piston, end[piston.axis]) for end in bounds(wall.start, wall.end, wall.arc)
         )
@@ -237,13 +237,12 @@ def _walls_in_the_way(scene: Document, k: int) -> Iterator[Issue]:
             why = ", beyond the reach of the piston" if piston.mass is None else WAY
             allowed = f"no farther than {depth:.6g}{why}"
             got = f"{reach:.6g} from the {_facing(piston)} side"
-            yield Issue(_in_the_way(wall, i, k), "wall in the way of the piston", got, allowed)
+            yield Issue(_in_the_way(wall, k), "wall in the way of the piston", got, allowed)
 
 
-def _in_the_way(wall: Any, i: int, k: int) -> tuple[Key, ...]:
-    """Return the keys involved if wall i is in the way of piston k."""
-    place: Key = getattr(wall, "place", ("wall", i))
-    return (place, ("piston", k, "position"), ("piston", k, "velocity"), ("run", "until"))
+def _in_the_way(wall: Any, k: int) -> tuple[Key, ...]:
+    """Return the keys involved if a wall is in the way of piston k."""
+    return (wall.place, ("piston", k, "position"), ("piston", k, "velocity"), ("run", "until"))
 
 
 def _range(scene: Document, k: int) -> tuple[float, float]:
@@ -264,22 +263,22 @@ def _range(scene: Document, k: int) -> tuple[float, float]:
 def _walls_in_range(scene: Document, k: int) -> Iterator[Issue]:
     """Check for walls within the range of a piston."""
     axis, (least, most) = scene.piston[k].axis, _range(scene, k)
-    for i, wall in enumerate(scene.segments):
+    for wall in scene.segments:
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
         if low - wall.radius < most and high + wall.radius > least:
             allowed = f"none from {least:.6g} to {most:.6g} along {'xy'[axis]}, within the reach of the piston"
             got = f"from {low:.6g} to {high:.6g}"
-            yield Issue(_in_the_way(wall, i, k), f"wall in the way of {piston_names(scene.piston)[k]}", got, allowed)
+            yield Issue(_in_the_way(wall, k), f"wall in the way of {piston_names(scene.piston)[k]}", got, allowed)
 
 
 def _holes_between(scene: Document) -> Iterator[Issue]:
     """Check that gas between two pistons cannot escape, because pistons with no disc between them could meet."""
     axis, starts = scene.piston[0].axis, [piston.start(scene.box.size) for piston in scene.piston]
-    for i, wall in enumerate(scene.wall):
+    for wall in scene.pieces:
         low, high = (end[axis] for end in bounds(wall.start, wall.end, wall.arc))
         if wall.absorbing and starts[0] <= low and high <= starts[-1]:
             got, allowed = f"from {low:.6g} to {high:.6g}", f"none from {starts[0]:.6g} to {starts[-1]:.6g}"
-            keys: tuple[Key, ...] = (("wall", i, "absorbing"), ("piston", 0), ("piston", len(starts) - 1))
+            keys: tuple[Key, ...] = (wall.key("absorbing"), ("piston", 0), ("piston", len(starts) - 1))
             yield Issue(keys, "a hole between two pistons", got, f"{allowed} along {'xy'[axis]}")
 
 

@@ -47,10 +47,10 @@ def vibration_issues(scene: Document) -> Iterator[Issue]:
         size, least = scene.box.size[axis], least_depth(scene, axis)
         if keys and size < least:
             yield Issue((*keys, ("box", "size")), "crushes the gas", f"a box of {size:.6g}", f">= {least:.6g}")
-        for i, wall in enumerate(scene.wall):
+        for wall in scene.pieces:
             for name, height in heights.items():
                 above = abs(wall.start[axis] - scene.box.size[axis] * (SIDES.index(name) % 2))
                 if height and wall.start[axis] == wall.end[axis] and above < height + 2 * scene.largest_radius:
                     got, allowed = f"{above:.6g} from it", f">= {height + 2 * scene.largest_radius:.6g}"
-                    place: tuple[Key, ...] = (("wall", i), ("box", name, "vibrating", "amplitude"))
+                    place: tuple[Key, ...] = (wall.place, ("box", name, "vibrating", "amplitude"))
                     yield Issue(place, f"discs crushed between the wall and the vibrating {name} side", got, allowed)

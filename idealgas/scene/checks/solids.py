@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -13,34 +13,32 @@ from idealgas.scene.checks.overlaps import MOST_OVERLAPS, disc_keys, distance_to
 from idealgas.toml.issues import Issue, Key
 
 if TYPE_CHECKING:
-    from idealgas.effects.wall import FixedDisc, WallTable
+    from idealgas.effects.wall import WallTable
+    from idealgas.scene.discs import FixedDisc
     from idealgas.scene.document import Document
 
 
 def solid_issues(scene: Document) -> Iterator[Issue]:
     """Check solids, and check for fixed discs that protrude into a solid or cover the whole box."""
-    made = {k: wall for k, wall in enumerate(scene.wall) if wall is not None and wall.solid}
-    fixed = scene.segments[len(scene.wall) :]
+    made = [wall for wall in scene.pieces if wall is not None and wall.solid]
+    fixed = scene.fixed_discs
     if not made and not fixed:
         return
     solids = scene.solids
     for k, end in solids.loose:
-        allowed = f'exactly one other wall with solid = "{scene.wall[k].solid}" that ends there'
-        yield Issue((("wall", k, "solid"),), "curve not closed", f"an end at {list(end)}", allowed)
+        wall = scene.pieces[k]
+        allowed = f'exactly one other wall with solid = "{wall.solid}" that ends there'
+        yield Issue((wall.key("solid"),), "curve not closed", f"an end at {list(end)}", allowed)
     if solids.loose:
         return
-    if made and (crossing := _crossing(scene)):
+    if made and (crossing := _crossing(made)):
         a, b = crossing
-        yield Issue(
-            (("wall", a, "solid"), ("wall", b, "solid")),
-            "curves that cross",
-            f"wall {scene.wall[b].name or b}",
-            "curves that do not cross",
-        )
+        keys: tuple[Key, ...] = (a.place if a.piece is not None else a.key("solid"), b.place)
+        yield Issue(keys, "curves that cross", b.title, "curves that do not cross")
     elif made and fixed and (reaching := list(_reaching(scene, fixed, made))):
         yield from reaching
     elif solids.area >= scene.box.size[0] * scene.box.size[1] * (1 - 1e-12):
-        place: Key = ("wall", next(iter(made)), "solid") if made else fixed[0].place
+        place: Key = made[0].key("solid") if made else fixed[0].place
         got = f"{'solids' if made else 'fixed discs'} everywhere"
         yield Issue((place,), "no area is left", got, "room for the gas")
     discs = scene.explicit_discs
@@ -50,37 +48,31 @@ def solid_issues(scene: Document) -> Iterator[Issue]:
         yield Issue(keys, f"{label(scene, number)}in a solid", str(discs.position[k].tolist()), "a position outside")
 
 
-def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Mapping[int, WallTable]) -> Iterator[Issue]:
+def _reaching(scene: Document, fixed: Sequence[FixedDisc], solid: Sequence[WallTable]) -> Iterator[Issue]:
     """Check for fixed discs that protrude into a solid; at most MOST_OVERLAPS are reported.
 
     Args:
         scene: the scene.
         fixed: the fixed discs.
-        solid: walls of solids, by number.
+        solid: walls of solids.
     """
     position, radius = np.array([disc.start for disc in fixed]), np.array([disc.radius for disc in fixed])
     reaches = scene.solids.contain(position)
     owner, centre = images(position, radius, scene.box)
     slack = rounding(max(scene.box.size), 2 * radius)
-    for wall in solid.values():
+    for wall in solid:
         reaches[owner[distance_to_wall(centre, wall) < (radius - slack)[owner]]] = True
     for k in np.flatnonzero(reaches)[:MOST_OVERLAPS].tolist():
-        keys: tuple[Key, ...] = (
-            *disc_keys(scene, (fixed[k].number,), "position", "radius"),
-            ("wall", next(iter(solid)), "solid"),
-        )
+        keys = (*disc_keys(scene, (fixed[k].number,), "position", "radius"), solid[0].key("solid"))
         yield Issue(
             keys, "fixed disc protrudes into a solid", str(position[k].tolist()), f"{radius[k]} or more from it"
         )
 
 
-def _crossing(scene: Document) -> tuple[int, int] | None:
-    """Return the numbers of two walls of solids that cross when drawn as polygonal lines; None if no walls cross."""
+def _crossing(walls: Sequence[WallTable]) -> tuple[WallTable, WallTable] | None:
+    """Return two walls that cross when drawn as polygonal lines; None if no walls cross."""
     parts = [
-        (k, a, b)
-        for k, wall in enumerate(scene.wall)
-        if wall is not None and wall.solid
-        for a, b in pairwise(drawn_points(wall.start, wall.end, wall.arc))
+        (k, a, b) for k, wall in enumerate(walls) for a, b in pairwise(drawn_points(wall.start, wall.end, wall.arc))
     ]
     parts.sort(key=lambda part: min(part[1][0], part[2][0]))
     owner = np.array([k for k, *_ in parts])
@@ -93,7 +85,7 @@ def _crossing(scene: Document) -> tuple[int, int] | None:
         facing = _side(start[later], end[later], a) * _side(start[later], end[later], b)
         if (crossed := np.flatnonzero((apart < 0) & (facing < 0))).size:
             first, second = sorted((int(owner[n]), int(owner[n + 1 + crossed[0]])))
-            return first, second
+            return walls[first], walls[second]
     return None
 
 

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("uncompiled")
 def test_a_polygon_in_a_box():
     """The box loses a frame of the radius, the polygon is wider by it, and its corners become arcs."""
     log = log_of("sinai", "run.events=2")
-    radius, corners = log.discs.radius[0], np.array([wall.start for wall in log.scene.wall])
+    radius, corners = log.discs.radius[0], np.array([wall.start for wall in log.scene.pieces])
     sides, (x, y) = np.diff(corners, axis=0, append=corners[:1]), corners.T
     around, inner = np.hypot(*sides.T).sum(), 10 - 2 * radius
     polygon = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
