@@ -1,12 +1,13 @@
 """Measure Lyapunov exponents: how fast small deviations grow and digits are lost.
 
-With `--exponents K`, the K largest exponents are measured; for N discs the whole spectrum has 4N exponents.
+With `--exponents K`, the K largest exponents are measured. The whole spectrum of N discs has 4N exponents, and 2 more
+for each piston of finite mass; discs that do not interact have 4 each.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 
@@ -16,10 +17,10 @@ from idealgas.errors import UserError
 from idealgas.fields import OMITTED
 from idealgas.log import Log
 from idealgas.presentation.tables import SHOWN_ROWS, Number, Table, estimates, format_estimate
-from idealgas.statistics.estimates import Estimate, mean, ratio
+from idealgas.statistics.estimates import ENOUGH_REPLICATES, Estimate, mean, ratio
 from idealgas.tallies.equilibration import Window, measure
 from idealgas.tallies.stream import ReadProgress
-from idealgas.tallies.tangent_space import MOST_NUMBERS, TangentVectors, must_have_tangent_map
+from idealgas.tallies.tangent_space import MOST_NUMBERS, Bodies, TangentVectors, must_have_tangent_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,18 +42,21 @@ class Lyapunov(Result):
     Attributes:
         window: window of time that was used.
         number: number N of discs.
-        exponents: the largest exponents in decreasing order, 1/time.
-        mean_free_time: mean free time, averaged over the window and over the discs, time.
+        exponents: the largest exponents in decreasing order, 1/time; means over the discs if these do not interact.
+        per_collision: largest exponent per collision of a disc with another disc or a wall (no unit).
+        mean_free_time: mean time between collisions of a disc with other discs or, if there are none, with walls,
+            averaged over the window and over the discs, time.
         digits: number of decimal digits lost per mean free time (no unit).
         localisation: exp(S)/N, where S = -Σ p ln p and p is the share of a disc in the square of the leading deviation.
-            It is 1/N if the deviation is confined to a single disc, and 1 if all discs have equal shares.
+            It is 1/N if the deviation is confined to a single disc, and 1 if all discs have equal shares. None for
+            independent discs.
         entropy: sum of the positive exponents (Kolmogorov-Sinai entropy), 1/time; None without the whole spectrum.
-        pairing: largest |λ_i + λ_(4N+1-i)|, which is 0 for conservative motion, 1/time; None without the whole
-            spectrum.
+        pairing: largest |λ_i + λ_j| of the i-th exponent from the top and the j = i-th from the bottom, which is 0 for
+            elastic motion, 1/time; None without the whole spectrum, or if collisions are not elastic.
         zeros: number of exponents that are zero because of conservation laws: two for the energy and two for each
-            conserved component of the momentum.
+            conserved component of the momentum; 0 if collisions are not elastic.
         largest_zero: largest magnitude among the exponents that should be zero, 1/time; measured over a time t, it is
-            of order ln(t)/t. None without the whole spectrum.
+            of order ln(t)/t. None without the whole spectrum, or without such exponents.
         time: (n,), times from the start of the measurement.
         growth: (n,), natural logarithm of the leading deviation.
     """
@@ -60,9 +64,10 @@ class Lyapunov(Result):
     window: Window
     number: int
     exponents: tuple[Estimate, ...]
+    per_collision: Estimate
     mean_free_time: float
     digits: Estimate
-    localisation: Estimate
+    localisation: Estimate | None
     entropy: Estimate | None
     pairing: float | None
     zeros: int
@@ -77,14 +82,21 @@ class Lyapunov(Result):
     def plain_tables(self) -> list[Table]:
         """Return the tables of the exponents (cut short if there are many), of chaos, and of the loss of digits."""
         exponents = [(f"λ{k}", estimate) for k, estimate in enumerate(self.exponents, 1)]
-        notes = [str(self.window), "theory is not available; the largest exponent grows with N"]
+        notes = [str(self.window), "theory is not available"]
         chaos = [
+            ("λ1 per collision with a wall or a disc (no unit)", self.per_collision),
             ("digits lost per collision of a disc (no unit)", self.digits),
-            ("fraction of the discs in the leading deviation (no unit)", self.localisation),
         ]
+        if self.localisation is not None:
+            notes[-1] += "; the largest exponent grows with N"
+            chaos.append(("fraction of the discs in the leading deviation (no unit)", self.localisation))
+        elif self.number > 1:
+            notes.append(f"means over {self.number:,} independent discs")
         if self.entropy is not None:
             chaos.append(("Kolmogorov–Sinai entropy: sum of all λ > 0 (1/time)", self.entropy))
+        if self.pairing is not None:
             notes.append(f"exponents form pairs λ and −λ to within {self.pairing:.1g}")
+        if self.largest_zero is not None:
             notes.append(f"{self.zeros} exponents vanish by conservation laws, to within {self.largest_zero:.1g}")
         rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g")) for digits in PRECISIONS]
         return [
@@ -158,77 +170,104 @@ class LyapunovAnalysis(Analysis):
 
         The exact tangent map propagates deviations through the recorded flights and collisions, and the deviations are
         orthogonalised once per event per disc (Benettin et al., Meccanica 15, 9 (1980)). The growth during the first 20
-        events per disc is discarded. The standard errors are those of the mean growth rates.
+        events per disc is discarded. The standard errors are those of the mean growth rates. Discs that do not interact
+        are independent systems with 4 exponents each; the result is the mean over the discs.
 
         Raises:
-            UserError: if the log does not contain events of smooth elastic discs from an exact method, if a side of
-                the box is neither periodic nor a plain wall at rest, if more than 4N exponents are requested, or if
-                the window has fewer than 52 events per disc.
+            UserError: if the log does not contain events from an exact method, if the tangent map of an effect is not
+                available, if more exponents are requested than exist, or if the window has fewer than 52 events per
+                disc.
         """
         must_have_tangent_map(log)
-        number = len(log.discs)
-        if exponents > 4 * number:
-            raise UserError(f"exponents: {number} discs have {4 * number} (got {exponents})")
-        if 4 * number * exponents > MOST_NUMBERS:
-            raise UserError(f"exponents: at most {MOST_NUMBERS // (4 * number)} of {number} discs (got {exponents})")
+        bodies, number, gas = Bodies(log), len(log.discs), log.scene.properties
+        dimension = len(bodies.free)
+        if exponents > dimension:
+            who = "each disc has" if bodies.systems > 1 else f"{number} discs have"
+            raise UserError(f"exponents: {who} {dimension} (got {exponents})")
+        if 4 * len(bodies.mass) * exponents > MOST_NUMBERS:
+            raise UserError(
+                f"exponents: at most {MOST_NUMBERS // (4 * len(bodies.mass))} of {number} discs (got {exponents})"
+            )
         window = measure(log, [], start, end)
-        steps = list(_steps(log, window, exponents, progress))[ALIGNMENT:]
-        if len(steps) < FEWEST:
+        rows, total, before = [], np.zeros((bodies.systems, exponents)), bodies.mass
+        for k, step in enumerate(_steps(log, window, bodies, exponents, progress), 1 - ALIGNMENT):
+            if k == 0:
+                before = step.met.copy()
+            elif k > 0:
+                total += step.growth
+            rows.append((step.time, step.growth.mean(axis=0), step.localisation, step.met.sum(), step.hits))
+        if len(rows) < ALIGNMENT + FEWEST:
             raise UserError(
                 f"{log.path}: too short for Lyapunov exponents, which require {ALIGNMENT + FEWEST} events per disc"
             )
-        durations, logs, shares, collisions = (np.array(column) for column in zip(*steps, strict=True))
-        spectrum = tuple(ratio(logs[:, k], durations) for k in range(exponents))
-        free_time = number * durations.sum() / (2 * collisions.sum()) if collisions.any() else math.inf
+        time, logs, shares, met, hits = (np.array(column) for column in zip(*rows[ALIGNMENT - 1 :], strict=True))
+        growth, durations, events = logs[1:], np.diff(time), np.diff(met) / number
+        duration, met, hits = time[-1] - time[0], met[-1] - met[0], hits[-1] - hits[0]
+        free_time = number * duration / (met - hits or met)
+        series = growth[:, 0].cumsum()
+        if bodies.systems >= ENOUGH_REPLICATES:  # each disc is a sample of its own
+            growth, durations, events = total, np.full(number, duration), step.met - before
+        spectrum = tuple(ratio(growth[:, k], durations) for k in range(exponents))
         values = np.array([estimate.value for estimate in spectrum])
-        zeros = 2 * (1 + sum(log.scene.properties.conserves_momentum))
-        whole = exponents == 4 * number
-        middle = slice(2 * number - zeros // 2, 2 * number + zeros // 2)
+        keeps_energy = not (gas.driven or gas.vibrates or gas.varies)
+        zeros = 2 * (keeps_energy + sum(gas.conserves_momentum)) if gas.elastic else 0
+        whole = exponents == dimension
+        middle = values[(dimension - zeros) // 2 : (dimension + zeros) // 2]
         return Lyapunov(
             window,
             number,
             spectrum,
+            ratio(growth[:, 0], events),
             free_time,
-            _scaled(spectrum[0], free_time / math.log(10)),
-            mean(shares),
-            ratio(np.where(values > 0, logs, 0.0).sum(axis=1), durations) if whole else None,
-            float(np.abs(values + values[::-1]).max()) if whole else None,
+            spectrum[0].times(free_time / math.log(10)),
+            mean(shares[1:]) if bodies.systems < number else None,
+            ratio(np.where(values > 0, growth, 0.0).sum(axis=1), durations) if whole else None,
+            float(np.abs(values + values[::-1]).max()) if whole and gas.elastic else None,
             zeros,
-            float(np.abs(values[middle]).max()) if whole else None,
-            durations.cumsum(),
-            logs[:, 0].cumsum(),
+            float(np.abs(middle).max()) if whole and zeros else None,
+            np.diff(time).cumsum(),
+            series,
         )
 
 
-def _scaled(estimate: Estimate, factor: float) -> Estimate:
-    return Estimate(estimate.value * factor, estimate.standard_error * factor, estimate.independent_samples)
+class _Step(NamedTuple):
+    """State at the end of an interval in which N collisions of a disc have happened.
 
-
-def _steps(
-    log: Log, window: Window, exponents: int, progress: ReadProgress | None
-) -> Iterator[tuple[float, np.ndarray, float, int]]:
-    """Yield, for each interval of N event rows, its duration, growth, localisation and number of collisions.
-
-    The growth (K,) is the logarithm of the factor by which each deviation grew; the localisation is that of the leading
-    deviation, see `Lyapunov`.
+    Attributes:
+        time: time.
+        growth: (S, K), logarithm of the factor by which each of K deviations of each of S independent systems grew.
+        localisation: that of the leading deviation, see `Lyapunov`.
+        met: (N,), number of collisions of each disc since the start of the window; valid until the next step.
+        hits: number of these that were with walls or pistons.
     """
-    number, masses = len(log.discs), log.discs.mass
-    if exponents == 4 * number:  # conjugate pairs stay conjugate, so that their exponents are ±λ in each interval
-        components = np.arange(4 * number).reshape(number, 4)
-        start = np.zeros((4 * number, 4 * number))
-        start[[*components[:, :2].ravel(), *components[::-1, :1:-1].ravel()], range(4 * number)] = 1.0
+
+    time: float
+    growth: np.ndarray
+    localisation: float
+    met: np.ndarray
+    hits: int
+
+
+def _steps(log: Log, window: Window, bodies: Bodies, exponents: int, progress: ReadProgress | None) -> Iterator[_Step]:
+    """Propagate deviations, and orthogonalise those of each independent system at the end of each interval."""
+    number, systems, free, moving = len(log.discs), bodies.systems, bodies.free, len(bodies.mass) - 1
+    start = np.zeros((4 * moving // systems, exponents))
+    if exponents == len(free):  # conjugate pairs stay conjugate, so that their exponents are ±λ in each interval
+        positions, velocities = np.split(free, 2)
+        start[[*positions, *velocities[::-1]], range(exponents)] = 1.0
     else:
-        start = np.linalg.qr(np.random.default_rng(0).normal(size=(4 * number, exponents)))[0]
-    weight = np.repeat(np.sqrt(masses), 4)[:, None]
-    followed = TangentVectors(log, window.start, (start / weight).reshape(number, 4, exponents))
-    begun, collisions = window.start, 0
-    for now, pairs in followed.until(window.end, number, progress):
-        collisions += pairs
+        start[np.sort(free)] = np.linalg.qr(np.random.default_rng(0).normal(size=(len(free), exponents)))[0]
+    weight = np.repeat(np.sqrt(bodies.mass[:-1]), 4).reshape(systems, -1, 1)
+    values = np.zeros((moving + 1, 4, exponents))
+    values[:-1] = (start / weight).reshape(moving, 4, exponents)
+    followed, begun = TangentVectors(log, window.start, bodies, values), window.start
+    for now in followed.until(window.end, number, progress):
         if now > begun:
-            q, r = np.linalg.qr(followed.now(now).reshape(4 * number, exponents) * weight)
-            shares = (q[:, 0] ** 2).reshape(number, 4).sum(axis=1)
+            q, r = np.linalg.qr(followed.now(now)[:-1].reshape(systems, -1, exponents) * weight)
+            growth = np.log(np.abs(np.diagonal(r, axis1=1, axis2=2)))
+            shares = (q[0, :, 0] ** 2).reshape(-1, 4).sum(axis=1)
             shares = shares[shares > 0]
             localisation = math.exp(-float(shares @ np.log(shares))) / number
-            yield now - begun, np.log(np.abs(np.diag(r))), localisation, collisions
-            followed.values[:] = (q / weight).reshape(number, 4, exponents)
-            begun, collisions = now, 0
+            yield _Step(now, growth, localisation, followed.collisions[:number], followed.collisions[number:].sum())
+            followed.values[:-1] = (q / weight).reshape(moving, 4, exponents)
+            begun = now

@@ -40,6 +40,22 @@ class VibratingSide(Table):
         sine = ", sine" if self.vibrating.motion == "sine" else ""
         return f"vibrating, amplitude {self.vibrating.amplitude:g}, frequency {self.vibrating.frequency:g}{sine}"
 
+    @property
+    def record(self) -> np.record:
+        """Parameters of the motion, as a VIBRATION record for times since the start of the run."""
+        (record,) = aligned(1, law.VIBRATION)
+        record.amplitude, record.half = self.vibrating.amplitude, 0.5 / self.vibrating.frequency
+        record.acceleration = 8 * record.amplitude / record.half**2
+        if self.vibrating.motion == "sine":
+            record.omega = math.pi / record.half
+            record.acceleration = record.amplitude * record.omega**2
+        return record
+
+    def acceleration(self, times: np.ndarray) -> np.ndarray:
+        """Return the acceleration of the side into the box at times (n,), length/time²."""
+        record = self.record
+        return np.array([law.motion_at(record, time)[2] for time in times.tolist()], float)
+
 
 def reach(side: object) -> float:
     """Largest height that a side reaches inside the box, length."""
@@ -70,13 +86,9 @@ class VibrationEffect(Effect[np.recarray]):
 
     def make(self, tables: Tables, _: GasAtStart) -> np.recarray:
         vibration = aligned(len(SIDES), law.VIBRATION)
-        for record, side in zip(vibration, tables.sides, strict=True):
+        for k, side in enumerate(tables.sides):
             if isinstance(side, VibratingSide):
-                record.amplitude, record.half = side.vibrating.amplitude, 0.5 / side.vibrating.frequency
-                record.acceleration = 8 * record.amplitude / record.half**2
-                if side.vibrating.motion == "sine":
-                    record.omega = math.pi / record.half
-                    record.acceleration = record.amplitude * record.omega**2
+                vibration[k] = side.record
         return vibration
 
     def gives_energy(self, vibration: np.recarray) -> bool:

@@ -1,61 +1,50 @@
 """Tangent map of a gas: how small deviations of positions and velocities grow in flights and collisions.
 
-The method follows Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to walls under gravity. An array (N,
-4, K) contains K deviations, each with components δx, δy (length), δvx, δvy (length/time) for every disc. The shift in
-the time of a collision is taken into account to first order.
+The method follows Dellago, Posch & Hoover, Phys. Rev. E 53, 1485 (1996), extended to gravity and to walls that are
+curved or move. An array (M, 4, K) contains K deviations, each with components δx, δy (length), δvx, δvy (length/time)
+for every body. The bodies are the discs, the pistons of finite mass, and a body at rest without deviations, which
+stands for all other walls. The shift in the time of a collision is taken into account to first order.
 """
-
-import math
 
 from idealgas.jit import inline
 
 
 @inline
 def fly(deviations, i, delay):
-    """Propagate the deviations of disc i through a free flight of duration `delay` (time), with or without gravity."""
+    """Propagate the deviations of body i through a free flight of duration `delay` (time), with or without gravity."""
     for k in range(deviations.shape[2]):
         deviations[i, 0, k] += deviations[i, 2, k] * delay
         deviations[i, 1, k] += deviations[i, 3, k] * delay
 
 
 @inline
-def collide_smooth(deviations, i, j, masses, x, y, vx, vy):
-    """Propagate the deviations through an elastic collision of two smooth discs i and j.
+def collide(deviations, i, j, share_i, share_j, normal, curvature, velocity, pull):
+    """Propagate the deviations through a collision of two smooth bodies i and j, at which -u·n is multiplied by e.
 
-    masses: (N,). x, y: position of disc i relative to disc j at contact, length. vx, vy: velocity of disc i relative to
-    disc j before the collision, length/time.
+    The bodies touch when their distance along the unit normal n vanishes; n depends only on the position of i relative
+    to j. The normal velocity of i changes by -share_i u·n and that of j by +share_j u·n.
+
+    share_i, share_j: (1 + e) μ/m of each body, where μ is the reduced mass and e is 1 in an elastic collision; 0 for a
+    body of infinite mass. normal: (x, y), unit normal n of either sign. curvature: 1/length, derivative of n with
+    respect to tangential displacements; 0 for a flat wall, and 1/distance if n is the direction from a centre to i.
+    velocity: (x, y), velocity u of i relative to j before the collision, length/time. pull: component along n of the
+    acceleration of i relative to j, length/time².
     """
-    distance = math.sqrt(x * x + y * y)
-    nx, ny = x / distance, y / distance
+    nx, ny, vx, vy = normal[0], normal[1], velocity[0], velocity[1]
     approach = vx * nx + vy * ny
-    to_i = 2.0 * masses[j] / (masses[i] + masses[j])
-    to_j = 2.0 * masses[i] / (masses[i] + masses[j])
     for k in range(deviations.shape[2]):
         dx, dy = deviations[i, 0, k] - deviations[j, 0, k], deviations[i, 1, k] - deviations[j, 1, k]
         dvx, dvy = deviations[i, 2, k] - deviations[j, 2, k], deviations[i, 3, k] - deviations[j, 3, k]
-        delay = -(nx * dx + ny * dy) / approach
-        dnx, dny = (dx + vx * delay) / distance, (dy + vy * delay) / distance
-        change = dvx * nx + dvy * ny + vx * dnx + vy * dny
+        shift = -(nx * dx + ny * dy)
+        delay = shift / approach
+        dnx, dny = curvature * (dx + vx * delay), curvature * (dy + vy * delay)
+        change = dvx * nx + dvy * ny + vx * dnx + vy * dny + pull * delay
         wx, wy = change * nx + approach * dnx, change * ny + approach * dny
-        shift = approach * delay
-        deviations[i, 0, k] += to_i * shift * nx
-        deviations[i, 1, k] += to_i * shift * ny
-        deviations[i, 2, k] -= to_i * wx
-        deviations[i, 3, k] -= to_i * wy
-        deviations[j, 0, k] -= to_j * shift * nx
-        deviations[j, 1, k] -= to_j * shift * ny
-        deviations[j, 2, k] += to_j * wx
-        deviations[j, 3, k] += to_j * wy
-
-
-@inline
-def reflect(deviations, i, axis, velocity, gravity):
-    """Propagate the deviations through an elastic reflection of disc i at a side of the box.
-
-    axis: axis of the normal, 0 or 1. velocity: velocity along this axis before the reflection, length/time. gravity:
-    acceleration along this axis, length/time².
-    """
-    for k in range(deviations.shape[2]):
-        delay = -deviations[i, axis, k] / velocity
-        deviations[i, axis, k] = -deviations[i, axis, k]
-        deviations[i, 2 + axis, k] = -deviations[i, 2 + axis, k] - 2.0 * gravity * delay
+        deviations[i, 0, k] += share_i * shift * nx
+        deviations[i, 1, k] += share_i * shift * ny
+        deviations[i, 2, k] -= share_i * wx
+        deviations[i, 3, k] -= share_i * wy
+        deviations[j, 0, k] -= share_j * shift * nx
+        deviations[j, 1, k] -= share_j * shift * ny
+        deviations[j, 2, k] += share_j * wx
+        deviations[j, 3, k] += share_j * wy

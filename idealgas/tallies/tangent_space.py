@@ -1,54 +1,200 @@
 """Small deviations of positions and velocities, propagated along the recorded motion by its exact tangent map."""
 
+import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.jit import njit
-from idealgas.log import Log
-from idealgas.physics.tangent import collide_smooth, fly, reflect
+from idealgas.log import Flights, Log
+from idealgas.physics.tangent import collide, fly
+from idealgas.scene.walls import number_walls
+from idealgas.tallies.contacts import WallNormals
+from idealgas.tallies.impacts import is_wall_hit
 from idealgas.tallies.stream import ReadProgress
 
-COLUMNS = ("disc", "end", "kind", "partner", "end_velocity", "end_position")
+COLUMNS = ("disc", "start", "end", "kind", "partner", "end_velocity", "new_velocity", "end_position")
 
 MOST_NUMBERS = 2**26
 """Largest total number of components of all deviations, which take up half a gigabyte."""
+
+SAME = 1e-6
+"""Relative difference below which two velocities of a piston are equal, except for rounding."""
+
+
+class Contacts(NamedTuple):
+    """Collisions in order of time, as arguments of `tangent.collide`: those of disc i with disc, piston or wall j.
+
+    Attributes:
+        i: (n,), id of the disc.
+        j: (n,), number of the other body.
+        time: (n,), time.
+        share_i, share_j: (n,), see `tangent.collide`.
+        normal: (n, 2), unit normal.
+        curvature: (n,), 1/length.
+        velocity: (n, 2), velocity of i relative to j before the collision, length/time.
+        pull: (n,), acceleration of i relative to j along the normal, length/time².
+    """
+
+    i: np.ndarray
+    j: np.ndarray
+    time: np.ndarray
+    share_i: np.ndarray
+    share_j: np.ndarray
+    normal: np.ndarray
+    curvature: np.ndarray
+    velocity: np.ndarray
+    pull: np.ndarray
+
+
+class Bodies:
+    """Bodies with which discs collide, and the geometry of their collisions: N discs, P pistons of finite mass, walls.
+
+    Attributes:
+        mass: (N + P + 1,), masses of discs and pistons; infinite for the last body, which is all other walls.
+        systems: number of independent systems: N if the discs do not interact, and otherwise 1.
+        free: (D,), indices of the D free components of a deviation of one system among its flattened components: all
+            positions, followed by all velocities in the same order. A piston has only the two along its axis.
+    """
+
+    def __init__(self, log: Log) -> None:
+        """Set up the bodies of a log."""
+        self._log, self._normals = log, WallNormals(log)
+        number = len(log.discs)
+        walls = [wall.name for wall in number_walls(log.scene)]
+        pistons = [(walls.index(piston.wall), piston) for piston in log.scene.piston]
+        heavy = [(wall, piston) for wall, piston in pistons if piston.mass is not None]
+        self.mass = np.array([*log.discs.mass, *(piston.mass for _, piston in heavy), math.inf])
+        self._body_of_wall = np.full(len(walls), len(self.mass) - 1)
+        self._body_of_wall[[wall for wall, _ in heavy]] = range(number, number + len(heavy))
+        apart = not (log.scene.properties.interacting or heavy)
+        self.systems = number if apart else 1
+        positions = [4 * i + axis for i in range(number // self.systems) for axis in (0, 1)]
+        positions += [4 * (number + k) + piston.axis for k, (_, piston) in enumerate(heavy)]
+        self.free = np.array([*positions, *(each + 2 for each in positions)])
+        self._acceleration = np.zeros((len(walls), 2))
+        for wall, piston in heavy:
+            self._acceleration[wall, piston.axis] = piston.acceleration(log.box, log.scene.properties.acceleration)
+        self._vibrating = [(k, side) for k, side in enumerate(log.scene.box.sides) if hasattr(side, "vibrating")]
+        restitution = log.scene.restitution
+        self._factors = (2.0, 2.0) if restitution is None else (1.0 + restitution.normal, 1.0 + restitution.wall)
+        self._contact_duration = log.scene.contact_duration
+        self._last: dict[int, tuple[float, float]] = {}  # time of the last hit and velocity after it, by piston
+
+    def contacts(self, flights: Flights) -> Contacts:
+        """Return the collisions at the ends of flights.
+
+        Raises:
+            NotApplicableError: if the motion of a disc or a piston does not follow from the events.
+        """
+        assert flights.end_position is not None
+        changed = (flights.kind == Kind.STEERED) & (flights.new_velocity != flights.end_velocity).any(axis=1)
+        if changed.any():
+            raise self._refusal(f"a program changes velocities at t = {flights.end[changed][0]:g}")
+        pairs = np.flatnonzero(flights.kind == Kind.DISC)[::2]
+        hits = np.flatnonzero(is_wall_hit(flights.kind))
+        parts = zip(self._collisions(flights, pairs), self._hits(flights, hits), strict=True)
+        order = np.concatenate((pairs, hits)).argsort()
+        contacts = Contacts(*(np.concatenate(part)[order] for part in parts))
+        if (grazing := (contacts.normal * contacts.velocity).sum(axis=1) == 0.0).any():
+            k = int(grazing.argmax())
+            raise self._refusal(f"disc {contacts.i[k]} touches another body at t = {contacts.time[k]:g} at speed 0")
+        return contacts
+
+    def _factor(self, which: int, durations: np.ndarray) -> np.ndarray:
+        """Return 1 + e for collisions of two discs (0) or with walls (1), given the times since the last collision."""
+        return np.where(durations < self._contact_duration, 2.0, self._factors[which])
+
+    def _collisions(self, flights: Flights, first: np.ndarray) -> Contacts:
+        """Return the collisions of two discs, whose flights are `first` and the next ones."""
+        assert flights.end_position is not None
+        i, j, mass = flights.disc[first], flights.disc[first + 1], self.mass
+        apart = flights.end_position[first] - flights.end_position[first + 1]
+        box = np.array(self._log.box)
+        apart -= np.where(self._log.periodic, box, 0.0) * np.rint(apart / box)
+        curvature = 1.0 / np.hypot(*apart.T)
+        durations = flights.end - flights.start
+        factor = self._factor(0, np.minimum(durations[first], durations[first + 1]))
+        share_i, share_j = (factor * mass[other] / (mass[i] + mass[j]) for other in (j, i))
+        velocity = flights.end_velocity[first] - flights.end_velocity[first + 1]
+        normal = apart * curvature[:, None]
+        return Contacts(i, j, flights.end[first], share_i, share_j, normal, curvature, velocity, np.zeros(len(first)))
+
+    def _hits(self, flights: Flights, hits: np.ndarray) -> Contacts:
+        """Return the collisions with walls and pistons, whose velocities follow from the velocity changes of discs."""
+        i, wall, time = flights.disc[hits], -1 - flights.partner[hits], flights.end[hits]
+        j = self._body_of_wall[wall]
+        normal, curvature = self._normals.at(flights, hits)
+        ratio = self.mass[i] / self.mass[j]
+        share_i = self._factor(1, time - flights.start[hits]) / (1.0 + ratio)
+        before, change = flights.end_velocity[hits], flights.new_velocity[hits] - flights.end_velocity[hits]
+        approach = -(change * normal).sum(axis=1) / share_i
+        velocity = before + (approach - (before * normal).sum(axis=1))[:, None] * normal
+        acceleration = self._log.gravity_at(flights.start[hits]) - self._acceleration[wall]
+        for k, side in self._vibrating:
+            at = np.flatnonzero(wall == k)
+            acceleration[at] -= side.acceleration(time[at])[:, None] * normal[at]
+        pull = (acceleration * normal).sum(axis=1)
+        contacts = Contacts(i, j, time, share_i, ratio * share_i, normal, curvature, velocity, pull)
+        for k in np.unique(j[ratio > 0]):
+            self._must_fly(contacts, before, int(k), np.flatnonzero(j == k))
+        return contacts
+
+    def _must_fly(self, contacts: Contacts, before: np.ndarray, body: int, hits: np.ndarray) -> None:
+        """Raise NotApplicableError if a piston of finite mass did not move freely between its hits by discs."""
+        wall = int(np.flatnonzero(self._body_of_wall == body)[0])
+        axis = int(np.abs(self._normals.first[wall]).argmax())
+        start = (before - contacts.velocity)[hits, axis]
+        gained = contacts.share_j * (contacts.velocity * contacts.normal).sum(axis=1) * contacts.normal[:, axis]
+        times, ends = contacts.time[hits], start + gained[hits]
+        last = self._last.get(body, (times[0], start[0]))
+        expected = np.append(last[1], ends[:-1])
+        expected += self._acceleration[wall, axis] * np.diff(np.append(last[0], times))
+        stray = np.abs(start - expected) > SAME * (np.abs(start) + np.abs(expected) + np.abs(before[hits, axis]))
+        if stray.any():
+            raise self._refusal(f"a piston hits a side of the box before t = {times[stray][0]:g}, which is not logged")
+        self._last[body] = times[-1], ends[-1]
+
+    def _refusal(self, reason: str) -> NotApplicableError:
+        return NotApplicableError(f"{self._log.path}: the tangent map is not available, because {reason}")
 
 
 class TangentVectors:
     """Deviations of a gas, propagated along its log.
 
     Attributes:
-        values: (N, 4, K), K deviations δx, δy (length), δvx, δvy (length/time) of each disc at the time of its last
-            event; `now` propagates those of all discs to a common time.
+        bodies: the bodies of the log.
+        values: (N + P + 1, 4, K), K deviations δx, δy (length), δvx, δvy (length/time) of each body at the time of its
+            last event; `now` propagates those of all bodies to a common time.
+        collisions: (N + P + 1,), number of collisions of each body.
     """
 
-    def __init__(self, log: Log, start: float, values: np.ndarray) -> None:
-        """Start with deviations (N, 4, K) at time `start`."""
-        self.values = np.ascontiguousarray(values)
+    def __init__(self, log: Log, start: float, bodies: Bodies, values: np.ndarray) -> None:
+        """Start with deviations (N + P + 1, 4, K) at time `start`."""
+        self.bodies, self.values = bodies, np.ascontiguousarray(values)
+        self.collisions = np.zeros(len(values), np.int64)
         self._log, self._start = log, start
         self._since = np.full(len(values), start)
 
-    def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[tuple[float, int]]:
-        """Follow the log to time `end`; after each `every` event rows, yield time and number of new collisions."""
-        log, rows, waiting = self._log, 0, 0
-        gas = (log.discs.mass, np.array(log.box), np.array(log.periodic), log.gravity)
+    def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[float]:
+        """Follow the log to time `end`; after each `every` collisions of a disc, yield the time."""
+        log, rows, missing = self._log, 0, every
         for flights in log.flights([self._start, end], columns=COLUMNS):
-            columns, first = tuple(getattr(flights, name) for name in COLUMNS), 0
-            while first < len(flights.disc):
-                first, pairs, now = _advance(self.values, self._since, columns, first, every, gas)
-                waiting += pairs
-                if now >= 0:  # a negative time means that the batch has ended
-                    yield now, waiting
-                    waiting = 0
+            contacts, k = self.bodies.contacts(flights), 0
+            while k < len(contacts.i):
+                k, missing = _advance(self.values, self._since, self.collisions, contacts, k, missing, len(log.discs))
+                if missing <= 0:
+                    missing = every
+                    yield contacts.time[k - 1]
             rows += len(flights.disc)
             if progress is not None:
                 progress(rows, max(rows, len(log)))
 
     def now(self, time: float) -> np.ndarray:
-        """Return the deviations (N, 4, K) at a time after the last event."""
+        """Return the deviations (N + P + 1, 4, K) at a time after the last event."""
         _synchronise(self.values, self._since, time)
         return self.values
 
@@ -83,64 +229,58 @@ def sensitivity(
     if 16 * number * len(varied) > MOST_NUMBERS:
         raise UserError(f"discs: too many (got {len(varied)}; allowed <= {MOST_NUMBERS // (16 * number)})")
     first, last = log.start_time if start is None else start, log.end_time if end is None else end
-    values = np.zeros((number, 4, len(varied), 4))
+    bodies = Bodies(log)
+    values = np.zeros((len(bodies.mass), 4, len(varied), 4))
     values[varied, :, range(len(varied))] = np.eye(4)
-    followed = TangentVectors(log, first, values.reshape(number, 4, -1))
+    followed = TangentVectors(log, first, bodies, values.reshape(len(values), 4, -1))
     for _ in followed.until(last, len(log) + 1):
         pass
-    return followed.now(last).reshape(values.shape)
+    return followed.now(last)[:number].reshape(number, 4, len(varied), 4)
 
 
 def must_have_tangent_map(log: Log) -> None:
-    """Raise NotApplicableError unless the tangent map is known for all events in a log."""
-    gas = log.scene.properties
-    plain = gas.collisions_conserve_energy and gas.elastic and gas.fixed_walls and gas.isolated and gas.empty
-    if not plain or gas.spins or gas.varies or log.scene.run.method not in ("event_driven", "brute_force"):
-        needs = "smooth elastic discs between plain sides, and the method event_driven or brute_force"
-        raise NotApplicableError(f"{log.path}: the growth of deviations requires {needs}")
+    """Raise NotApplicableError unless the tangent map is known for all events that a scene can have."""
+    scene, gas = log.scene, log.scene.properties
+    closing = any(closes < math.inf for wall in number_walls(scene) for _, closes in wall.absences)
+    reasons = {
+        "the method does not follow the exact motion": scene.run.method not in ("event_driven", "brute_force"),
+        "discs spin": gas.spins,
+        "discs receive random velocities from walls or a heat bath": not gas.isolated,
+        "collisions have a law of their own": gas.collisions_give_energy or not gas.constant_restitution,
+        "sides are sheared": gas.shear > 0,
+        "discs leave the gas": log.escapes,
+        "a gate may close on a disc": closing,
+        "the pressure on a piston changes": any(p.mass is not None and p.times for p in scene.piston),
+    }
+    if reason := next((reason for reason, applies in reasons.items() if applies), ""):
+        raise NotApplicableError(f"{log.path}: the tangent map is not available, because {reason}")
 
 
 @njit
-def _advance(deviations, since, columns, first, most, gas):
-    """Propagate deviations through at most `most` event rows, starting with row `first`.
+def _advance(deviations, since, collisions, contacts, k, missing, number):
+    """Propagate deviations through collisions, from collision k until `missing` collisions of a disc have happened.
 
-    The tuple `gas` consists of the masses, the box, whether x and y are periodic, and gravity. Return the next row, the
-    number of collisions between discs, and the time of the last event, or -1 if there are no more rows.
+    A collision of two of the `number` discs counts for both. Return the index of the next collision, and how many
+    collisions of a disc are still missing.
     """
-    masses, box, periodic, gravity = gas
-    disc, end, kind, partner, velocity, position = columns
-    row, pairs = first, 0
-    while row < len(disc):
-        if row - first >= most:
-            return row, pairs, end[row - 1]
-        i = disc[row]
-        if kind[row] == Kind.DISC:
-            j = disc[row + 1]
-            for k in (i, j):
-                fly(deviations, k, end[row] - since[k])
-                since[k] = end[row]
-            x, y = position[row, 0] - position[row + 1, 0], position[row, 1] - position[row + 1, 1]
-            if periodic[0]:
-                x -= box[0] * np.rint(x / box[0])
-            if periodic[1]:
-                y -= box[1] * np.rint(y / box[1])
-            vx, vy = velocity[row, 0] - velocity[row + 1, 0], velocity[row, 1] - velocity[row + 1, 1]
-            collide_smooth(deviations, i, j, masses, x, y, vx, vy)
-            row += 2
-            pairs += 1
-        else:
-            if kind[row] == Kind.WALL:
-                fly(deviations, i, end[row] - since[i])
-                since[i] = end[row]
-                axis = 0 if partner[row] >= -2 else 1
-                reflect(deviations, i, axis, velocity[row, axis], gravity[axis])
-            row += 1
-    return row, pairs, -1.0
+    while k < len(contacts.i) and missing > 0:
+        i, j = np.int64(contacts.i[k]), np.int64(contacts.j[k])
+        for body in (i, j):
+            fly(deviations, body, contacts.time[k] - since[body])
+            since[body] = contacts.time[k]
+            collisions[body] += 1
+            missing -= body < number
+        share_i, share_j, normal = contacts.share_i[k], contacts.share_j[k], contacts.normal[k]
+        collide(
+            deviations, i, j, share_i, share_j, normal, contacts.curvature[k], contacts.velocity[k], contacts.pull[k]
+        )
+        k += 1
+    return k, missing
 
 
 @njit
 def _synchronise(deviations, since, now):
-    """Propagate the deviations of all discs to a common time."""
+    """Propagate the deviations of all bodies to a common time."""
     for i in range(len(since)):
         fly(deviations, i, now - since[i])
         since[i] = now

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from idealgas.columns import FIRST_SEGMENT, OUTWARD, SIDES, Kind, axis_of
+from idealgas.columns import FIRST_SEGMENT, SIDES, Kind, axis_of
 from idealgas.errors import UserError
 from idealgas.log import Flights, Log
 from idealgas.scene.walls import NumberedWall, number_walls
 from idealgas.state import Gas
 from idealgas.tallies.chambers import Chambers, outward
+from idealgas.tallies.contacts import WallNormals
 from idealgas.tallies.impacts import is_wall_hit
 from idealgas.tallies.samples import SampledImpacts, face_directions
 from idealgas.tallies.stream import Tally, add_to
@@ -43,15 +44,9 @@ class WallImpulses:
 
     def __init__(self, log: Log) -> None:
         """Set up the walls of a log."""
-        along = np.array([np.subtract(wall.end, wall.start) for wall in log.walls[FIRST_SEGMENT:]]).reshape(-1, 2)
-        along[~along.any(axis=1), 0] = 1.0  # fixed discs
-        along /= np.hypot(*along.T)[:, None]
-        self.normals = np.concatenate((-np.array(OUTWARD), np.column_stack((-along[:, 1], along[:, 0]))))
-        walls = number_walls(log.scene)
-        self._turn = np.array([wall.arc.turn if wall.arc else 0.0 for wall in walls])
-        self._centre = np.array([np.add(wall.start, wall.arc[:2]) if wall.arc else (0.0, 0.0) for wall in walls])
-        self._box, self._period = np.array(log.box), np.where(log.periodic, log.box, 0.0)
-        if self._turn.any():
+        self._geometry = WallNormals(log)
+        self.normals = self._geometry.first
+        if self._geometry.has_arcs:
             self.columns = (*self.columns, "end_position")
 
     def begin(self, gas: Gas, edges: np.ndarray) -> None:
@@ -73,21 +68,11 @@ class WallImpulses:
         for axis in range(2):
             add_to(self.given, place * 2 + axis, given[:, axis])
         body = np.flatnonzero(~np.isin(flights.kind[wall_hits], (Kind.WALL_END, Kind.FIXED_DISC)))
-        (px, py), (nx, ny) = given[body].T, self._normals(flights, wall_hits[body], wall[body]).T
+        (px, py), (nx, ny) = given[body].T, self._geometry.at(flights, wall_hits[body])[0].T
         across = px * nx + py * ny
         face = (across > 0.0).astype(np.intp)  # a disc on the side to which the normal points pushes against the normal
         add_to(self.faces, (place[body] * 2 + face) * 2, np.abs(across))
         add_to(self.faces, (place[body] * 2 + face) * 2 + 1, px * ny - py * nx)
-
-    def _normals(self, flights: Flights, hits: np.ndarray, wall: np.ndarray) -> np.ndarray:
-        """Return the unit normals (H, 2) of the first faces of walls at the positions of hits."""
-        normals = self.normals[wall]
-        if (curved := np.flatnonzero(self._turn[wall])).size:
-            assert flights.end_position is not None
-            away = flights.end_position[hits[curved]] - self._centre[wall[curved]]
-            away -= self._period * np.rint(away / self._box)
-            normals[curved] = away * (-self._turn[wall[curved]] / np.hypot(*away.T))[:, None]
-        return normals
 
     def finish(self) -> None:
         """Do nothing: the sums are complete."""
