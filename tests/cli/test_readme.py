@@ -172,7 +172,7 @@ def test_the_version_to_cite_is_this_one():
 @pytest.mark.slow
 def test_code_of_scenes_runs(folder):
     printed = run_blocks(SCENES, blocks(SCENES))
-    assert len(printed) == 10
+    assert len(printed) == 14
     assert all(text for _, text in printed)
 
 
