@@ -151,11 +151,6 @@ class InnerPiston(PermanentWall):
     place: Key
     radius = 0.0
 
-    @property
-    def title(self) -> str:
-        """Name in messages."""
-        return self.name
-
 
 def inner_pistons(tables: Sequence[PistonTable | None], size: tuple[float, float]) -> tuple[InnerPiston, ...]:
     """Return the inner pistons among the tables; invalid tables are None.

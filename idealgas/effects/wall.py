@@ -18,13 +18,6 @@ from idealgas.physics.arc_geometry import Arc, arc_through
 from idealgas.toml.issues import Issue, Key, issues_error
 from idealgas.toml.table import Vector, Word
 
-_CURVES = "straight walls, polygons (points) and arcs through three points (from, via, to)"
-_ELLIPSE = (
-    f"{_CURVES}: 32 arcs follow an ellipse with half-axes 2a and a to 2.3e-4 a, and their error falls as 1/n³; "
-    "see Ellipses in configs/README.md"
-)
-_CIRCLE = f"{_CURVES}; of a circle, from and to are one and the same point, and via is the point opposite"
-
 
 class WallTable(SteppedTable):
     """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
@@ -44,10 +37,14 @@ class WallTable(SteppedTable):
 
     in_steps = ("temperature",)
     radius: ClassVar[float] = 0.0
-    refused: ClassVar = {
-        **dict.fromkeys(("ellipse", "axes", "semi_axes"), ("no elliptical walls", _ELLIPSE)),
-        **dict.fromkeys(("circle", "centre", "center", "radius"), ("no centre or radius of an arc", _CIRCLE)),
-    }
+    refused = dict.fromkeys(
+        ("ellipse", "axes", "semi_axes"),
+        (
+            "no elliptical walls",
+            "straight walls, polygons (points) and arcs (from, via, to): 32 arcs follow an ellipse with half-axes 2a "
+            "and a to 2.3e-4 a, and their error falls as 1/n³; see Ellipses in configs/README.md",
+        ),
+    )
 
     from_: Vector | None = Field(default=None, alias="from", description="[x, y] of one end, length")
     to: Vector | None = Field(default=None, description="[x, y] of the other end, length")
@@ -221,6 +218,7 @@ class PermanentWall:
     temperature = permeable_from = arc = solid = piece = None
     absences = ()
     is_permeable = absorbing = False
+    title = property(lambda self: self.name)  # in messages
 
     def is_present(self, _: float) -> bool:
         """Whether the wall is present at a time."""

@@ -119,9 +119,6 @@ class FixedDisc(PermanentWall):
         """Name for the log."""
         return f"fixed disc {self.number}"
 
-    title = name
-    """Name in messages."""
-
     @property
     def action(self) -> str:
         """Short description for output."""

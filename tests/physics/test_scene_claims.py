@@ -9,6 +9,7 @@ import io
 import json
 import re
 import tomllib
+from collections import defaultdict
 from collections.abc import Callable
 from fnmatch import fnmatchcase
 from typing import NamedTuple
@@ -97,6 +98,29 @@ def event(time: float, disc: int, x: float, y: float) -> Holds:
     return lambda output: any(place.items() <= json.loads(line).items() for line in output.text.splitlines())
 
 
+def rows_of(output: Output) -> list[dict[str, float]]:
+    """Rows of `idealgas events`."""
+    return [json.loads(line) for line in output.text.splitlines()]
+
+
+def velocities(number: int) -> Holds:
+    """So many velocities occur, up to rounding."""
+    return lambda output: len({(round(row["vx"], 9), round(row["vy"], 9)) for row in rows_of(output)}) == number
+
+
+def passes(check: Callable[[dict[int, list[float]], set[int]], bool]) -> Holds:
+    """Distances at which the path of each disc passes (5, 5), after each of its hits, and the discs that hit wall 5."""
+
+    def holds(output: Output) -> bool:
+        distances, meet = defaultdict(list), set()
+        for row in rows_of(output):
+            distances[row["disc"]].append(abs((row["x"] - 5) * row["vy"] - (row["y"] - 5) * row["vx"]))
+            meet |= {row["disc"]} if row["partner"] == -6 else set()
+        return check(distances, meet)
+
+    return holds
+
+
 class Claim(NamedTuple):
     """A claim. words: of the description. command: without the path of the log. holds: what its output has to be."""
 
@@ -117,6 +141,15 @@ CLAIMS = [
           series("evolution.chambers.left", lambda t: t[-1] < 1.75 < 2 < t[0])),
     Claim("adiabatic-piston", "`--from 50`, which starts from equal pressures, it compares them", "evolution --from 50",
           prints("law, left")),
+    Claim("annulus", "its distance p from the centre of the circle is the same after every reflection", "events",
+          passes(lambda p, meet: all(max(p[k]) - min(p[k]) < 1e-12 for k in p.keys() - meet))),
+    Claim("annulus", "more than p = 2, the largest distance of a point of the inner circle, never meets", "events",
+          passes(lambda p, meet: max(max(p[k]) for k in meet) <= 2 + 1e-12)),
+    Claim("annulus", "All other paths meet it sooner or later", "events",
+          passes(lambda p, meet: sum(max(p[k]) < 2 for k in p.keys() - meet) < 0.02 * len(p))),
+    Claim("annulus", "divided by the area between the circles, 0.4171", "events",
+          passes(lambda p, meet: abs(sum(max(d) > 2 for d in p.values()) / 2000 - 0.4171) < SIGMAS * 0.011)),
+    Claim("annulus", "π A/P = 1.5 π = 4.712", "billiard", near("billiard.path", 4.7124, 0.01, SIGMAS * 0.03)),
     Claim("atmosphere", "exp(-m g y/T), here by a factor e every 5", "profile",
           series("profile.species.air.density.[0-3]", lambda n: 1.5 < n[0] / n[1] < 2.1)),
     Claim("atmosphere", "the temperature is the same at all heights", "profile",
@@ -238,6 +271,9 @@ CLAIMS = [
     Claim("thermostat", "Var(E) = C T², and C = N", "heat-capacity", agrees("heat_capacity.logs.*.routes.Var*", 0.12)),
     Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"disc collisions: 12\b")),
     Claim("three-discs", "with four collisions and six wall hits", "info", prints(r"wall hits: 18\b")),
+    Claim("triangle", "The velocity takes only eight values", "events", velocities(8)),
+    Claim("triangle", "which is 3.5235 here", "billiard", prints(r"3\.5235")),
+    Claim("triangle", "l/(a + 2b) = 3.4389", "billiard", near("billiard.path", 3.4389, 0.0005)),
     Claim("two-pistons", "In equilibrium both gases have the external pressure", "pressure",
           near("pressure.walls.piston_left.pressure", 2.0, 0.01)),
     Claim("two-pistons", "for the motion of each piston", "evolution", BALANCE),
