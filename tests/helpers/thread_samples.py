@@ -55,7 +55,8 @@ EFFECTS = {
     "thermal": "box.bottom = { thermal = 1.0 }\nbox.top = { thermal = 3.0 }\n",
     "steps": "box.bottom = { thermal = [[0, 1.0], [1.5, 4.0]] }\nbox.top = { thermal = [[0, 3], [0.7, 0.5]] }\n",
     "vibration": "box.bottom = { vibrating = { amplitude = 0.4, frequency = 2 } }\n"
-    "box.top = { vibrating = { amplitude = 0.1, frequency = 0.7 } }\ngravity.acceleration = [0.0, -0.05]\n",
+    "box.top = { vibrating = { amplitude = 0.1, frequency = 0.7, motion = 'sine' } }\n"
+    "gravity.acceleration = [0.0, -0.05]\n",
     "steering": "steering.reversed_at = [0.5, 1.7]\n"
     "gravity.acceleration = [[0, [0, 0]], [0.9, [0, -0.1]], [1.5, [0, 0]]]\n",
     "fixed": "disc = [{ position = [2, 30], radius = 1, fixed = true }, "
