@@ -164,5 +164,7 @@ def _theory(log: Log) -> tuple[Theory, Reach]:
     if not (reach.area > 0 and reach.perimeter > 0):
         raise NoTheoryError("there is no free area between the walls")
     path = math.pi * reach.area / reach.perimeter
-    crowding = 2 * gas.packing_fraction if len(gas) > 1 and gas.packing_fraction > SPARSE else 0.0
+    crowding = (
+        2 * gas.packing_fraction if properties.interacting and len(gas) > 1 and gas.packing_fraction > SPARSE else 0.0
+    )
     return Theory(path, path * crowding, "π A/P"), reach

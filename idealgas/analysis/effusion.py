@@ -178,8 +178,8 @@ class EffusionAnalysis(Analysis):
             )
         expected = mean_speed / math.pi
         density = (number - beyond[0]) / inner
-        phi = density * math.pi * radius**2
-        paths = slit / hard_discs.mean_free_path(2 * radius, density, phi)
+        phi = density * math.pi * radius**2 * log.scene.properties.interacting
+        paths = log.scene.properties.interacting * slit / hard_discs.mean_free_path(2 * radius, density, phi)
         speed = float(beyond[-1] - beyond[0]) / (slit * drive)
         no_law = _no_law(paths, phi)
         error = math.sqrt((speed if no_law else expected) * slit * both) / (slit * drive)

@@ -158,7 +158,7 @@ class EntropyAnalysis(Analysis):
         Raises:
             UserError: if the log does not cover the times, has no events, or has no species with at least 8 discs.
         """
-        equilibrium = known_ensemble(log)
+        equilibrium = known_ensemble(log) if log.scene.properties.shares_energy else None
         species = [kind for kind in _species(log, equilibrium) if len(kind.members) >= FEWEST_DISCS]
         if not species or not log.has_events:
             needs = f"events and a species of at least {FEWEST_DISCS} discs"
@@ -273,7 +273,8 @@ class _Species(NamedTuple):
 
 def _species(log: Log, equilibrium: Ensemble | None) -> Iterator[_Species]:
     """Yield the quantities that determine the entropy for each species in a log."""
-    kinds, periodic, phi = composition(log.discs), np.array(log.periodic), log.discs.packing_fraction
+    kinds, periodic = composition(log.discs), np.array(log.periodic)
+    phi = log.discs.packing_fraction * log.scene.properties.interacting
     compressibility = 1 / float(hard_discs.inverse_compressibility(phi)) if phi <= hard_discs.HIGHEST else 0.0
     even = log.has_positions and becomes_uniform(log, None) and log.scene.properties.fixed_walls
     for s, (name, number, radius, mass) in enumerate(

@@ -206,8 +206,8 @@ def _theory(log: Log, number: float) -> Theory:
         raise NoTheoryError("discs do not reach a hole")
     rate = reach.holes / (math.pi * reach.area)
     path = hard_discs.mean_free_path(2 * radius, number / gas.area, number / len(gas) * gas.packing_fraction)
-    together = LAW_OFF_PER_PATH * reach.holes / path
-    doubt = reach.holes / reach.perimeter + reach.shared / reach.holes + 2 * gas.packing_fraction + together
+    together = (LAW_OFF_PER_PATH * reach.holes / path + 2 * gas.packing_fraction) * scene.properties.interacting
+    doubt = reach.holes / reach.perimeter + reach.shared / reach.holes + together
     if doubt >= 1:
         raise NoTheoryError(f"the holes are {reach.holes / path:.2g} mean free paths long, not small")
     return Theory(rate, rate * doubt, "ℓ/(π A) of a small hole")

@@ -251,7 +251,7 @@ def _instants(log: Log, start: float | None, end: float | None) -> tuple[Window,
 
 def _compressibility(log: Log) -> float | None:
     """Return the limit 1/(d(φZ)/dφ) of S(k) at small k; None unless a periodic box holds a fluid of equal discs."""
-    gas, phi = log.discs, log.discs.packing_fraction
+    gas, phi = log.discs, log.discs.packing_fraction * log.scene.properties.interacting
     if not all(log.periodic) or np.ptp(gas.radius) > 0 or phi > hard_discs.HIGHEST:
         return None
     return 1 / float(hard_discs.inverse_compressibility(phi))

@@ -72,10 +72,10 @@ def shown(scene: "Scene") -> tuple[str, ...]:
     opened, dissipative = properties.last_wall_removed_at > 0, properties.dissipative
     suitable = {
         "effusion": opened,
-        "cooling": dissipative,
+        "cooling": dissipative and properties.interacting,
         "evolution": opened or not properties.fixed_walls or dissipative,
         "profile": not properties.straight_flight or len(properties.temperatures) > 1,
-        "transport": all(properties.periodic) and properties.collisions_conserve_energy,
+        "transport": all(properties.periodic) and properties.collisions_conserve_energy and properties.interacting,
     }
     return tuple(name for name, suits in suitable.items() if suits) or MAIN
 

@@ -191,7 +191,7 @@ class SoundAnalysis(Analysis):
             raise UserError(f"{log.path}: sound requires a gas of one species")
         if not any(log.periodic):
             raise UserError(f"{log.path}: sound requires a box with periodic sides")
-        window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
+        window = measure(log, [], start, end, needs=("uniform", "conserves_motion", "interacting"))
         alone = [(axis,) for axis in (0, 1) if log.periodic[axis]]
         groups: Sequence[tuple[int, ...]] = [(0, 1)] if len(alone) == 2 and log.box[0] == log.box[1] else alone
         waves, frames = [], 0

@@ -1,4 +1,4 @@
-"""Discs that do not interact: they collide with walls, sides and fixed discs, but never with each other."""
+"""Discs that do not interact: they collide with walls and pistons, but never with each other."""
 
 from pydantic import Field
 
@@ -8,16 +8,13 @@ from idealgas.toml.table import Table
 
 
 class InteractionsTable(Table):
-    """`[interactions]`: whether discs collide with each other.
-
-    Discs that do not are independent trajectories in one box: many starts of one billiard, or an ideal gas.
-    """
+    """`[interactions]`: without them, discs are many starts of one billiard, or an ideal gas."""
 
     discs: bool = Field(default=True, description="whether discs collide with each other")
 
 
 class NonInteractingEffect(Effect[bool]):
-    """Discs that do not interact: they collide with walls, sides and fixed discs, but never with each other."""
+    """Discs that do not interact."""
 
     name = "non-interacting discs"
     field = "noninteracting"

@@ -125,6 +125,11 @@ class Properties:
         return not self.temperatures
 
     @property
+    def shares_energy(self) -> bool:
+        """Whether discs exchange energy with each other or with a source of heat."""
+        return self.interacting or not self.isolated
+
+    @property
     def conserves_energy(self) -> bool:
         """Whether only heat, from walls or a heat bath, can change the energy of translation and spin."""
         return self.collisions_conserve_energy and self.straight_flight and self.fixed_walls and not self.escapes

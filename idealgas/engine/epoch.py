@@ -33,10 +33,7 @@ def encounters_per_length(gas: Gas, periodic: Sequence[bool] = (False, False)) -
 
 
 def encounters_of_effects(gas: Gas, effects: Effects) -> float:
-    """Return the number of encounters of all discs per distance that each disc travels, 1/length.
-
-    For discs that do not interact, walls inside the box are counted instead of other discs.
-    """
+    """Return `encounters_per_length`; for discs that do not interact, walls inside the box replace the other discs."""
     periodic = periodic_axes(effects.periodic)
     if effects.noninteracting is None:
         return encounters_per_length(gas, periodic)
@@ -74,9 +71,8 @@ def epoch_length(
     would take longer than its events. If the last digits of the sum of the speeds determine the power of two, the sum
     is correctly rounded, so that the length depends on neither the order of the discs nor the processor.
 
-    For discs that do not interact, neither their number nor their radius matters, so that in a gas of equal discs with
-    equal speeds, each disc moves exactly as it would in a gas of one disc. Rounding errors of the speeds do not matter
-    either, and discs at rest (for example, because they have left the gas) are ignored.
+    For discs that do not interact, their number, discs at rest or outside, and the last digits of the speeds do not
+    matter. In a gas of equal discs with equal speeds, each disc therefore moves exactly as in a gas of one disc.
 
     Args:
         gas: the gas at the start of the epoch.
@@ -105,11 +101,10 @@ def epoch_length(
         """Base-2 logarithm of the longest duration of an epoch; infinite if there are no events."""
         rate = (sum_of_speeds / in_motion + extra_speed) * encounters + other_events
         longest = fastest / fall if fall else math.inf
-        if not interacting and fastest > 0.0:
-            in_all = EVENTS_PER_DISC * n / rate if rate > 0.0 else math.inf
-            return math.log2(min(in_all, round_the_box / fastest, longest)) + UNDECIDED
         if rate == 0.0:
             return math.log2(longest)
+        if not interacting:
+            return math.log2(min(EVENTS_PER_DISC * n / rate, round_the_box / fastest, longest)) + UNDECIDED
         shortest = min(max(FEWEST_PER_DISC * n, FEWEST_EVENTS) / rate, round_the_box / fastest)
         longest = min(longest, max(EVENTS_PER_DISC * n, EVENTS_OF_FEW) / rate)
         return math.log2(min(max(displacement / fastest, shortest), longest))

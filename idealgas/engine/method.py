@@ -93,10 +93,7 @@ class Method(ABC):
         """
 
     def deepest_overlap(self, gas: Gas, effects: Effects) -> float:
-        """Return the deepest overlap of two discs over the sum of their radii; effects: effects at the gas's time.
-
-        Overlaps do not count if discs do not interact.
-        """
+        """Return the deepest overlap of two discs over the sum of their radii; effects: effects at the gas's time."""
         if effects.noninteracting is not None:
-            return 0.0
+            return 0.0  # such discs may overlap
         return deepest_overlap(gas, for_kernels(effects).periodic, effects.absorbing)

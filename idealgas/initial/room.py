@@ -84,7 +84,7 @@ def make_room(
         periodic: whether the sides along x and along y are periodic.
         walls: walls, with the attributes start, end, arc and radius.
         solids: walls of solids, as in `Solids`.
-        shared: whether discs may overlap each other.
+        shared: see `Room`.
     """
     largest = float(radius.max())
     side = max(2 * largest, math.sqrt(box[0] * box[1] / len(radius)))

@@ -1,8 +1,4 @@
-"""Discs that do not interact: they pass through each other, and each moves as if it were alone in the box.
-
-The mean path of such a disc between two hits is π A/P, where A is the area that its centre can reach and P the
-perimeter of this area, if the disc visits all of it evenly (Santaló; Chernov, J. Stat. Phys. 88, 1 (1997)).
-"""
+"""Discs that do not interact: they pass through each other, and each moves as if it were alone in the box."""
 
 import math
 from collections.abc import Iterable
@@ -11,7 +7,7 @@ from collections.abc import Iterable
 def wall_hits_per_length(segments: Iterable[tuple[float, float]], area: float) -> float:
     """Estimate how often a disc hits wall segments and fixed discs per unit length of its path, P/(π A), 1/length.
 
-    Only one face of each segment counts, and arcs count as their chords.
+    Source: Chernov, J. Stat. Phys. 88, 1 (1997). Only one face of each segment counts, and arcs count as their chords.
 
     Args:
         segments: length of each wall segment, and radius of its ends, length.

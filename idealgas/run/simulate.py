@@ -54,10 +54,8 @@ def threads_of(scene: Scene, gas: Gas) -> Threads:
     """Return how threads will share the work of a run; gas: discs at time 0."""
     if scene.run.method != "event_driven":
         return Threads()
-    properties = scene.properties
-    return expected_threads(
-        gas, _threads(scene.run), bool(scene.piston), bool(properties.shear), properties.interacting
-    )
+    piston, shear, interacting = bool(scene.piston), bool(scene.properties.shear), scene.properties.interacting
+    return expected_threads(gas, _threads(scene.run), piston, shear, interacting)
 
 
 def simulate(

@@ -269,7 +269,7 @@ class Document(_DiscsAndEffects):
         encounters = collisions_per_length(met, diameter, largest, phi, size, self.box.periodic) / met
         encounters *= size[0] * size[1] / area
         if not self.properties.interacting:
-            segments = ((math.dist(wall.start, wall.end), wall.radius) for wall in self.segments)
+            segments = ((math.dist(w.start, w.end), w.radius) for w in self.segments if w is not None)
             encounters += wall_hits_per_length(segments, area)
         path = 1.0 / max(encounters, 1.0 / sum(size))
         speed = math.sqrt(speed**2 + abs(pull[0]) * size[0] + abs(pull[1]) * size[1])

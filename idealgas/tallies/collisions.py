@@ -75,9 +75,8 @@ class ExpectedRates(NamedTuple):
 def theory_of(log: Log) -> BoxTheory:
     """Return the theory of the pressure and of the contacts between discs for the gas of a log, if it is uniform."""
     discs = classes(log.discs)
-    return box_theory(
-        discs.radius, discs.number, log.box, log.periodic, ergodic=conserved.is_ergodic(log.scene, log.discs)
-    )
+    ergodic, interacting = conserved.is_ergodic(log.scene, log.discs), log.scene.properties.interacting
+    return box_theory(discs.radius, discs.number, log.box, log.periodic, ergodic=ergodic, interacting=interacting)
 
 
 def expected_rates(box: tuple[float, float], equilibrium: Ensemble, theory: BoxTheory | None) -> ExpectedRates:

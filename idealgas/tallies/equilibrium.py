@@ -108,6 +108,8 @@ def nonequilibrium_reason(log: Log) -> str:
     if why := nonstationary_reason(log):
         return why
     scene, properties = log.scene, log.scene.properties
+    if not properties.shares_energy:
+        return conserved.KEPT
     if properties.varies:
         return "values change in time"
     if any(properties.free_fall_axes):

@@ -48,7 +48,7 @@ def across(log: Log, axis: int) -> Exchange:
     discs at its packing fraction and mean mass. Its diffusion coefficient is that of its slowest discs.
     """
     gas, temperature = log.discs, _temperature(log)
-    moving = ~are_fixed(gas.mass)
+    moving = ~are_fixed(gas.mass) & log.scene.properties.interacting
     if not temperature > 0 or not gas.packing_fraction > 0 or not gas.radius[moving].any():
         return NOTHING
     fraction = min(gas.packing_fraction, hard_discs.HIGHEST)

@@ -23,6 +23,9 @@ To acquire its share of the energy, such a disc would need about as many collisi
 any run.
 """
 
+KEPT = "discs that do not interact do not share their energy"
+"""Why a gas of such discs never reaches equilibrium without a source of heat, as part of a sentence."""
+
 SAID_FROM = 0.01
 """Fraction of the kinetic energy above which a conserved motion of the gas as a whole causes a caveat."""
 
@@ -112,9 +115,11 @@ def is_ergodic(scene: Scene, gas: Gas) -> bool:
     A single disc does not: it keeps its speeds along x and along y, or at rough walls exchanges energy between few
     motions. Two equal discs between walls with zero total momentum do not either: each component of their velocities
     remains equal up to sign, and as long as they collide only with opposite velocities, the sum of their positions,
-    unfolded at the walls, is conserved.
+    unfolded at the walls, is conserved. Discs that do not interact keep their energies too.
     """
     properties, walled = scene.properties, ~np.array(scene.properties.periodic)
+    if not properties.shares_energy:
+        return False
     if len(gas) > 2 or not properties.isolated or not properties.uniform or scene.run.method == "monte_carlo":
         return True
     if len(gas) == 1:
@@ -136,7 +141,7 @@ def caveats(scene: Scene, gas: Gas) -> tuple[str, ...]:
     if len(gas) == 1 and not is_ergodic(scene, gas):
         if not all(scene.properties.periodic):
             sentences.append("A single disc does not share its energy evenly: its motions have no common temperature.")
-    elif not is_ergodic(scene, gas):
+    elif scene.properties.interacting and not is_ergodic(scene, gas):
         sentences.append(
             "Two equal discs with zero total momentum between walls do not reach all states: pressures and "
             "temperatures along x and y may differ indefinitely. Give them different speeds."

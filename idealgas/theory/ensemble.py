@@ -244,7 +244,7 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
 
     It is the temperature of thermal walls or of a thermostat. Without them, it is the temperature at which a dilute gas
     with the barometric distribution has the conserved initial energy (translation, spin and gravity). The result is
-    None if other effects make the temperature unpredictable, and for a single disc, which cannot share its energy.
+    None if other effects make the temperature unpredictable, and for discs that cannot share their energy.
     """
     properties = scene.properties
     if (
@@ -254,7 +254,7 @@ def column_temperature(scene: Scene, gas: Gas, spin_energy: float, axis: int) ->
         or properties.varies
     ):
         return None
-    if len(gas) == 1:
+    if len(gas) == 1 or not properties.shares_energy:
         return None
     if baths := properties.temperatures:
         return min(baths) if len(baths) == 1 else None

@@ -239,8 +239,14 @@ def _rates(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
     per_disc = (per_disc - np.diag(np.diag(per_disc) / number)).sum(axis=1)  # a disc does not collide with itself
     if len(number) == 1 and SOLID <= (phi := gas.packing_fraction) < hard_discs.CLOSE_PACKING:
         per_disc *= (crystal(phi).value - 1) / (2 * phi * contact_value(phi))  # for equal discs Z = 1 + 2φχ exactly
-    hits = _wall_hit_rate(gas, discs, temperature, periodic)
-    rough = _why_rough(gas, discs, temperature, periodic, per_disc)
+    crowding = 1.0
+    if scene.properties.interacting:
+        crowding = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
+        rough = _why_rough(gas, discs, temperature, periodic, per_disc)
+    else:
+        per_disc *= 0
+        rough = "" if scene.properties.shares_energy else conserved.KEPT
+    hits = crowding * _wall_hit_rate(gas, discs, temperature, periodic)
     thermostat = len(gas) * scene.properties.thermostat_rate
     pairs = float(number @ per_disc) / 2
     return _Rates(discs.shares @ per_disc, pairs, hits, thermostat=thermostat, rough=rough)
@@ -258,7 +264,8 @@ def _column(scene: Scene, gas: Gas, temperature: float) -> _Rates | None:
         return None
     rough = f"the law of a dilute column, whose lowest layer has a packing fraction of {column.densest:.2g}"
     thermostat = len(gas) * properties.thermostat_rate
-    return _Rates(discs.shares @ column.per_disc, column.pairs, column.hits, thermostat=thermostat, rough=rough)
+    per_disc, pairs = discs.shares @ column.per_disc * properties.interacting, column.pairs * properties.interacting
+    return _Rates(per_disc, pairs, column.hits, thermostat=thermostat, rough=rough)
 
 
 def _why_rough(
@@ -307,18 +314,17 @@ def _species(scene: Scene, gas: Gas, k: int, area: float, rates: _Rates | None) 
 
 
 def _wall_hit_rate(gas: Gas, discs: Composition, temperature: float, periodic: tuple[bool, bool]) -> float:
-    """Return the wall hits of the whole gas per time: the flux of disc centres onto the lines that they can reach.
+    """Return the wall hits of an ideal gas per time: the flux of disc centres onto the lines that they can reach.
 
     The density of hard discs at a wall is Z times the mean density.
     """
-    crowding = hard_discs.mixture_compressibility_factor(discs.radius, discs.number, gas.area)
     rate = 0.0
     for r, m, n in zip(discs.radius, discs.mass, discs.number, strict=True):
         width, height = (
             length if is_periodic else length - 2 * r for length, is_periodic in zip(gas.box, periodic, strict=True)
         )
         if width > 0 and height > 0:
-            flux = hard_discs.effusion_flux(crowding * n / (width * height), temperature, m)
+            flux = hard_discs.effusion_flux(n / (width * height), temperature, m)
             rate += 2 * (height * (not periodic[0]) + width * (not periodic[1])) * flux
     return float(rate)
 

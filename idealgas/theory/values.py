@@ -34,6 +34,9 @@ PUBLISHED = {0.670: (7.98678, 3e-5), 0.680: (8.51325, 4e-5), 0.690: (8.96990, 8e
 Maggs & Krauth, J. Chem. Phys. 157, 234111 (2022).
 """
 
+IDEAL = "ideal gas"
+"""Name of the theory of discs that do not interact."""
+
 MIXTURE = "Santos, Yuste & López de Haro 1999"
 """Name of the theory of mixtures."""
 
@@ -206,6 +209,7 @@ def box_theory(
     periodic: tuple[bool, bool] = (False, False),
     *,
     ergodic: bool = True,
+    interacting: bool = True,
 ) -> BoxTheory:
     """Return theoretical values for the pressure and the contacts of a uniform gas of finite N in its box.
 
@@ -215,8 +219,11 @@ def box_theory(
         box: width and height of the box, length.
         periodic: whether the box is periodic along x and along y.
         ergodic: False for a gas that does not reach all states of its energy, for which theory is not available.
+        interacting: False for discs that do not interact, an ideal gas.
     """
     radius, number = np.asarray(radius, float), np.asarray(number, float)
+    if not interacting:
+        return _ideal_gas(radius, number, box, periodic, ergodic)
     try:
         if not ergodic and number.sum() > 1:
             raise NoTheoryError("two equal discs with zero total momentum do not reach all states between walls")
@@ -230,6 +237,18 @@ def box_theory(
     except NoTheoryError as reason:
         nothing = np.full((len(radius), len(radius)), math.nan)
         return BoxTheory(None, None, (None, None), nothing, nothing, str(reason))
+
+
+def _ideal_gas(
+    radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool], ergodic: bool
+) -> BoxTheory:
+    """Return the exact values for discs that do not interact; without heat, energies along x and y remain unequal."""
+    z, none = Theory(1.0, 0.0, IDEAL), np.zeros((len(radius), len(radius)))
+    x, y = (
+        z.times(float(number @ (size / (size - 2 * radius)) / number.sum())) if ergodic and not on else None
+        for size, on in zip(box, periodic, strict=True)
+    )
+    return BoxTheory(z, z if not any(periodic) or x or y else None, (x, y), none, none)
 
 
 def _two(radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool]) -> BoxTheory:

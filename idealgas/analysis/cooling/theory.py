@@ -98,7 +98,7 @@ def parameters_of(log: Log) -> GranularParameters:
         -1.0 if scene.rotation is None else scene.rotation.roughness,
         properties.inertia,
     )
-    effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty")
+    effects = scene.lacking("straight_flight", "fixed_walls", "isolated", "empty", "interacting")
     elastic_walls = not properties.has_rough_walls and (scene.restitution is None or scene.restitution.wall == 1)
     why = ""
     if laws := scene.lacking("constant_restitution"):

@@ -105,7 +105,8 @@ def expected_law(
     discs = composition(log.discs)
     single = len(log.scene.lacking("uniform", "conserves_motion")) == 1  # no other effects change the kinetic energy
     alone = (
-        len(discs.name) == 1
+        properties.interacting
+        and len(discs.name) == 1
         and not log.discs.unlike
         and discs.radius[0] > 0
         and log.discs.packing_fraction <= hard_discs.HIGHEST
@@ -196,7 +197,7 @@ def state_lines(log: Log, areas: np.ndarray) -> StateLines | None:
     The result is None if theory is not available: for several species or pistons, above the freezing density, or if the
     gas is not uniform.
     """
-    gas, lacking = log.discs, log.scene.lacking("uniform", "straight_flight", "elastic")
+    gas, lacking = log.discs, log.scene.lacking("uniform", "straight_flight", "elastic", "interacting")
     if len(log.scene.piston) != 1 or len(lacking) > 1 or len(gas.species_names) > 1 or gas.unlike:
         return None
     if not gas.radius[0] > 0:
@@ -291,7 +292,7 @@ def _adiabatic_piston(log: Log, time: np.ndarray, apart: Mapping[str, np.ndarray
     pressures differ, theory does not predict the temperatures at which they become equal.
     """
     (table,), gas = log.scene.piston, log.discs
-    if len(apart) < 2 or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
+    if len(apart) < 2 or not log.scene.properties.interacting or not gas.radius[0] > 0 or gas.packing_fraction > DILUTE:
         return None
     n, diameter = len(gas), 2 * float(gas.radius[0])
     number = np.array([members.sum() for members in beside_pistons(log).values()])

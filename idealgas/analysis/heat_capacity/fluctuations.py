@@ -213,7 +213,7 @@ def expected_capacity(log: Log, series: EnergySeries) -> tuple[Theory | None, fl
             return None, None
     if series.position is None:
         return Theory(per_disc, part * per_disc, SOURCE), None
-    if mixture:
+    if mixture or not scene.properties.interacting:
         return None, None
     (piston,) = scene.piston
     across = gas.box[1 - piston.axis]

@@ -9,7 +9,7 @@ from idealgas.log import Log
 from idealgas.tallies.collisions import expected_rates, theory_of
 from idealgas.tallies.equilibrium import known_ensemble, nonequilibrium_reason
 from idealgas.theory import distributions
-from idealgas.theory.conserved import centre_of_mass_energy
+from idealgas.theory.conserved import KEPT, centre_of_mass_energy
 from idealgas.theory.ensemble import Composition, Ensemble, ensemble_at
 from idealgas.theory.hard_discs import mean_speed
 
@@ -84,7 +84,7 @@ def expectation(log: Log, start: float | None, end: float | None) -> Expectation
         if ensemble.dof <= FEWEST_DOF:
             few = f"{ensemble.dof} degrees of freedom are too few"
             return Expectation(None, ensemble.temperature, few)
-        return Expectation(ensemble, ensemble.temperature, "")
+        return Expectation(ensemble, ensemble.temperature, "" if log.scene.properties.shares_energy else KEPT)
     reason = nonequilibrium_reason(log)
     if len(log.discs) == 1 and not reason:
         reason = "a single disc cannot share its energy"

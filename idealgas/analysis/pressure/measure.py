@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from idealgas.analysis.pressure.mechanical import mechanical
-from idealgas.analysis.pressure.result import IDEAL, Pressure
+from idealgas.analysis.pressure.result import Pressure
 from idealgas.analysis.pressure.routes import bulk_in_events, bulk_in_samples, routes_of
 from idealgas.columns import SIDES, axis_of
 from idealgas.errors import NotApplicableError, UserError
@@ -32,6 +32,7 @@ from idealgas.theory import hard_discs
 from idealgas.theory.ensemble import Composition, composition
 from idealgas.theory.values import (
     FREEZING,
+    IDEAL,
     MIXTURE,
     SOLID,
     BoxTheory,
@@ -184,6 +185,8 @@ def hard_disc_theories(discs: Composition, gas: Gas, in_box: BoxTheory) -> dict[
     theories = {IDEAL: Theory(1.0, 0.0, IDEAL)}
     if in_box.pairs:
         theories[in_box.pairs.source] = in_box.pairs
+        if in_box.pairs.source == IDEAL:
+            return theories
     if phi >= SOLID and np.ptp(discs.radius) == 0:
         solid = crystal(phi)
         return theories | {solid.source: solid}

@@ -16,11 +16,11 @@ from idealgas.presentation.tables import Table, estimates, format_estimate, pres
 from idealgas.statistics.estimates import Estimate
 from idealgas.tallies.collisions import CollisionRate, FreePath, collision_tables
 from idealgas.tallies.equilibration import Window
+from idealgas.theory.values import IDEAL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-IDEAL = "ideal gas"
 """Name of the theory of the ideal gas, Z = 1."""
 
 CLEAR = 5.0
@@ -158,7 +158,7 @@ class Pressure(Result):
         beside = f"{abs(100 * more):.2g} % {'above' if more > 0 else 'below'} the ideal gas"
         if abs(more) <= z.standard_error:
             beside = "an ideal gas within the error"
-        theory = f"hard discs at φ = {self.packing_fraction:.3g}"
+        theory = f"hard discs at φ = {self.packing_fraction:.3g}" if len(self.theories) > 1 else "theory"
         return f"P A = {format_estimate(z)} N T: {beside}; {agreement([(PAIRS, z)], theory, self.no_theory)}."
 
     def figure(self) -> "Figure":

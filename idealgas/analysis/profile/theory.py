@@ -131,7 +131,7 @@ def expected_profile(log: Log, axis: int, edges: np.ndarray, start: float) -> Ex
     mean_temperature = (weight * temperature).mean(axis=2) / weight.mean(axis=2)
     share = ensemble_at(log.scene, log.discs, 1.0, math.inf).of_species
     layers = np.zeros(2)
-    if not log.periodic[axis] and not log.gravity[axis]:
+    if not log.periodic[axis] and not log.gravity[axis] and properties.interacting:
         phi = math.pi * discs.radius**2 @ (number / strips)[:, [0, -1]]
         z = hard_discs.compressibility_factor(np.minimum(phi, hard_discs.HIGHEST))
         layers = (1 - 1 / z) * min(float(discs.radius.max() / np.diff(edges).min()), 1.0)
@@ -191,7 +191,8 @@ def conduction(log: Log, axis: int) -> "Conduction | None":
         properties.emits[side] is not None for side in sides_across(1 - axis)
     )
     alike = properties.straight_flight and properties.collisions_conserve_energy and not properties.spins
-    if low is None or high is None or has_other_heat or not alike or len(gas.species_names) > 1 or gas.unlike:
+    alike &= properties.interacting and len(gas.species_names) == 1 and not gas.unlike
+    if low is None or high is None or has_other_heat or not alike:
         return None
     return conduct(low, high, log.box[axis], len(gas) / gas.area, 2 * float(gas.radius[0]))
 

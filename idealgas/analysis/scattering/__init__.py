@@ -230,7 +230,7 @@ class ScatteringAnalysis(Analysis):
         """
         if len(log.discs.species_names) > 1 or not all(log.periodic):
             raise NotApplicableError(f"{log.path}: scattering requires a gas of one species in a periodic box")
-        window = measure(log, [], start, end, needs=("uniform", "conserves_motion"))
+        window = measure(log, [], start, end, needs=("uniform", "conserves_motion", "interacting"))
         speed, side = math.sqrt(ensemble(log).temperature / float(log.discs.mass[0])), max(log.box)
         waves, displaced, moments = [], [], []
         numbers = (2 * math.pi / side * wave_numbers(log)).tolist()

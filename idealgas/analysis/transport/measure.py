@@ -67,7 +67,7 @@ def transport(
         UserError: if no disc moves, if there are no events or too few samples in the window, or if the gas is subject
             to effects other than periodic sides and fixed discs.
     """
-    equilibrium, needs = ensemble(log), ("uniform", "conserves_motion")
+    equilibrium, needs = ensemble(log), ("uniform", "conserves_motion", "interacting")
     if not equilibrium.temperature > 0:
         raise UserError(f"{log.path}: no disc moves")
     if (inside := walls_inside(log.scene)) and all(wall.radius for wall in inside) and all(log.periodic):

@@ -141,46 +141,37 @@ def predict_entry_contacts(disc, ids, prediction, disc_id, walls, cell, periodic
 
 
 @inline
-def predict_disc_contact(record, ids, state, i, crossing_code, now, noninteracting, effects):
-    """Find disc i's earliest contact with a disc in its cell or the eight cells around it; see `predict_contact`.
+def predict_contact(record, ids, state, i, crossing_code, now, segments, noninteracting, effects):
+    """Find disc i's earliest contact with a disc in its cell or the eight cells around it, or with a wall segment.
 
-    Simultaneous contacts and contacts at the current time are rare and are left to `predict_tied_contact`.
+    If the disc has just crossed into its cell, `crossing_code` is the direction of the crossing (see PREDICTION). The
+    predicted contact then remains valid, and only a contact in the cells that have just come within reach can precede
+    it. In all other cases `crossing_code` is SIDE_OF_BOX or larger. Simultaneous contacts and contacts at the current
+    time are rare and are left to `predict_tied_contact`.
     """
     disc, prediction = record[U(i)], state.prediction[U(i)]
     if crossing_code >= SIDE_OF_BOX:
         prediction.contact = NO_CONTACT
         prediction.partner = -1
-    if noninteracting is not None:
-        return
-    if crossing_code < SIDE_OF_BOX:
-        count, has_images = new_neighbours(state, state.coarse, i, disc, crossing_code, effects.periodic)
-    else:
-        count, has_images = neighbours(state, state.coarse, i, disc, effects.periodic)
-    count = filter_colliding(record, state, count, has_images, i, effects.gravity, effects.periodic)
-    best = prediction.contact
-    chosen = -1
-    tied = False
-    for k in range(count):
-        j = state.candidates[U(k)]
-        images = images_to(state, k, has_images, record, i, j, effects.periodic)
-        time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
-        tied |= time == best
-        chosen = k if time < best else chosen
-        best = min(time, best)
-    if tied | (best <= now):
-        predict_tied_contact(record, ids, state, count, has_images, i, effects)
-    elif chosen >= 0:
-        store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
-
-
-@inline
-def predict_contact(record, ids, state, i, crossing_code, now, segments, effects):
-    """Find disc i's earliest contact with a disc in its cell or the eight cells around it, or with a wall segment.
-
-    If the disc has just crossed into its cell, `crossing_code` is the direction of the crossing (see PREDICTION). The
-    predicted contact then remains valid, and only a contact in the cells that have just come within reach can precede
-    it. In all other cases `crossing_code` is SIDE_OF_BOX or larger.
-    """
-    predict_disc_contact(record, ids, state, i, crossing_code, now, effects.noninteracting, effects)
+    if noninteracting is None:
+        if crossing_code < SIDE_OF_BOX:
+            count, has_images = new_neighbours(state, state.coarse, i, disc, crossing_code, effects.periodic)
+        else:
+            count, has_images = neighbours(state, state.coarse, i, disc, effects.periodic)
+        count = filter_colliding(record, state, count, has_images, i, effects.gravity, effects.periodic)
+        best = prediction.contact
+        chosen = -1
+        tied = False
+        for k in range(count):
+            j = state.candidates[U(k)]
+            images = images_to(state, k, has_images, record, i, j, effects.periodic)
+            time = collision_time(disc, record[U(j)], effects.gravity, effects.periodic, images)
+            tied |= time == best
+            chosen = k if time < best else chosen
+            best = min(time, best)
+        if tied | (best <= now):
+            predict_tied_contact(record, ids, state, count, has_images, i, effects)
+        elif chosen >= 0:
+            store_contact(state, record, i, state.candidates[U(chosen)], chosen, has_images, best, effects.periodic)
     if segments is not None:
         predict_segment_contact(record, ids, state, i, effects)

@@ -90,7 +90,7 @@ def predict(record, ids, state, i, change, now, effects, subdomain):
         prediction.contact, prediction.partner = NO_CONTACT, -1
         prediction.crossing, prediction.crossing_code = NEVER, SIDE_OF_BOX
     else:
-        predict_contact(record, ids, state, i, change, now, effects.segments, effects)
+        predict_contact(record, ids, state, i, change, now, effects.segments, effects.noninteracting, effects)
         if change != Repredict.STALE:
             predict_crossing(record, ids, state, i, now, effects.thermostat, effects.vibration, effects)
     if subdomain is not None and not is_owned(state, i, subdomain):

@@ -58,7 +58,8 @@ def issues(scene: Document, invalid: AbstractSet[str] = frozenset()) -> Iterator
     yield from species_issues(scene)
     if not {"species", "disc"} & invalid:
         yield from permeable_issues(scene)
-    yield from overlap_issues(scene, box)
+    if scene.properties.interacting:
+        yield from overlap_issues(scene, box)
     if "rotation" not in invalid:
         yield from _spin_issues(scene, invalid)
     if not {"restitution", "species", "disc", "box", "gravity", "piston"} & invalid:

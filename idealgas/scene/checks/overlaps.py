@@ -59,12 +59,7 @@ def label(scene: Document, number: int) -> str:
 
 
 def overlap_issues(scene: Document, box: Box | None) -> Iterator[Issue]:
-    """Check for given discs that overlap, also across periodic sides; at most MOST_OVERLAPS pairs are reported.
-
-    Discs that do not interact may overlap.
-    """
-    if not scene.properties.interacting:
-        return
+    """Check for given discs that overlap, also across periodic sides; at most MOST_OVERLAPS pairs are reported."""
     discs = scene.explicit_discs
     for a, b, distance in overlapping(discs, box, scene.accepted_overlap):
         low, high = int(discs.index[a]), int(discs.index[b])
@@ -172,10 +167,7 @@ def _near_pairs(centre: np.ndarray, radius: np.ndarray, accepted: float) -> Iter
 
 
 def deepest_overlap(discs: InitialDiscs, box: Box, walls: Sequence[WallTable], interacting: bool) -> float:
-    """Return the deepest overlap of discs with each other, with sides or with walls, length; 0 if within rounding.
-
-    Overlaps of discs with each other count only if discs are `interacting`.
-    """
+    """Return the deepest overlap of discs with sides, walls and, if interacting, each other; 0 if within rounding."""
     radius = discs.radius
     pairs = overlapping(discs, box) if interacting else ()
     depths = [radius[a] + radius[b] - distance for a, b, distance in pairs]
