@@ -1,12 +1,12 @@
-"""Measure the flow through an opened gate, and compare it with n⟨v⟩/π.
+"""Measure the flow through an opened gate, and compare it with n⟨v⟩/π and Graham's law.
 
 DIR is the folder of a sweep with the analysis "effusion". Runs that differ only in their seeds are averaged.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -15,12 +15,12 @@ from idealgas.analysis.caveats import must_be_one_gas
 from idealgas.analysis.check import agreement
 from idealgas.analysis.result import Result, RunResult
 from idealgas.errors import UserError
-from idealgas.fields import INLINE, OMITTED
+from idealgas.fields import INLINE, OMITTED, OPTIONAL
 from idealgas.log import Log
 from idealgas.presentation.tables import Table, estimates, format_estimate
-from idealgas.scene.walls import NumberedWall, walls_inside
 from idealgas.statistics.estimates import Estimate, mean_of_replicates
 from idealgas.tallies.equilibrium import ensemble
+from idealgas.tallies.reach import Slit, slit_of
 from idealgas.tallies.stream import ReadProgress, frames, span
 from idealgas.theory import hard_discs
 from idealgas.theory.ensemble import composition
@@ -51,13 +51,12 @@ TINY = 1e-12
 
 
 @dataclass(frozen=True)
-class Effusion(RunResult):
-    """Flow of discs between two chambers through an opened gate.
+class Flow:
+    """Flow of the discs of one species between two chambers through an opened gate.
 
     Attributes:
         density: number density that the chamber with more discs at the start would have if it contained all discs,
             1/length².
-        temperature: temperature of the gas, energy.
         time: (INSTANTS,), times.
         beyond: (INSTANTS,), number of discs in the other chamber.
         expected: (INSTANTS,), theoretical number of discs in the other chamber; None if `speed` has no theory.
@@ -69,7 +68,6 @@ class Effusion(RunResult):
     """
 
     density: float
-    temperature: float
     time: np.ndarray
     beyond: np.ndarray
     expected: np.ndarray | None
@@ -77,51 +75,65 @@ class Effusion(RunResult):
 
 
 @dataclass(frozen=True)
+class Effusion(Flow, RunResult):
+    """Flow of the discs of a gas, or of those of the first species of a mixture.
+
+    Attributes:
+        temperature: temperature of the gas, energy.
+        species: flow of each species of a mixture, by name; None for a single species.
+    """
+
+    temperature: float
+    species: Annotated[dict[str, Flow] | None, OPTIONAL] = None
+
+
+@dataclass(frozen=True)
 class Effusions(Result):
     """Flow through a slit, averaged over groups of runs that differ only in their seeds.
 
     Attributes:
-        groups: runs of each group, by name of the group.
+        groups: flows in the runs of each group, by name of the group; each species of a mixture is a group.
         together: mean flux over density of each group, length/time.
+        ratios: ratio of `together` of each species of a mixture to that of its first species, no unit; None if there
+            are no mixtures, as for `flows`.
+        flows: mean flow of each species of mixtures.
     """
 
-    groups: Annotated[dict[str, tuple[Effusion, ...]], OMITTED]
+    groups: Annotated[dict[str, tuple[Flow, ...]], OMITTED]
     together: Annotated[dict[str, Estimate], INLINE]
+    ratios: Annotated[dict[str, Estimate] | None, OPTIONAL] = None
+    flows: Annotated[dict[str, Flow] | None, OPTIONAL] = None
 
     def plain_tables(self) -> list[Table]:
-        """Return the table of the flux over density of each group, length/time."""
-        return [estimates("Flux over density (length/time), theory ⟨v⟩/π", self.together.items())]
+        """Return the tables of the flux over density of each group, length/time, and of the ratios in mixtures."""
+        tables = [estimates("Flux over density (length/time), theory ⟨v⟩/π", self.together.items())]
+        return [*tables, estimates("Graham's law (no unit)", self.ratios.items())] if self.ratios else tables
 
     def summary(self) -> str:
         """Return the flux over density of the first group, and whether all fluxes agree with kinetic theory."""
         first, *_ = self.together.values()
         verdict = agreement(self.together.items(), "⟨v⟩/π of kinetic theory")
-        return f"The flux over density is {format_estimate(first)}; {verdict}."
+        return f"The flux over density is {format_estimate(first)}; {verdict}.{ratio_sentence(self.ratios)}"
 
     def figure(self) -> "Figure":
         """Draw the number of discs beyond the slit against time, and the flux of each group against n⟨v⟩/π."""
         from idealgas.presentation.style import GREY, curve_style, panels
 
-        groups, together = self.groups, self.together
+        flows = {name: _mean(runs) for name, runs in self.groups.items()}
         figure, (course, flux) = panels(2)
-        for k, (name, runs) in enumerate(groups.items()):
+        for k, (name, flow) in enumerate(flows.items()):
             colour, line, marker = curve_style(k)
-            beyond, label = np.mean([run.beyond for run in runs], axis=0), name or "measured"
-            course.plot(runs[0].time, beyond, line, color=colour, label=label)
-            if laws := [run.expected for run in runs if run.expected is not None]:
-                law = np.mean(laws, axis=0)
-                course.plot(runs[0].time, law, "--", color=GREY, linewidth=0.8, label="kinetic theory")
-            n, speed = runs[0].density, together[name]
+            n, speed, label = flow.density, flow.speed, name or "measured"
+            course.plot(flow.time, flow.beyond, line, color=colour, label=label)
+            if flow.expected is not None:
+                course.plot(flow.time, flow.expected, "--", color=GREY, linewidth=0.8, label="kinetic theory")
             if speed.theory is None:
                 flux.axhline(n * speed.value, color=colour, linestyle=line, label=f"{name}: no theory")
             else:
                 expected, value, error = n * speed.theory, n * speed.value, n * speed.standard_error
                 flux.errorbar(expected, value, error, fmt=marker, color=colour, capsize=3, label=label)
-        highest = max(runs[0].density * (together[name].theory or 0) for name, runs in groups.items())
-        ends = np.array([0.0, 1.1 * highest])
-        doubt = max(
-            (estimate.theory_error / estimate.theory for estimate in together.values() if estimate.theory), default=0.0
-        )
+        ends = np.array([0.0, 1.1 * max(flow.density * (flow.speed.theory or 0) for flow in flows.values())])
+        doubt = max((f.speed.theory_error / f.speed.theory for f in flows.values() if f.speed.theory), default=0.0)
         flux.theory(ends, ends, doubt * ends, "n⟨v⟩/π", GREY)
         course.set(xlabel="t (time)", ylabel="discs beyond the slit (no unit)")
         flux.set(xlabel="n⟨v⟩/π (1/(length time))", ylabel="flux (1/(length time))")
@@ -150,51 +162,53 @@ class EffusionAnalysis(Analysis):
 
         Kinetic theory predicts that n⟨v⟩/π discs leave a gas of number density n and mean speed ⟨v⟩ per time and open
         length of the slit, if the slit is much narrower than the mean free path. More discs pass through a wider slit.
-        Theory is not available if the slit is wider than a mean free path or if the chamber is dense.
+        Theory is not available if the slit is wider than a mean free path or if the chamber is dense. Each species of a
+        mixture has its own density, mean speed and open length.
 
         Raises:
-            UserError: if the log has no events, if the scene has several species, if it does not have exactly one gate
-                that forms a slit in a wall along an axis, or if no net flow is expected.
+            UserError: if the log has no events, if the scene does not have exactly one gate that forms a slit in a wall
+                along an axis, if a species does not fit through it, or if no net flow of a species is expected.
         """
-        discs, equilibrium = composition(log.discs), ensemble(log)
-        gate = _slit(log)
-        across, place = gate.across, gate.place
-        radius, number, slit = discs.radius[0], len(log.discs), gate.width - 2 * discs.radius[0]
-        time = _instants(log, gate, start, end)
-        beyond, flux = np.empty(INSTANTS), np.empty((2, INSTANTS))  # flux: sums of the speeds below and above the gate
-        for k, state in enumerate(frames(log, time, progress)):
-            side, pace = state.position[:, across] > place, np.hypot(*state.velocity.T)
-            beyond[k], flux[:, k] = side.sum(), (pace[~side].sum(), pace[side].sum())
-        if beyond[0] > number / 2:
-            beyond, flux, place = number - beyond, flux[::-1], log.box[across] - place
+        discs, equilibrium, interacting = composition(log.discs), ensemble(log), log.scene.properties.interacting
+        gate = slit_of(log)
+        across, place, radius, number = gate.across, gate.place, discs.radius, discs.number
+        slit, time = gate.width - 2 * radius, _instants(log, gate, start, end)
+        beyond, flux = _passages(log, gate, time, progress)
+        if beyond[:, 0].sum() > number.sum() / 2:
+            beyond, flux, place = number[:, None] - beyond, flux[::-1], log.box[across] - place
         height = log.box[1 - across] - 2 * radius
-        inner, outer = (place - 2 * radius) * height, (log.box[across] - place - 2 * radius) * height
-        mean_speed = hard_discs.mean_speed(equilibrium.temperature, discs.mass[0], equilibrium.dof)
-        there, back = flux / mean_speed / [[inner], [outer]]
-        drive, both = np.trapezoid(there - back, time), np.trapezoid(there + back, time)
-        if not slit > 0 or not drive > 0:
+        area = np.array([(place - 2 * radius) * height, (log.box[across] - place - 2 * radius) * height])
+        mean_speed = hard_discs.mean_speed(equilibrium.temperature, discs.mass, equilibrium.dof)
+        there, back = flux / mean_speed[:, None] / area[:, :, None]
+        home = (beyond[:, 0] > number / 2).astype(int)  # chamber from which the species flows
+        drive, both = np.trapezoid(there - back, time) * (1 - 2 * home), np.trapezoid(there + back, time)
+        if not ((slit > 0) & (drive > 0)).all():
             raise UserError(
                 f"{log.path}: effusion requires a slit wider than a disc between chambers of unequal density"
             )
-        expected = mean_speed / math.pi
-        density = (number - beyond[0]) / inner
-        phi = density * math.pi * radius**2 * log.scene.properties.interacting
-        paths = log.scene.properties.interacting * slit / hard_discs.mean_free_path(2 * radius, density, phi)
-        speed = float(beyond[-1] - beyond[0]) / (slit * drive)
-        no_law = _no_law(paths, phi)
-        error = math.sqrt((speed if no_law else expected) * slit * both) / (slit * drive)
+        expected, densities = mean_speed / math.pi, np.array([number - beyond[:, 0], beyond[:, 0]]) / area
+        phi = np.array([discs.packing_fraction(density) for density in densities])[home] * interacting
+        free = np.empty(len(radius))
+        for k in np.unique(home):  # an empty chamber has no free path
+            free[home == k] = hard_discs.mixture_free_paths(radius, discs.mass, densities[k])[home == k]
+        speed = (beyond[:, -1] - beyond[:, 0]) * (1 - 2 * home) / (slit * drive)
+        paths, law = interacting * slit / free, None
+        no_law = _no_law(float(paths.max()), float(phi.max()))
+        error = np.sqrt((np.abs(speed) if no_law else expected) * slit * both) / (slit * drive)
         theory_error = expected * (LAW_OFF + LAW_OFF_PER_PATH * paths + CROWDING * phi)
-        flux_over_density = Estimate(speed, error, math.inf, expected, theory_error)
-        law = None
-        if no_law:
-            flux_over_density = replace(flux_over_density, theory=None, theory_error=0.0)
-        else:
-            rate = expected * slit
-            law = number * _share_beyond(time, beyond[0] / number, rate / inner, rate / outer)
+        if not no_law:
+            leave, come = expected * slit / area
+            law = number[:, None] * share_beyond(time, beyond[:, 0] / number, leave, come, number / number.sum())
+        flows = {}
+        for s, (name, k) in enumerate(zip(discs.name, home, strict=True)):
+            known = () if no_law else (float(expected[s]), float(theory_error[s]))
+            estimate = Estimate(float(speed[s]), float(error[s]), math.inf, *known)
+            density = float(number[s] / area[k, s])
+            flows[name] = Flow(density, time, beyond[s], None if law is None else law[s], estimate)
         if gate.others:
             no_law += (f"Theory assumes chambers without other walls; these contain {', '.join(gate.others)}.",)
-        density = number / inner
-        return Effusion(density, equilibrium.temperature, time, beyond, law, flux_over_density, caveats=no_law)
+        first, species = flows[discs.name[0]], flows if len(flows) > 1 else None
+        return Effusion(**vars(first), temperature=equilibrium.temperature, species=species, caveats=no_law)
 
     @staticmethod
     def combine(results: Sequence[Effusion]) -> Effusions:
@@ -203,13 +217,49 @@ class EffusionAnalysis(Analysis):
         Raises:
             UserError: if runs with the same label belong to different gases.
         """
-        groups: dict[str, tuple[Effusion, ...]] = {}
+        groups = dict[str, tuple[Effusion, ...]]()
         for run in results:
             label = run.origin.label if run.origin else ""
             groups[label] = (*groups.get(label, ()), run)
-        for name, runs in groups.items():
-            must_be_one_gas(runs, f"{name}: different gases under one name")
-        return Effusions(groups, {name: mean_of_replicates([r.speed for r in runs]) for name, runs in groups.items()})
+        flows, ratios = dict[str, tuple[Flow, ...]](), dict[str, Estimate]()
+        for label, runs in groups.items():
+            must_be_one_gas(runs, f"{label}: different gases under one name")
+            each, several = [run.species or {label: run} for run in runs], len(groups) > 1
+            names = {s: f"{label}: {s}" if runs[0].species and several else s for s in each[0]}
+            flows |= {name: tuple(of[species] for of in each) for species, name in names.items()}
+            first, *others = (_mean(flows[name]).speed for name in names.values())
+            for name, speed in zip(list(names.values())[1:], others if first.value else (), strict=False):
+                ratios[f"{name} / {next(iter(names))}"] = speed.over(first)
+        means = {name: _mean(runs) for name, runs in flows.items()}
+        together = {name: flow.speed for name, flow in means.items()}
+        return Effusions(flows, together, ratios or None, means if ratios else None)
+
+
+def ratio_sentence(ratios: Mapping[str, Estimate] | None) -> str:
+    """Return a sentence with the first ratio and whether all ratios agree with Graham's law; empty without ratios."""
+    if not ratios:
+        return ""
+    name, ratio = next(iter(ratios.items()))
+    return f" Ratio of the rates {name}: {format_estimate(ratio)}; {agreement(ratios.items())}."
+
+
+def _mean(runs: Sequence[Flow]) -> Flow:
+    """Return the mean flow of several runs."""
+    laws = [run.expected for run in runs if run.expected is not None]
+    beyond, law = np.mean([run.beyond for run in runs], axis=0), np.mean(laws, axis=0) if laws else None
+    return Flow(runs[0].density, runs[0].time, beyond, law, mean_of_replicates([run.speed for run in runs]))
+
+
+def _passages(log: Log, gate: Slit, time: np.ndarray, progress: ReadProgress | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of discs above the gate, (S, INSTANTS), and sums of speeds on both sides, (2, S, INSTANTS)."""
+    members = [log.discs.species == s for s in range(len(log.discs.species_names))]
+    beyond, flux = np.empty((len(members), INSTANTS)), np.empty((2, len(members), INSTANTS))
+    for k, state in enumerate(frames(log, time, progress)):
+        side, pace = state.position[:, gate.across] > gate.place, np.hypot(*state.velocity.T)
+        for s, member in enumerate(members):
+            beyond[s, k] = (side & member).sum()
+            flux[:, s, k] = pace[~side & member].sum(), pace[side & member].sum()
+    return beyond, flux
 
 
 def _no_law(paths: float, phi: float) -> tuple[str, ...]:
@@ -229,112 +279,32 @@ def _no_law(paths: float, phi: float) -> tuple[str, ...]:
     return ()
 
 
-def _share_beyond(time: np.ndarray, at_first: float, leave: float, come: float) -> np.ndarray:
-    """Return the theoretical fraction of all discs that are beyond the slit, (INSTANTS,).
+def share_beyond(
+    time: np.ndarray, at_first: np.ndarray, leave: np.ndarray, come: np.ndarray, part: np.ndarray
+) -> np.ndarray:
+    """Return the theoretical fraction of the discs of each species that are beyond the slit, (S, INSTANTS).
 
-    The discs that pass carry a mean energy of 3T/2 instead of T, so that one chamber cools and the other heats up.
+    The discs that pass carry a mean energy of 3T/2 instead of T, so that one chamber cools and the other heats up. All
+    species in a chamber have the same temperature.
 
     Args:
         time: (INSTANTS,), times.
-        at_first: fraction of the discs beyond the slit at the first time.
-        leave: rate at which a disc passes from the first chamber to the other at equal temperatures, 1/time.
-        come: rate at which a disc passes back, 1/time.
+        at_first: (S,), fraction of the discs beyond the slit at the first time.
+        leave: (S,), rate at which a disc passes from the first chamber to the other at equal temperatures, 1/time.
+        come: (S,), rate at which a disc passes back, 1/time.
+        part: (S,), fraction of all discs that belongs to the species.
     """
     from scipy.integrate import solve_ivp  # its import takes longer than most measurements
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Return the rates of change of the fractions of discs and energy beyond the slit, 1/time.
+        """Return the rates of change of the fractions of discs and, at the end, of energy beyond the slit, 1/time."""
+        here, there = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
+        # temperatures e/n of both sides; discs pass at rates proportional to n √(e/n), and carry 3/2 e/n
+        warm, cool = here[-1] / (part @ here[:-1]), there[-1] / (part @ there[:-1])
+        out, back = leave * here[:-1] * math.sqrt(warm), come * there[:-1] * math.sqrt(cool)
+        return np.append(out - back, 1.5 * part @ (out * warm - back * cool))
 
-        A side with fractions n of the discs and e of the energy loses discs at a rate proportional to √(ne), and energy
-        at a rate proportional to 3/2 √(e³/n).
-        """
-        (n, e), (m, f) = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
-        discs = leave * math.sqrt(n * e) - come * math.sqrt(m * f)
-        return np.array([discs, 1.5 * (leave * e * math.sqrt(e / n) - come * f * math.sqrt(f / m))])
-
-    return solve_ivp(change, (time[0], time[-1]), [at_first, at_first], t_eval=time, rtol=1e-8).y[0]
-
-
-# ── slit ──
-
-
-class Slit(NamedTuple):
-    """Slit between two chambers: a gate in a wall that divides the box.
-
-    Attributes:
-        opens: time at which the gate opens.
-        closes: time at which the gate closes.
-        across: axis normal to the wall (0 or 1).
-        place: coordinate of the wall on this axis, length.
-        width: width of the slit, length.
-        others: names of the other walls in the chambers.
-    """
-
-    opens: float
-    closes: float
-    across: int
-    place: float
-    width: float
-    others: tuple[str, ...]
-
-
-def _slit(log: Log) -> Slit:
-    """Return the slit of a log; raise UserError unless it has events, one species and one gate that forms a slit."""
-    inside = walls_inside(log.scene)
-    gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
-    if len(gates) != 1 or len(log.discs.species_names) != 1 or not log.has_events:
-        raise UserError(f"{log.path}: effusion requires one gate, one species and events")
-    (gate,) = gates
-    across = int(gate.start[0] != gate.end[0])
-    in_line = _in_line(log, gate, across)
-    if why := _obstacle(log, gate, in_line, across):
-        raise UserError(f"{log.path}: effusion requires a slit in a wall, but {why}")
-    low, high = _reach(gate, across)
-    obstacles = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
-    opens, closes = gate.absences[0]
-    return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, obstacles)
-
-
-def _obstacle(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
-    """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is a slit."""
-    if gate.start[across] != gate.end[across] or not gate.is_straight:
-        return "the gate is not along an axis"
-    (low, high), radius, size = _reach(gate, across), float(log.discs.radius[0]), log.box[1 - across]
-    if high - low + 2 * radius >= size:  # what remains of the wall is shorter than a disc
-        return "the gate opens the box from side to side, so that the gas expands freely; use `idealgas evolution`"
-    if log.periodic[across]:
-        return "discs also pass through the periodic sides"
-    beside = [_reach(wall, across) for wall in in_line]
-    if any(min(end, high) - max(start, low) > radius for start, end in beside):
-        return "a wall stands in the gate"
-    reached, gap = 0.0, 0.0
-    for start, end in [*sorted([*beside, (low, high)]), (size, math.inf)]:
-        gap, reached = max(gap, start - reached), max(reached, end)
-    return (
-        f"the wall of the gate does not divide the box: there is a gap of {gap:.4g} beside the gate"
-        if gap >= 2 * radius
-        else ""
-    )
-
-
-def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
-    """Return the walls that are in line with an open gate, displaced by so little that no disc passes between them."""
-    opens, closes = gate.absences[0][0], min(gate.absences[0][1], log.end_time)
-    place, near = gate.start[across], log.discs.radius[0] / 2
-    return [
-        wall
-        for wall in walls_inside(log.scene)
-        if wall != gate
-        and wall.arc is None
-        and all(start >= closes or end <= opens for start, end in wall.absences)
-        and max(abs(wall.start[across] - place), abs(wall.end[across] - place)) <= near
-    ]
-
-
-def _reach(wall: NumberedWall, across: int) -> tuple[float, float]:
-    """Return the lowest and highest coordinate of a wall along the axis other than `across`, length."""
-    ends = float(wall.start[1 - across]), float(wall.end[1 - across])
-    return min(ends), max(ends)
+    return solve_ivp(change, (time[0], time[-1]), np.append(at_first, part @ at_first), t_eval=time, rtol=1e-8).y[:-1]
 
 
 def _instants(log: Log, gate: Slit, start: float | None, end: float | None) -> np.ndarray:

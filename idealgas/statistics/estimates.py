@@ -79,6 +79,14 @@ class Estimate:
             theory_error=self.theory_error * abs(factor),
         )
 
+    def over(self, other: "Estimate") -> "Estimate":
+        """Return the ratio to an independent estimate, whose theory has an error of the same cause."""
+        value, theory = self.value / other.value, self.theory / other.theory if self.theory and other.theory else None
+        error = math.hypot(self.standard_error, (theory or value) * other.standard_error) / abs(other.value)
+        doubt = max(each.theory_error / abs(each.theory or math.inf) for each in (self, other))
+        samples = min(self.independent_samples, other.independent_samples)
+        return Estimate(value, error, samples, theory, abs(theory or 0.0) * doubt)
+
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the confidence interval at a given level (0 to 1), from Student's t distribution.
 

@@ -1,16 +1,17 @@
-"""Area that the centres of discs can reach, and the perimeter along which the discs touch walls."""
+"""Area that the centres of discs can reach, the perimeter along which they touch walls, and slits between chambers."""
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from idealgas.columns import FIRST_SEGMENT, Point
+from idealgas.errors import UserError
 from idealgas.log import Log
 from idealgas.physics.arc_geometry import bounds, nearest_points
-from idealgas.scene.walls import NumberedWall, number_walls
+from idealgas.scene.walls import NumberedWall, number_walls, walls_inside
 
 NEAR = 1e-9
 """Distance from a wall, relative to the larger side of the box, at which its two sides are distinguished."""
@@ -201,3 +202,86 @@ def _fitting(log: Log, walls: list[NumberedWall], radius: float, near: float) ->
         return np.asarray(fits)
 
     return fit
+
+
+# ── slit ──
+
+
+class Slit(NamedTuple):
+    """Slit between two chambers: a gate in a wall that divides the box.
+
+    Attributes:
+        opens: time at which the gate opens.
+        closes: time at which the gate closes.
+        across: axis normal to the wall (0 or 1).
+        place: coordinate of the wall on this axis, length.
+        width: width of the slit, length.
+        others: names of the other walls in the chambers.
+    """
+
+    opens: float
+    closes: float
+    across: int
+    place: float
+    width: float
+    others: tuple[str, ...]
+
+
+def slit_of(log: Log) -> Slit:
+    """Return the slit of a log; raise UserError unless it has events and one gate that forms a slit."""
+    inside = walls_inside(log.scene)
+    gates = [wall for wall in inside if wall.absences and wall.absences[0][0] > 0]
+    if len(gates) != 1 or not log.has_events:
+        raise UserError(f"{log.path}: effusion requires one gate and events")
+    (gate,) = gates
+    across = int(gate.start[0] != gate.end[0])
+    in_line = _in_line(log, gate, across)
+    if why := _obstacle(log, gate, in_line, across):
+        raise UserError(f"{log.path}: effusion requires a slit in a wall, but {why}")
+    low, high = _extent(gate, across)
+    obstacles = tuple(wall.name for wall in inside if wall not in (gate, *in_line))
+    opens, closes = gate.absences[0]
+    return Slit(max(opens, log.start_time), closes, across, gate.start[across], high - low, obstacles)
+
+
+def _obstacle(log: Log, gate: NumberedWall, in_line: Sequence[NumberedWall], across: int) -> str:
+    """Return why a gate is not a slit in a wall, as part of a sentence; empty if it is a slit."""
+    if gate.start[across] != gate.end[across] or not gate.is_straight:
+        return "the gate is not along an axis"
+    (low, high), radius, size = _extent(gate, across), float(log.discs.radius.min()), log.box[1 - across]
+    if high - low + 2 * radius >= size:  # what remains of the wall is shorter than a disc
+        return "the gate opens the box from side to side, so that the gas expands freely; use `idealgas evolution`"
+    if log.periodic[across]:
+        return "discs also pass through the periodic sides"
+    beside = [_extent(wall, across) for wall in in_line]
+    if any(min(end, high) - max(start, low) > radius for start, end in beside):
+        return "a wall stands in the gate"
+    reached, gap = 0.0, 0.0
+    for start, end in [*sorted([*beside, (low, high)]), (size, math.inf)]:
+        gap, reached = max(gap, start - reached), max(reached, end)
+    return (
+        f"the wall of the gate does not divide the box: there is a gap of {gap:.4g} beside the gate"
+        if gap >= 2 * radius
+        else ""
+    )
+
+
+def _in_line(log: Log, gate: NumberedWall, across: int) -> list[NumberedWall]:
+    """Return the walls that are in line with an open gate, displaced by so little that no disc passes between them."""
+    opens, closes = gate.absences[0][0], min(gate.absences[0][1], log.end_time)
+    place, near = gate.start[across], log.discs.radius.min() / 2
+    return [
+        wall
+        for wall in walls_inside(log.scene)
+        if wall != gate
+        and wall.arc is None
+        and not wall.is_permeable
+        and all(start >= closes or end <= opens for start, end in wall.absences)
+        and max(abs(wall.start[across] - place), abs(wall.end[across] - place)) <= near
+    ]
+
+
+def _extent(wall: NumberedWall, across: int) -> tuple[float, float]:
+    """Return the lowest and highest coordinate of a wall along the axis other than `across`, length."""
+    ends = float(wall.start[1 - across]), float(wall.end[1 - across])
+    return min(ends), max(ends)

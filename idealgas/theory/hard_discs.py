@@ -295,6 +295,11 @@ def mean_free_path(diameter: float, number_density: float, packing_fraction: flo
     return 1 / (2 * math.sqrt(2) * diameter * number_density * float(contact_value(packing_fraction)))
 
 
+def mixture_free_paths(radius: np.ndarray, mass: np.ndarray, number_density: np.ndarray) -> np.ndarray:
+    """Return the mean free paths ⟨v⟩/Σ Γ_ij (S,) of the species of a mixture at one temperature, length."""
+    return mean_speed(1.0, mass) / mixture_collision_rate(radius, mass, number_density, 1.0, 1.0).sum(axis=1)
+
+
 def effusion_flux(number_density: float, temperature: float, mass: float) -> float:
     """Return the flux n⟨v⟩/π through a slit in one direction, 1/(length time); also the hits on a wall per length."""
     return number_density * mean_speed(temperature, mass) / math.pi

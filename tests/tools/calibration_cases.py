@@ -73,22 +73,26 @@ STRUCTURE = ("collisions_per_disc = 300", "collisions_per_disc = 2000")
 SLOWEST = ("collisions_per_disc = 6000", "collisions_per_disc = 12000")
 """Runs for the energy of a gas that only its walls change."""
 
-HOLE = (
-    "[box]\nsize = [10, 10]\n"
-    + species("points", 100, 1e-6, speed=1)
-    + "".join(
-        f"[[wall]]\nsolid = 'outside'\nfrom = {start}\nto = {end}\n{more}\n"
-        for start, end, more in (
-            ([1, 1], [4.85, 2], "via = [3, 1.8]"),
-            ([4.85, 2], [5.15, 2], "absorbing = true"),
-            ([5.15, 2], [9, 1], "via = [7, 1.8]"),
-            ([9, 1], [9, 9], "via = [8, 5]"),
-            ([9, 9], [1, 9], "via = [5, 8]"),
-            ([1, 9], [1, 1], "via = [2, 5]"),
-        )
+HOLE = "[box]\nsize = [10, 10]\n" + "".join(
+    f"[[wall]]\nsolid = 'outside'\nfrom = {start}\nto = {end}\n{more}\n"
+    for start, end, more in (
+        ([1, 1], [4.85, 2], "via = [3, 1.8]"),
+        ([4.85, 2], [5.15, 2], "absorbing = true"),
+        ([5.15, 2], [9, 1], "via = [7, 1.8]"),
+        ([9, 1], [9, 9], "via = [8, 5]"),
+        ([9, 9], [1, 9], "via = [5, 8]"),
+        ([1, 9], [1, 1], "via = [2, 5]"),
     )
 )
-"""Box of points with a hole; its walls bulge inwards, as those of the scene `escape`."""
+"""Box with a hole; its walls bulge inwards, as those of the scene `escape`."""
+
+SLIT = "[box]\nsize = [2, 1]\n" + "".join(
+    f"[[wall]]\nfrom = [1, {low}]\nto = [1, {high}]\n{more}"
+    for low, high, more in ((0, 0.47, ""), (0.53, 1, ""), (0.47, 0.53, "name = 'gate'\nopens_at = 1\n"))
+)
+"""Two chambers with a slit between them."""
+
+LEFT = [0, 0, 1, 1]
 
 STROKES = [[0, 0]] + [[22 * k + at, v] for k in range(400) for at, v in ((20, (-0.5, 0.5)[k % 2]), (22, 0))]
 """Velocities of a piston that rests for 20 and moves for 2, in and out."""
@@ -243,15 +247,29 @@ CASES = {
     ),
     "driven grains": Case(equal(40, 0.2, THERMAL) + "[restitution]\nnormal = 0.9\n", STRUCTURE, (estimates.GAUGES,)),
     "escaping points": Case(
-        HOLE, ("until = 150", "until = 600"), (of("escape", "per_path", "mean_time"),), steady=False
+        HOLE + species("points", 100, 1e-6, speed=1),
+        ("until = 150", "until = 600"),
+        (of("escape", "per_path", "mean_time"),),
+        steady=False,
+    ),
+    "escaping mixture": Case(
+        HOLE + species("light", 120, 0.02) + species("heavy", 120, 0.03, mass=4),
+        ("until = 150", "until = 600"),
+        (of("escape", "species.*"),),
+        steady=False,
     ),
     "two chambers": Case(
-        "[box]\nsize = [2, 1]\n[[wall]]\nfrom = [1, 0]\nto = [1, 0.47]\n[[wall]]\nfrom = [1, 0.53]\nto = [1, 1]\n"
-        "[[wall]]\nname = 'gate'\nfrom = [1, 0.47]\nto = [1, 0.53]\nopens_at = 1\n[[species]]\nname = 'gas'\n"
-        "count = 100\nradius = 0.002\ntemperature = 1\nregion = [0, 0, 1, 1]\n",
+        SLIT + species("gas", 100, 0.002, region=LEFT),
         ("until = 11", "until = 41"),
         (of("effusion", "speed"),),
         steady=False,
+    ),
+    "two chambers, mixture": Case(
+        SLIT + species("light", 300, 0.001, region=LEFT) + species("heavy", 300, 0.0015, mass=4, region=LEFT),
+        ("until = 16", "until = 61"),
+        (of("effusion", "species.*.speed"),),
+        steady=False,
+        besides=estimates.graham,
     ),
     "held piston": Case(
         "[box]\nsize = [20, 5]\n[[piston]]\nposition = 10\nmass = 50\npressure = 1.5\n[[species]]\nname = 'gas'\n"

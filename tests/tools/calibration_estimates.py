@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
-from idealgas import Log, shear
+from idealgas import Log, effusion, shear
 from idealgas.analysis import registry
+from idealgas.analysis.effusion import EffusionAnalysis
 from idealgas.presentation.quantities import rows
 from idealgas.statistics.estimates import Estimate
 
@@ -53,6 +54,11 @@ def estimates(log: Log, measured: Of) -> Iterator[tuple[str, Estimate, bool]]:
                 yield f"{quantity}[{at[2]}]", curve, exact
         else:
             yield from ((quantity, known[quantity], exact) for quantity in fnmatch.filter(known, pattern))
+
+
+def graham(log: Log) -> Iterable[tuple[str, Estimate]]:
+    """Ratios of the fluxes of two species over their densities."""
+    return ((f"effusion.{names}", ratio) for names, ratio in EffusionAnalysis.combine([effusion(log)]).ratios.items())
 
 
 def sheared(log: Log) -> Iterable[tuple[str, Estimate]]:

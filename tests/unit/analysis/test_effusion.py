@@ -1,12 +1,14 @@
 """Flow through a gate: discs that pass it by hand, the law of two chambers, and where there is none."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 from helpers.logs import log_of, raised
 
-from idealgas.analysis.effusion import INSTANTS, EffusionAnalysis, _no_law, _share_beyond
+from idealgas.analysis.effusion import INSTANTS, Effusion, EffusionAnalysis, _no_law, share_beyond
+from idealgas.fields import from_dict
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
@@ -73,19 +75,122 @@ def test_windows_are_those_of_the_open_gate():
     raised("there is a gap of 1 beside the gate", measured, SCENE.replace("to = [8, 4] }, ", "to = [8, 3] }, "))
 
 
+def share_of_one(time, at_first, leave, come):
+    (share,) = share_beyond(time, *(np.array([value]) for value in (at_first, leave, come, 1.0)))
+    return share
+
+
 def test_two_chambers_become_even():
     """To order t: leave · n - come · m; and in the end as many by volume, of one temperature."""
     time = np.linspace(0, 1000, 257)
-    share = _share_beyond(time, 0.2, 0.03, 0.01)
+    share = share_of_one(time, 0.2, 0.03, 0.01)
     assert share[0] == 0.2
     assert share[-1] == pytest.approx(0.03 / 0.04, rel=1e-5)
-    early = _share_beyond(np.linspace(0, 0.01, 3), 0.2, 0.03, 0.01)
+    early = share_of_one(np.linspace(0, 0.01, 3), 0.2, 0.03, 0.01)
     assert early[-1] - 0.2 == pytest.approx(0.01 * (0.03 * 0.8 - 0.01 * 0.2), rel=1e-3)
-    into_vacuum = _share_beyond(np.linspace(0, 20, 3), 0.0, 0.03, 0.0)
+    into_vacuum = share_of_one(np.linspace(0, 20, 3), 0.0, 0.03, 0.0)
     assert 1 - into_vacuum == pytest.approx((1 + 0.03 * np.array([0, 10, 20]) / 4) ** -4.0, rel=1e-6)  # as it cools
+
+
+def test_species_share_the_temperature_of_a_chamber():
+    """Two names for equal discs change nothing; a lighter species passes first; all become even."""
+    time, part = np.linspace(0, 2000, 257), np.array([0.75, 0.25])
+    same = share_beyond(time, np.full(2, 0.2), np.full(2, 0.03), np.full(2, 0.01), part)
+    assert same == pytest.approx(
+        np.tile(share_of_one(time, 0.2, 0.03, 0.01), (2, 1)), abs=4e-6
+    )  # of a solver whose steps are exact to 1e-6
+    light, heavy = share_beyond(time, np.zeros(2), np.array([0.02, 0.01]), np.array([0.02, 0.01]), part)
+    assert (light > heavy)[1:50].all()
+    assert (light[-1], heavy[-1]) == pytest.approx((0.5, 0.5), rel=1e-4)
+    assert 1 - 2 * light[1] == pytest.approx((1 - 2 * heavy[1]) ** 2, rel=0.01)  # at nearly one temperature
 
 
 def test_where_the_law_ends():
     assert len(_no_law(1.0, 0.03)) == 0
     assert "mean free paths wide" in _no_law(1.01, 0.03)[0]
     assert "packing fraction" in _no_law(1.0, 0.031)[0]
+
+
+MIXTURE = (
+    SCENE[: SCENE.index("disc = [")]
+    + """
+disc = [
+    { position = [3, 5], velocity = [1, 0], radius = 0.1, species = "small" },
+    { position = [3, 2], velocity = [0, 2], radius = 0.1, species = "small" },
+    { position = [13, 5], velocity = [-1.25, 0], radius = 0.3, mass = 4, species = "large" },
+    { position = [14, 2], velocity = [0, 1], radius = 0.3, mass = 4, species = "large" },
+]
+"""
+)
+
+
+def test_species_pass_in_opposite_directions():
+    """A small disc comes to the slit at t = 5, and a large disc from the other side at t = 4.
+
+    Slits are 1.8 and 1.4 wide for the centres. The small discs have speeds of 3 on the left, then 2; the large discs
+    have speeds of 2.25 on the right, then 1. The gas has an energy of 2.5 + 5.125 and eight degrees of freedom.
+    """
+    text = MIXTURE.replace("[3, 5], velocity = [1, 0]", "[3, 4.5], velocity = [1, 0]").replace("[13, 5]", "[13, 5.3]")
+    result = measured(text)
+    temperature = 2 * (2.5 + 2 * (1.25**2 + 1)) / 8
+    assert result.temperature == pytest.approx(temperature, rel=1e-12)
+    time = np.linspace(1, 9, INSTANTS)
+    factor = math.sqrt(4) * math.gamma(4) / math.gamma(4.5)
+    areas = {r: ((8 - 2 * r) * (10 - 2 * r), (12 - 2 * r) * (10 - 2 * r)) for r in (0.1, 0.3)}
+    speeds = {}
+    for name, r, mass, moment, number, passes in (
+        ("small", 0.1, 1, 5, (3.0, 1.0), 1),
+        ("large", 0.3, 4, 4, (2.25, 1.25), -1),
+    ):
+        flow, passed = result.species[name], time > moment
+        mean_speed = math.sqrt(math.pi * temperature / (2 * mass)) * factor
+        speeds[name] = mean_speed
+        start, other = areas[r] if passes > 0 else areas[r][::-1]
+        there, back = (number[0] - number[1] * passed) / start, number[1] * passed / other
+        drive, both = (np.trapezoid(side, time) / mean_speed for side in (there - back, there + back))
+        slit = 2 - 2 * r
+        assert flow.speed.value == pytest.approx(1 / (slit * drive), rel=1e-12)
+        assert flow.speed.theory == pytest.approx(mean_speed / math.pi, rel=1e-12)
+        error = math.sqrt(mean_speed / math.pi * slit * both) / (slit * drive)
+        assert flow.speed.standard_error == pytest.approx(error, rel=1e-12)
+        assert flow.beyond.tolist() == ((passes < 0) * 2 + passes * passed).tolist()
+        assert flow.density == pytest.approx(2 / start, rel=1e-12)
+    assert (result.speed, result.density) == (result.species["small"].speed, result.species["small"].density)
+    combined = EffusionAnalysis.combine([result])
+    (ratio,) = combined.ratios.values()
+    small, large = (flow.speed for flow in result.species.values())
+    assert list(combined.ratios) == ["large / small"]
+    assert ratio.value == pytest.approx(large.value / small.value, rel=1e-12)
+    assert ratio.theory == pytest.approx(0.5, rel=1e-12)  # Graham
+    assert ratio.standard_error == pytest.approx(
+        math.hypot(large.standard_error, 0.5 * small.standard_error) / small.value
+    )
+    relative = max(speed.theory_error / speed.theory for speed in (small, large))
+    assert ratio.theory_error == pytest.approx(0.5 * relative, rel=1e-12)
+    assert combined.together == {"small": small, "large": large}
+    assert combined.as_dict()["flows"]["large"]["beyond"] == result.species["large"].beyond.tolist()
+    assert "Ratio of the rates large / small: " in combined.summary()
+    assert len(combined.plain_tables()) == 2
+    stored = from_dict(Effusion, json.loads(json.dumps(result.as_dict())))
+    assert json.dumps(stored.as_dict()) == json.dumps(result.as_dict())
+
+
+def test_runs_of_mixtures_are_averaged_by_species():
+    runs = [
+        measured(MIXTURE.replace("[3, 5], vel", f"[{x}, 4.5], vel").replace("[13, 5]", "[13, 5.3]")) for x in (3, 2)
+    ]
+    combined = EffusionAnalysis.combine(runs)
+    for name, speed in combined.together.items():
+        values = [run.species[name].speed.value for run in runs]
+        assert speed.value == pytest.approx(np.mean(values), rel=1e-12)
+        assert (
+            combined.flows[name].beyond.tolist() == np.mean([run.species[name].beyond for run in runs], axis=0).tolist()
+        )
+    assert combined.figure().axes
+
+
+def test_what_species_need():
+    wide = MIXTURE.replace("radius = 0.3", "radius = 1.01")
+    raised("effusion requires a slit wider than a disc", measured, wide)
+    even = MIXTURE.replace("[14, 2], velocity = [0, 1], radius = 0.3", "[3, 8], velocity = [0, 1], radius = 0.3")
+    raised("chambers of unequal density", measured, even.replace("velocity = [-1.25, 0]", "velocity = [0, 1]"))
