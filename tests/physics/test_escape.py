@@ -61,6 +61,21 @@ def test_a_gas_that_cools_as_it_escapes():
     assert result.caveats == ()
 
 
+def test_grahams_law_in_a_mixture_that_cools():
+    """Species of masses 1 and 4: √(1/4), with a part in 1000 from their radii; equal rates are excluded."""
+    heavy = ', { name = "heavy", count = 300, radius = 0.012, temperature = 2, mass = 4 }]'
+    scene = ROUND.format(until=400, count=300, radius=0.006).replace(", mass = 3 }]", " }" + heavy)
+    result = escape_of(scene)
+    for part in (*result.species.values(), result):
+        assert_number_left(part)
+    assert max(abs(part.per_path.deviation) for part in result.species.values()) < 4
+    ratio = result.species["heavy"].ratio
+    assert ratio.theory == pytest.approx(0.5, rel=3e-3)
+    assert abs(ratio.deviation) < 4
+    assert ratio.value < 1 - 5 * math.hypot(ratio.standard_error, ratio.theory_error)
+    assert result.caveats == ()
+
+
 @pytest.mark.usefixtures("uncompiled")
 def test_lengths_and_areas_are_those_of_the_centres():
     """In a circle of radius 5: π (5 - R)² and (5 - R) of the angle of the hole, whose chord is 1."""
