@@ -266,7 +266,7 @@ CASES = {
     ),
     "two chambers, mixture": Case(
         SLIT + species("light", 300, 0.001, region=LEFT) + species("heavy", 300, 0.0015, mass=4, region=LEFT),
-        ("until = 16", "until = 61"),
+        ("until = 16", "until = 31"),
         (of("effusion", "species.*.speed"),),
         steady=False,
         besides=estimates.graham,
