@@ -172,8 +172,10 @@ def test_the_version_to_cite_is_this_one():
 @pytest.mark.slow
 def test_code_of_scenes_runs(folder):
     printed = run_blocks(SCENES, blocks(SCENES))
-    assert len(printed) == 14
+    assert len(printed) == 15
     assert all(text for _, text in printed)
+    (area,) = (text for program, text in printed if "pi * a * b" in program)
+    assert [round(float(number), 5) for number in area.split()] == [25.13286, 25.13274]  # as the comment shows
 
 
 # ── the log ──
