@@ -218,7 +218,7 @@ class Effect(ABC, Generic[State]):
         keys: tuple[Key, ...]
         if self.many:
             tables_and_keys = ((table, (self.key, i)) for i, table in enumerate(tables.table) if table is not None)
-            keys = tuple(getattr(table, "place", key) for table, key in tables_and_keys)
+            keys = tuple(dict.fromkeys(getattr(table, "declared", key) for table, key in tables_and_keys))
         elif self.key:
             keys = ((self.key,),) if tables.table is not None else ()
         else:

@@ -92,8 +92,8 @@ class WallTable(SteppedTable):
             allowed = "[x, y] of the other end, length" if given else "from and to, [x, y] of both ends, or points"
             issue = Issue(((missing[0],),), "missing", "nothing", allowed)
         elif self.points is not None and given:
-            got = f"points and {', '.join(given)}"
-            issue = Issue((("points",),), "two shapes", got, "either points, or from and to")
+            keys = (("points",), *((key,) for key in given))
+            issue = Issue(keys, "two shapes", f"points and {', '.join(given)}", "either points, or from and to")
         elif self.points is not None and len(self.points) < fewest:
             issue = Issue((("points",),), "too few points", str(len(self.points)), f">= {fewest}")
         if issue:
@@ -138,6 +138,8 @@ class WallTable(SteppedTable):
         """Return the path of a key of the table in the scene."""
         return ("wall", self._number, *names)
 
+    declared = property(key)  # path of the table
+
     @property
     def ends_keys(self) -> tuple[Key, ...]:
         """Keys of both ends."""
@@ -146,7 +148,7 @@ class WallTable(SteppedTable):
     @property
     def place(self) -> Key:
         """Key of the wall, which is that of its first point for a piece of a polygonal line."""
-        return self.ends_keys[0] if self._corners else self.key()
+        return self.ends_keys[0] if self._corners else self.declared
 
     @property
     def title(self) -> str:
@@ -219,6 +221,7 @@ class PermanentWall:
     absences = ()
     is_permeable = absorbing = False
     title = property(lambda self: self.name)  # in messages
+    declared = property(lambda self: self.place)
 
     def is_present(self, _: float) -> bool:
         """Whether the wall is present at a time."""

@@ -91,11 +91,10 @@ def as_issues(findings: Sequence[ErrorDetails], model: type[BaseModel]) -> list[
     above = {finding["loc"][:n] for finding in findings for n in range(len(finding["loc"]))}
     issues: list[Issue] = []
     for finding in findings:
-        if finding["type"] == "issues":
-            for issue in finding["ctx"]["issues"]:
-                keys = tuple((*finding["loc"], *key) for key in issue.keys)
-                issues += [issue._replace(keys=keys)]
-        elif finding["type"] != "too_short" or finding["loc"] not in above:
+        kind, loc = finding["type"], finding["loc"]
+        if kind == "issues":
+            issues += [i._replace(keys=tuple((*loc, *key) for key in i.keys)) for i in finding["ctx"]["issues"]]
+        elif kind != "too_short" or loc not in above:
             issues.append(_issue(finding, model))
     return issues
 
