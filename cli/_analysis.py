@@ -11,9 +11,9 @@ from idealgas.analysis import registry
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.files import check_output
 
-from ._options import FILE, force_option, json_option, plot_errors_option, plot_option, quiet_option
+from ._options import FILE, force_option, json_option, plot_errors_option, plot_option, points_option, quiet_option
 from ._progress import progress_bar
-from ._tables import print_tables
+from ._tables import print_tables, write_columns
 from ._terminal import data, echo, written
 
 if TYPE_CHECKING:
@@ -111,6 +111,8 @@ def _common_options(analysis: "type[Analysis]") -> Iterator[Callable]:
         yield click.option(name, variable, type=float, metavar="T", help=words)
     yield plot_option
     yield plot_errors_option
+    if hasattr(analysis.results[0], "rows"):
+        yield points_option
     yield force_option
     yield json_option
     yield quiet_option
@@ -135,20 +137,22 @@ def _analyse(
     as_json: bool,
     as_csv: bool,
     check: bool = False,
+    points: str | None = None,
     **options: Any,
 ) -> None:
     """Analyse logs, and print or draw the result in the requested form."""
     if as_json and as_csv:
         raise UserError("--csv and --json cannot be combined")
     drawn = [path for path in (plot, plot_errors) if path]
-    for path in drawn:
+    files = [path for path in (*drawn, points) if path]
+    for path in files:
         check_output(path, Path(path).suffix.lower(), force, paths)
     try:
         with progress_bar(f"reading {analysis.reads}") as progress:
             results = [result for path in paths for result in _results(analysis, path, start, end, progress, options)]
         result = analysis.combined(results)
     except NotApplicableError as error:
-        if not check or drawn or as_csv:
+        if not check or files or as_csv:
             raise
         from idealgas.analysis.check import CheckResult
 
@@ -169,6 +173,8 @@ def _analyse(
         if missing:
             add_title(figure, ". ".join([*missing.values(), figure.get_suptitle()]))
         save(figure, path, force)
+    if points:
+        write_columns(result.rows(), points, force)
     if as_json:
         unchecked = {"agrees": None} if analysis.is_checked() else {}
         print_json(result.as_dict() | (checked.as_dict() if checked else unchecked))
@@ -187,7 +193,7 @@ def _analyse(
         if checked:
             print_tables(checked.tables())
             echo(f"{checked}", err=not checked.compared)
-    for path in drawn:
+    for path in files:
         written(path, err=as_json or as_csv)
     if checked and checked.compared and not checked.agrees:
         raise SystemExit(1 if checked.agrees is False else 2)

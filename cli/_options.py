@@ -70,18 +70,32 @@ quiet_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables.")
 
 
-def _check_ending(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    if value is not None and not value.lower().endswith(FIGURE_ENDINGS):
-        raise UserError(f"{value}: unknown figure format (allowed {', '.join(FIGURE_ENDINGS)})")
-    return value
+def _output(kind: str, endings: tuple[str, ...]) -> Callable:
+    """Return the callback of an option for the path of a file of this kind, which checks its extension."""
+
+    def check(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+        if value is not None and not value.lower().endswith(endings):
+            raise UserError(f"{value}: unknown {kind} format (allowed {', '.join(endings)})")
+        return value
+
+    return check
 
 
 plot_option = click.option(
-    "--plot", type=FILE, metavar="FILE.png", callback=_check_ending, help="Write a figure (.png, .pdf or .svg)."
+    "--plot", type=FILE, metavar="FILE.png", callback=_output("figure", FIGURE_ENDINGS),
+    help="Write a figure (.png, .pdf or .svg).",
+)  # fmt: skip
+
+points_option = click.option(
+    "--points",
+    type=FILE,
+    metavar="FILE.csv",
+    callback=_output("table", (".csv", ".parquet")),
+    help="Write all data points as a table (.csv or .parquet).",
 )
 
 plot_errors_option = click.option(
-    "--plot-errors", type=FILE, metavar="FILE.png", callback=_check_ending,
+    "--plot-errors", type=FILE, metavar="FILE.png", callback=_output("figure", FIGURE_ENDINGS),
     help="Write a figure of each standard error against the length of the time blocks; slow fluctuations show as a "
     "rise.",
 )  # fmt: skip

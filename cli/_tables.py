@@ -1,13 +1,16 @@
 """Print tables on the terminal without cutting off digits, whatever its width."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from idealgas.errors import plain
+from idealgas.errors import UserError, install, plain
+from idealgas.files import written
 
 from ._terminal import UNBOUNDED, echo, terminal
 
 if TYPE_CHECKING:
+    import numpy as np
     from rich.console import Console, ConsoleOptions
     from rich.segment import Segment
     from rich.text import Text
@@ -30,6 +33,17 @@ def print_tables(tables: "Iterable[Table]") -> None:
             echo(note)
         for part in as_rich(table, width):
             console.print(part)
+
+
+def write_columns(columns: "Mapping[str, np.ndarray]", path: str, force: bool) -> None:
+    """Write columns (n,), by name, to a file with extension .csv or .parquet."""
+    try:
+        from pyarrow import csv, parquet, table
+    except ModuleNotFoundError as error:
+        raise UserError(f"{path} requires {error.name}: {install('export')}") from error
+    kind = Path(path).suffix.lower()
+    with written(path, kind, force) as part:
+        (csv.write_csv if kind == ".csv" else parquet.write_table)(table(dict(columns)), str(part))
 
 
 def shown(text: str) -> "Number":

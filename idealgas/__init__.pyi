@@ -18,6 +18,7 @@ from idealgas.analysis.registry import analyse as analyse
 from idealgas.analysis.registry import combine as combine
 from idealgas.analysis.relaxation import RelaxationAnalysis
 from idealgas.analysis.scattering import ScatteringAnalysis
+from idealgas.analysis.section import SectionAnalysis
 from idealgas.analysis.shear import ShearAnalysis
 from idealgas.analysis.sound import SoundAnalysis
 from idealgas.analysis.temperature import TemperatureAnalysis
@@ -64,6 +65,7 @@ pressure = takes_path(PressureAnalysis.measure)
 profile = takes_path(ProfileAnalysis.measure)
 relaxation = takes_path(RelaxationAnalysis.measure)
 scattering = takes_path(ScatteringAnalysis.measure)
+section = takes_path(SectionAnalysis.measure)
 shear = takes_path(ShearAnalysis.measure)
 sound = takes_path(SoundAnalysis.measure)
 temperature = takes_path(TemperatureAnalysis.measure)

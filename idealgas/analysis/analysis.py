@@ -113,6 +113,7 @@ class Analysis:
         position: rank in the report, lowest first; analyses with equal ranks are in alphabetical order.
         reported_from: lowest packing fraction at which a report includes the analysis.
         headline: name of the main quantity, plotted by default in the figure of a sweep; empty if there is none.
+        on_request: whether a report includes the analysis only if the scene names it in `scene.shows`.
     """
 
     name: ClassVar[str]
@@ -127,6 +128,7 @@ class Analysis:
     position: ClassVar[int] = 1000
     reported_from: ClassVar[float] = 0.0
     headline: ClassVar[str] = ""
+    on_request: ClassVar[bool] = False
 
     measure: ClassVar[Callable[..., Any]]
     """Function measure(log, start, end, progress, **options) that returns the result for one log."""

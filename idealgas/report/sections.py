@@ -37,7 +37,9 @@ class ReportSection:
 def make_sections(log: Log, on_step: Callable[[int, int], None] = lambda done, total: None) -> list[ReportSection]:
     """Return the sections of all analyses in order; on_step(done, total) is called after each section."""
     made = []
-    parts = [(analysis, section) for analysis in registry.analyses() for section in analysis.sections]
+    shown = registry.shown(log.scene)
+    analyses = [each for each in registry.analyses() if not each.on_request or each.key in shown]
+    parts = [(analysis, section) for analysis in analyses for section in analysis.sections]
     for k, (analysis, section) in enumerate(parts):
         try:
             if log.discs.packing_fraction < analysis.reported_from:

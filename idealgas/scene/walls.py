@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from idealgas.columns import FIRST_SEGMENT, SIDES, Point, side_ends
@@ -47,6 +48,13 @@ class NumberedWall(NamedTuple):
     def is_straight(self) -> bool:
         """Whether the wall is neither an arc nor a fixed disc."""
         return not self.radius and self.arc is None
+
+    @property
+    def length(self) -> float:
+        """Length of the wall; for a fixed disc, its circumference."""
+        if self.radius:
+            return 2 * math.pi * self.radius
+        return self.arc.length if self.arc else math.dist(self.start, self.end)
 
     @property
     def points(self) -> list[Point]:

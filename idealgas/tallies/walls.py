@@ -5,7 +5,6 @@ the discs, one radius inside the box. The length is that of the wall itself or, 
 along chambers with discs.
 """
 
-import math
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -215,7 +214,7 @@ class WallGauge:
         absent = np.zeros(len(width))
         for opens, closes in wall.absences:
             absent += np.clip(np.minimum(edges[1:], closes) - np.maximum(edges[:-1], opens), 0.0, None)
-        length = wall.arc.length if wall.arc else math.dist(wall.start, wall.end)
+        length = wall.length
         if k < len(SIDES) and not self.bounded:
             length = Chambers(self._log, float(edges[-1])).length(k)
         return length * (width - absent)

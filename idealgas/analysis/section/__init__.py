@@ -1,0 +1,243 @@
+"""Draw Poincaré sections: hits of walls or crossings of a line, each as a position and the sine of an angle.
+
+For hits of walls, the position is the length along the walls, and the angle is that of reflection. The share of the
+section that the trajectories visit is measured by box counting.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from idealgas.analysis.analysis import Analysis, Option, Section
+from idealgas.analysis.result import Result
+from idealgas.analysis.section.points import POINT, chosen_walls, crossings, hits, line_ends
+from idealgas.errors import UserError
+from idealgas.fields import OMITTED
+from idealgas.log import Log
+from idealgas.presentation.tables import Number, Table, estimates, format_estimate
+from idealgas.statistics.estimates import Estimate
+from idealgas.tallies.stream import ReadProgress, span
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DRAWN, SAMPLED = 20_000, 64
+"""Largest numbers of points in a figure, and of trajectories whose shares are measured."""
+
+PER_BOX, PIXELS = 8, 16
+"""Points per smallest box on average, so that 1 box in 3 000 is missed, and number of pixels along its sides."""
+
+FEWEST, MOST = 512, 100_000
+"""Fewest points from which a share is estimated, and largest number of points that are used."""
+
+FALLING = "Under gravity, the motion does not preserve the areas of position and sine to which shares refer."
+COLLIDING = "Discs collide with each other, so that a point of the section does not determine the next one."
+
+
+@dataclass(frozen=True)
+class PoincareSection(Result):
+    """Poincaré section of the discs in one or more logs; each disc of each log is a trajectory.
+
+    Attributes:
+        kind: "hit these walls", "cross the line", or "hit walls", where walls without points are left out.
+        lengths: lengths of the walls or of the line, by name.
+        number: number of points on each of them.
+        starts: positions at which they start, and the end of the last one, length.
+        discs: number of discs in each log.
+        share: share of the section that all trajectories visit; None if there are too few points.
+        shares: shares that single trajectories visit, at most SAMPLED, in increasing order.
+        never: share of the trajectories without points; None for all walls.
+        points: (n,) POINT, in order of time for each log.
+    """
+
+    kind: str
+    lengths: dict[str, float]
+    number: dict[str, int]
+    starts: np.ndarray
+    discs: tuple[int, ...]
+    share: Estimate | None
+    shares: tuple[Estimate, ...]
+    never: Estimate | None
+    points: Annotated[np.ndarray | None, OMITTED] = None
+
+    def rows(self) -> dict[str, np.ndarray]:
+        """Return the points as columns by name; raise UserError if the result of a sweep contains none."""
+        if self.points is None:
+            raise UserError("section: results of a sweep contain no points; use keep_logs = true and give the logs")
+        wall, columns = self.points["wall"], {name: self.points[name].copy() for name in POINT.names or ()}
+        columns["position"] += self.starts[wall]
+        return columns | {"wall": np.array([*self.lengths])[wall]}
+
+    def plain_tables(self) -> list[Table]:
+        """Return the tables of shares and of walls."""
+        rows = {"section visited by all trajectories": self.share, f"trajectories that never {self.kind}": self.never}
+        if len(self.shares) > 1:
+            for name, k in (("largest", -1), ("median", len(self.shares) // 2)):
+                rows[f"{name} of {len(self.shares)} trajectories"] = self.shares[k]
+        walls = [
+            (name, Number(start), Number(length), Number(self.number[name], ","))
+            for (name, length), start in zip(self.lengths.items(), self.starts.tolist(), strict=False)
+            if self.number[name] or self.never
+        ]
+        notes = [] if self.share else [f"Shares of the section require {FEWEST} points."]
+        shares = estimates("Shares (no unit)", [(name, share) for name, share in rows.items() if share], notes)
+        return [shares, Table("Section", ("", "start (length)", "length", "points"), walls)]
+
+    def summary(self) -> str:
+        """Return the number of points and the shares, for which theory is not available."""
+        visit = f", which visit {format_estimate(self.share)} of the section" if self.share else ""
+        never = f"; {format_estimate(self.never)} of them never {self.kind}" if self.never else ""
+        points = f"{sum(self.number.values()):,} points of {sum(self.discs):,} trajectories"
+        return f"{points}{visit}{never}. Theory is not available."
+
+    def figure(self) -> "Figure":
+        """Draw the sine against the position, in one colour for each disc, or for each log if there are several."""
+        from idealgas.presentation.style import COLOURS, GREY, panels
+
+        figure, (ax,) = panels(1)
+        rows, drawn = self.rows(), sample(sum(self.number.values()), DRAWN)
+        x, y, curve = (rows[name][drawn] for name in ("position", "sine", "log" if len(self.discs) > 1 else "disc"))
+        for k, colour in enumerate(COLOURS):
+            here = curve % len(COLOURS) == k
+            ax.plot(x[here], y[here], ".", color=colour, ms=1 if len(x) > DRAWN / 10 else 2, mew=0, rasterized=True)
+        for start in np.unique(self.starts)[1:-1]:
+            ax.axvline(start, color=GREY, linewidth=0.6)
+        ax.set(xlim=(0, self.starts[-1] or 1.0), ylim=(-1, 1), xlabel="position (length)", ylabel="sine (no unit)")
+        return figure
+
+
+class SectionAnalysis(Analysis):
+    """Poincaré sections."""
+
+    position = 109
+    on_request = True
+    supports_escapes = True
+    results = (PoincareSection,)
+    sections = (Section("Poincaré section", "Sine of the angle of reflection against the position along the walls"),)
+    options = (
+        Option(
+            "walls", str, "Names of the walls, separated by commas. By default, all that discs hit.", metavar="WALLS"
+        ),
+        Option("line", str, "Ends of a line whose crossings are points, instead of hits.", metavar="X0,Y0,X1,Y1"),
+    )
+    start = "the log's start"
+
+    @staticmethod
+    def measure(
+        log: Log, walls: str | None = None, line: str | None = None,
+        start: float | None = None, end: float | None = None, progress: ReadProgress | None = None,
+    ) -> PoincareSection:  # fmt: skip
+        """Record the points at which discs hit walls or cross a line, and the share of the section that they visit.
+
+        Raises:
+            UserError: if walls and a line are chosen, if there is no such wall, or if no disc hits a wall.
+        """
+        log.require_events()
+        if walls is not None and line is not None:
+            raise UserError("section: walls and line cannot be combined")
+        first, last = span(log, start, end)
+        if line is None:
+            kind, chosen = "hit walls" if walls is None else "hit these walls", chosen_walls(log, walls)
+            lengths, batches = {wall.name: wall.length for wall in chosen.values()}, hits(log, chosen, first, last)
+        else:
+            kind, ends = "cross the line", line_ends(line)
+            lengths, batches = {"line": math.dist(*ends)}, crossings(log, ends, first, last)
+        parts, done, rows = [np.empty(0, POINT)], 0, log.row_at(last, "right") - log.row_at(first, "right")
+        for batch, read in batches:
+            parts.append(batch)
+            done += read
+            if progress is not None:
+                progress(min(done, rows), rows)
+        points = np.concatenate(parts)
+        if not len(points) and kind == "hit walls":
+            raise UserError(f"{log.path}: no disc hits a wall between t = {first:g} and {last:g}")
+        collisions = np.ptp(np.interp((first, last), *log.observables["disc_collisions"]))
+        caveats = {FALLING: log.has_gravity, COLLIDING: collisions > len(points) / 100}
+        return _section(kind, lengths, (len(log.discs),), points, *filter(caveats.get, caveats))
+
+    @staticmethod
+    def combine(results: Sequence[PoincareSection]) -> PoincareSection:
+        """Combine the points of several logs; raise UserError if their walls differ."""
+        kind, lengths = results[0].kind, results[0].lengths
+        if any(result.lengths != lengths for result in results):
+            raise UserError("section: the logs have different walls; analyse them separately")
+        if len(results) == 1:
+            return results[0]
+        discs = [result.discs for result in results]
+        points = np.concatenate([result.rows() and result.points for result in results])
+        logs, number = np.cumsum([0, *map(len, discs)])[:-1], [sum(result.number.values()) for result in results]
+        points["log"] += np.repeat(logs, number).astype("u4")
+        return _section(kind, lengths, sum(discs, ()), points)
+
+
+def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarray, *caveats: str) -> PoincareSection:
+    """Return the section that consists of points, with its shares; the other arguments are as in `PoincareSection`."""
+    number = np.bincount(points["wall"], minlength=len(lengths))
+    starts = np.cumsum([0.0, *np.where((number > 0) | (kind != "hit walls"), [*lengths.values()], 0.0)])
+    x, y = (starts[points["wall"]] + points["position"]) / (starts[-1] or 1.0), (1 + points["sine"]) / 2
+    trajectory, total = np.cumsum([0, *discs])[points["log"]] + points["disc"], sum(discs)
+    counts, order = np.bincount(trajectory, minlength=total), np.argsort(trajectory, kind="stable")
+    members, enough = np.split(order, np.cumsum(counts)[:-1]), np.flatnonzero(counts >= FEWEST)
+    measured = [share_visited(x[k], y[k]) for k in (members[t] for t in enough[sample(len(enough), SAMPLED)])]
+    shares = sorted(filter(None, measured), key=lambda share: share.value)
+    never, without = None, int((counts == 0).sum())
+    if kind != "hit walls":  # the standard deviation of the beta distribution, which is never 0
+        error = math.sqrt((without + 1) * (total - without + 1) / (total + 3)) / (total + 2)
+        never = Estimate(without / total, error, math.inf)
+    by_name, share = dict(zip(lengths, number.tolist(), strict=True)), share_visited(x, y)
+    return PoincareSection(kind, lengths, by_name, starts, discs, share, tuple(shares), never, points, caveats=caveats)
+
+
+# ── shares by box counting ──
+
+
+def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
+    """Return the share of the unit square that points (n,) fill; None for fewer than FEWEST points.
+
+    The share v(h) of the boxes of side h that contain points exceeds the area of a region by its boundary times h,
+    which 2 v(h) - v(2h) removes. Boxes of side 2h and 4h are given a fourth and a sixteenth of the points, so that the
+    number of points per box is the same. The error combines the change of the result if h is doubled with the boxes
+    that are missed by chance. If λ independent points are expected in a box at the boundary, the box is missed with a
+    variance of e^-λ (1 - e^-λ). Averaged over λ, this is half the mean of λ e^-λ, the number of boxes with one point.
+    """
+    if len(x) < FEWEST:
+        return None
+    kept = sample(len(x), MOST)
+    n, side = len(kept), int(math.sqrt(len(kept) / PER_BOX)) // 4 * 4 * PIXELS
+    i, j = (np.clip((values[kept] * side).astype(np.int64), 0, side - 1) for values in (x, y))
+    shares, alone = np.zeros(3), np.zeros(n)
+    for k, weight in enumerate((2.0, -1.0, 0.0)):
+        for first in range(subsets := min(4**k, 4)):
+            part = slice(first, None, 4**k)
+            share, gain = _boxes(i[part], j[part], side, PIXELS * 2**k)
+            shares[k] += share / subsets
+            alone[part] += weight * gain / subsets
+    area, coarser = np.maximum(2 * shares[:2] - shares[1:], 1 / n)
+    error = math.sqrt(alone @ alone / 2 + (area - coarser) ** 2 + 1 / n**2)
+    value = area / -math.expm1(-PER_BOX / area)  # with boxes inside the region that are missed
+    return Estimate(min(float(value), 1.0), error, math.inf)
+
+
+def sample(number: int, most: int) -> np.ndarray:
+    """Return the numbers of at most `most` of a number of points, chosen at random, in increasing order."""
+    chosen = np.random.default_rng(0).choice(number, most, replace=False) if number > most else np.arange(number)
+    return np.sort(chosen)
+
+
+def _boxes(i: np.ndarray, j: np.ndarray, side: int, width: int) -> tuple[float, np.ndarray]:
+    """Return the area of boxes that contain points, and the area (n,) of those that contain no other point.
+
+    Boxes are `width` pixels wide and end at the sides of the unit square, which has `side` pixels along each axis. The
+    areas are averages over all positions of the grid of boxes on the pixels, to which the points (i, j) belong.
+    """
+    pixels = np.bincount(i * side + j, minlength=side * side).reshape(side, side)
+    sums = np.pad(pixels, ((width, width - 1),) * 2).cumsum(0).cumsum(1)
+    counts = sums[width:, width:] - sums[:-width, width:] - sums[width:, :-width] + sums[:-width, :-width]
+    low = np.arange(1 - width, side)
+    inside = (np.minimum(low + width, side) - np.maximum(low, 0)) / (side * width)
+    sums = np.pad(np.where(counts == 1, np.outer(inside, inside), 0.0), ((1, 0), (1, 0))).cumsum(0).cumsum(1)
+    alone = sums[i + width, j + width] - sums[i, j + width] - sums[i + width, j] + sums[i, j]
+    return float(inside @ (counts > 0) @ inside), alone
