@@ -52,9 +52,8 @@ class NumberedWall(NamedTuple):
     @property
     def length(self) -> float:
         """Length of the wall; for a fixed disc, its circumference."""
-        if self.radius:
-            return 2 * math.pi * self.radius
-        return self.arc.length if self.arc else math.dist(self.start, self.end)
+        straight = math.dist(self.start, self.end) + 2 * math.pi * self.radius
+        return self.arc.length if self.arc else straight
 
     @property
     def points(self) -> list[Point]:

@@ -24,14 +24,11 @@ from idealgas.tallies.stream import ReadProgress, span
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DRAWN, SAMPLED = 20_000, 64
-"""Largest numbers of points in a figure, and of trajectories whose shares are measured."""
+DRAWN, FEWEST, MOST, SAMPLED = 20_000, 512, 100_000, 64
+"""Most points in a figure, fewest and most points for a share, and most trajectories whose shares are measured."""
 
 PER_BOX, PIXELS = 8, 16
 """Points per smallest box on average, so that 1 box in 3 000 is missed, and number of pixels along its sides."""
-
-FEWEST, MOST = 512, 100_000
-"""Fewest points from which a share is estimated, and largest number of points that are used."""
 
 FALLING = "Under gravity, the motion does not preserve the areas of position and sine to which shares refer."
 COLLIDING = "Discs collide with each other, so that a point of the section does not determine the next one."
@@ -63,11 +60,16 @@ class PoincareSection(Result):
     never: Estimate | None
     points: Annotated[np.ndarray | None, OMITTED] = None
 
-    def rows(self) -> dict[str, np.ndarray]:
-        """Return the points as columns by name; raise UserError if the result of a sweep contains none."""
+    @property
+    def stored(self) -> np.ndarray:
+        """The points; raise UserError for the results of a sweep, which do not contain points."""
         if self.points is None:
             raise UserError("section: results of a sweep contain no points; use keep_logs = true and give the logs")
-        wall, columns = self.points["wall"], {name: self.points[name].copy() for name in POINT.names or ()}
+        return self.points
+
+    def rows(self) -> dict[str, np.ndarray]:
+        """Return the points as columns by name, with names of walls and positions along all walls."""
+        wall, columns = self.stored["wall"], {name: self.stored[name].copy() for name in POINT.names or ()}
         columns["position"] += self.starts[wall]
         return columns | {"wall": np.array([*self.lengths])[wall]}
 
@@ -94,15 +96,18 @@ class PoincareSection(Result):
         return f"{points}{visit}{never}. Theory is not available."
 
     def figure(self) -> "Figure":
-        """Draw the sine against the position, in one colour for each disc, or for each log if there are several."""
+        """Draw the sine against the position for some trajectories, in colours for discs or, if several, for logs."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, (ax,) = panels(1)
-        rows, drawn = self.rows(), sample(sum(self.number.values()), DRAWN)
-        x, y, curve = (rows[name][drawn] for name in ("position", "sine", "log" if len(self.discs) > 1 else "disc"))
+        rows, total = self.rows(), sum(self.discs)
+        trajectories = sample(total, max(DRAWN * total // (len(rows["time"]) or 1), 1))
+        drawn = np.flatnonzero(np.isin(rows["trajectory"], trajectories))
+        drawn = drawn[sample(len(drawn), DRAWN)]
+        x, y, group = (rows[name][drawn] for name in ("position", "sine", "log" if len(self.discs) > 1 else "disc"))
         for k, colour in enumerate(COLOURS):
-            here = curve % len(COLOURS) == k
-            ax.plot(x[here], y[here], ".", color=colour, ms=1 if len(x) > DRAWN / 10 else 2, mew=0, rasterized=True)
+            here, size = group % len(COLOURS) == k, 1.5 if len(x) > DRAWN / 10 else 3.0
+            ax.plot(x[here], y[here], ".", color=colour, ms=size, mew=0, rasterized=True)
         for start in np.unique(self.starts)[1:-1]:
             ax.axvline(start, color=GREY, linewidth=0.6)
         ax.set(xlim=(0, self.starts[-1] or 1.0), ylim=(-1, 1), xlabel="position (length)", ylabel="sine (no unit)")
@@ -118,9 +123,7 @@ class SectionAnalysis(Analysis):
     results = (PoincareSection,)
     sections = (Section("Poincaré section", "Sine of the angle of reflection against the position along the walls"),)
     options = (
-        Option(
-            "walls", str, "Names of the walls, separated by commas. By default, all that discs hit.", metavar="WALLS"
-        ),
+        Option("walls", str, "Names of the walls, separated by commas; by default all walls.", metavar="NAME,..."),
         Option("line", str, "Ends of a line whose crossings are points, instead of hits.", metavar="X0,Y0,X1,Y1"),
     )
     start = "the log's start"
@@ -130,11 +133,7 @@ class SectionAnalysis(Analysis):
         log: Log, walls: str | None = None, line: str | None = None,
         start: float | None = None, end: float | None = None, progress: ReadProgress | None = None,
     ) -> PoincareSection:  # fmt: skip
-        """Record the points at which discs hit walls or cross a line, and the share of the section that they visit.
-
-        Raises:
-            UserError: if walls and a line are chosen, if there is no such wall, or if no disc hits a wall.
-        """
+        """Record the points at which discs hit walls or cross a line, and the share of the section that they visit."""
         log.require_events()
         if walls is not None and line is not None:
             raise UserError("section: walls and line cannot be combined")
@@ -152,8 +151,8 @@ class SectionAnalysis(Analysis):
             if progress is not None:
                 progress(min(done, rows), rows)
         points = np.concatenate(parts)
-        if not len(points) and kind == "hit walls":
-            raise UserError(f"{log.path}: no disc hits a wall between t = {first:g} and {last:g}")
+        points["trajectory"] = points["disc"]
+        points = points[np.argsort(points["time"], kind="stable")]
         collisions = np.ptp(np.interp((first, last), *log.observables["disc_collisions"]))
         caveats = {FALLING: log.has_gravity, COLLIDING: collisions > len(points) / 100}
         return _section(kind, lengths, (len(log.discs),), points, *filter(caveats.get, caveats))
@@ -161,16 +160,15 @@ class SectionAnalysis(Analysis):
     @staticmethod
     def combine(results: Sequence[PoincareSection]) -> PoincareSection:
         """Combine the points of several logs; raise UserError if their walls differ."""
-        kind, lengths = results[0].kind, results[0].lengths
-        if any(result.lengths != lengths for result in results):
+        kind, lengths, parts, discs = results[0].kind, results[0].lengths, list[np.ndarray](), tuple[int, ...]()
+        if any((result.kind, result.lengths) != (kind, lengths) for result in results):
             raise UserError("section: the logs have different walls; analyse them separately")
-        if len(results) == 1:
-            return results[0]
-        discs = [result.discs for result in results]
-        points = np.concatenate([result.rows() and result.points for result in results])
-        logs, number = np.cumsum([0, *map(len, discs)])[:-1], [sum(result.number.values()) for result in results]
-        points["log"] += np.repeat(logs, number).astype("u4")
-        return _section(kind, lengths, sum(discs, ()), points)
+        for result in results if len(results) > 1 else ():
+            parts.append(result.stored.copy())
+            parts[-1]["log"] += len(discs)
+            parts[-1]["trajectory"] += sum(discs)
+            discs += result.discs
+        return _section(kind, lengths, discs, np.concatenate(parts)) if parts else results[0]
 
 
 def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarray, *caveats: str) -> PoincareSection:
@@ -178,20 +176,17 @@ def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarra
     number = np.bincount(points["wall"], minlength=len(lengths))
     starts = np.cumsum([0.0, *np.where((number > 0) | (kind != "hit walls"), [*lengths.values()], 0.0)])
     x, y = (starts[points["wall"]] + points["position"]) / (starts[-1] or 1.0), (1 + points["sine"]) / 2
-    trajectory, total = np.cumsum([0, *discs])[points["log"]] + points["disc"], sum(discs)
-    counts, order = np.bincount(trajectory, minlength=total), np.argsort(trajectory, kind="stable")
+    total, order = sum(discs), np.argsort(points["trajectory"], kind="stable")
+    counts = np.bincount(points["trajectory"], minlength=total)
     members, enough = np.split(order, np.cumsum(counts)[:-1]), np.flatnonzero(counts >= FEWEST)
-    measured = [share_visited(x[k], y[k]) for k in (members[t] for t in enough[sample(len(enough), SAMPLED)])]
-    shares = sorted(filter(None, measured), key=lambda share: share.value)
-    never, without = None, int((counts == 0).sum())
-    if kind != "hit walls":  # the standard deviation of the beta distribution, which is never 0
-        error = math.sqrt((without + 1) * (total - without + 1) / (total + 3)) / (total + 2)
-        never = Estimate(without / total, error, math.inf)
+    enough = enough[sample(len(enough), SAMPLED)] if 2 * len(enough) > total else enough[:0]  # few are not typical
+    shares = filter(None, (share_visited(x[k], y[k]) for k in (members[trajectory] for trajectory in enough)))
+    without = int((counts == 0).sum())
+    error = math.sqrt((without + 1) * (total - without + 1) / (total + 3)) / (total + 2)  # never 0
+    never = Estimate(without / total, error, math.inf) if kind != "hit walls" else None
+    ordered = tuple(sorted(shares, key=lambda share: share.value))
     by_name, share = dict(zip(lengths, number.tolist(), strict=True)), share_visited(x, y)
-    return PoincareSection(kind, lengths, by_name, starts, discs, share, tuple(shares), never, points, caveats=caveats)
-
-
-# ── shares by box counting ──
+    return PoincareSection(kind, lengths, by_name, starts, discs, share, ordered, never, points, caveats=caveats)
 
 
 def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
@@ -216,15 +211,14 @@ def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
             shares[k] += share / subsets
             alone[part] += weight * gain / subsets
     area, coarser = np.maximum(2 * shares[:2] - shares[1:], 1 / n)
-    error = math.sqrt(alone @ alone / 2 + (area - coarser) ** 2 + 1 / n**2)
+    error = math.sqrt(alone @ alone / 2 + (area - coarser) ** 2 / 9 + 1 / n**2)
     value = area / -math.expm1(-PER_BOX / area)  # with boxes inside the region that are missed
     return Estimate(min(float(value), 1.0), error, math.inf)
 
 
 def sample(number: int, most: int) -> np.ndarray:
     """Return the numbers of at most `most` of a number of points, chosen at random, in increasing order."""
-    chosen = np.random.default_rng(0).choice(number, most, replace=False) if number > most else np.arange(number)
-    return np.sort(chosen)
+    return np.sort(np.random.default_rng(0).choice(number, min(number, most), replace=False))
 
 
 def _boxes(i: np.ndarray, j: np.ndarray, side: int, width: int) -> tuple[float, np.ndarray]:

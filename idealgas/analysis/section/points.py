@@ -15,21 +15,25 @@ from idealgas.physics.motion import position_after, velocity_after
 from idealgas.scene.walls import NumberedWall, number_walls
 from idealgas.tallies.impacts import is_wall_hit
 
-POINT = np.dtype("f8, u4, u4, u2, f8, f8, i1")
-POINT.names = ("time", "log", "disc", "wall", "position", "sine", "side")
-"""A point: its time, the numbers of its log, its disc and its wall in the section, its position along the wall
+POINT = np.dtype("f8, u4, u4, u4, u2, f8, f8, i1")
+POINT.names = ("time", "trajectory", "log", "disc", "wall", "position", "sine", "side")
+"""A point: its time, the numbers of its trajectory, log, disc, and wall in the section, its position along the wall
 (length), the sine of its angle, and 1 if the disc moves to the left of the wall's direction, otherwise -1."""
 
 
 def chosen_walls(log: Log, names: str | None) -> dict[int, NumberedWall]:
-    """Return the walls with these names, separated by commas, or else all walls that reflect discs, by number."""
+    """Return the walls or polygonal lines with these names, or else all walls that reflect discs, by number."""
     absent = {k for k, wall in enumerate(log.scene.walls, FIRST_SEGMENT) if wall.absorbing}
     absent |= {k for k in range(FIRST_SEGMENT) if log.periodic[axis_of(k)]}
-    walls = {wall.name: (k, wall) for k, wall in enumerate(number_walls(log.scene)) if k not in absent}
-    chosen = list(walls) if names is None else [name.strip() for name in names.split(",")]
-    if wrong := [name for name in chosen if name not in walls]:
-        raise unknown("reflecting wall", wrong[0], tuple(walls))
-    return dict(walls[name] for name in chosen)
+    walls = {k: wall for k, wall in enumerate(number_walls(log.scene)) if k not in absent}
+    if names is None:
+        return walls
+    lines, chosen = {k: wall.name for k, wall in enumerate(log.scene.walls, FIRST_SEGMENT)}, dict[int, NumberedWall]()
+    for name in (name.strip() for name in names.split(",")):
+        if not (named := {k: wall for k, wall in walls.items() if name in (wall.name, lines.get(k))}):
+            raise unknown("reflecting wall", name, [wall.name for wall in walls.values()])
+        chosen |= named
+    return chosen
 
 
 def hits(log: Log, walls: dict[int, NumberedWall], first: float, last: float) -> Iterator[tuple[np.ndarray, int]]:
@@ -51,10 +55,7 @@ def hits(log: Log, walls: dict[int, NumberedWall], first: float, last: float) ->
 
 
 def place_on(wall: NumberedWall, centres: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the position along a wall (n,), length, and the unit tangent (n, 2) where discs touch it.
-
-    centres: (n, 2), positions of the discs, length. They are made relative to the wall, so that no digits are lost.
-    """
+    """Return the positions (n,) along a wall, length, and its unit tangents (n, 2) where discs at (n, 2) touch it."""
     away, end = centres - wall.start, np.subtract(wall.end, wall.start)
     if wall.radius:
         radial, turn = away, 1.0
@@ -88,11 +89,10 @@ def line_ends(text: str) -> np.ndarray:
 
 
 def crossings(log: Log, ends: np.ndarray, first: float, last: float) -> Iterator[tuple[np.ndarray, int]]:
-    """Yield crossings of a line between two times as POINT, and the number of flights read."""
+    """Yield crossings of a line between two times as POINT, in any order, and the number of flights read."""
     columns = ("disc", "start", "end", "velocity", "position", "end_position")
     for flights in log.flights([first, last], columns=columns):
-        points = np.concatenate([*_crossings(log, flights, ends)])
-        yield points[np.argsort(points["time"], kind="stable")], len(flights.disc)
+        yield np.concatenate([*_crossings(log, flights, ends)]), len(flights.disc)
 
 
 def _crossings(log: Log, flights: Flights, ends: np.ndarray) -> Iterator[np.ndarray]:
