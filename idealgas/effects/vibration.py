@@ -51,10 +51,10 @@ class VibratingSide(Table):
             record.acceleration = record.amplitude * record.omega**2
         return record
 
-    def acceleration(self, times: np.ndarray) -> np.ndarray:
-        """Return the acceleration of the side into the box at times (n,), length/time²."""
+    def motion_at(self, times: np.ndarray) -> np.ndarray:
+        """Return height, velocity and acceleration of the side (3, n) at times (n,), directed into the box."""
         record = self.record
-        return np.array([law.motion_at(record, time)[2] for time in times.tolist()], float)
+        return np.array([law.motion_at(record, time) for time in times.tolist()], float).reshape(-1, 3).T
 
 
 def reach(side: object) -> float:

@@ -114,7 +114,7 @@ class Painter:
         Args:
             scene: the scene.
             gas: the initial state of the discs.
-            pistons: tracks of the pistons.
+            pistons: tracks of the pistons and of vibrating sides.
             rms_speed: approximate largest root-mean-square speed in the film, length/time. Speeds are relative to a
                 conserved motion of the gas as a whole.
             times: start and end of the film.

@@ -1,18 +1,28 @@
-"""Position of a piston as a function of time: known at hits and samples, and a parabola in between."""
+"""Positions of pistons and vibrating sides as functions of time.
+
+The position of a piston is known at hits and samples, and a parabola in between. A vibrating side is drawn on straight
+lines between positions that are computed.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from idealgas.columns import Kind
+from idealgas.columns import Kind, axis_of, is_upper
 from idealgas.log import Log
-from idealgas.scene import Scene
+from idealgas.scene import Scene, VibratingSide
 from idealgas.tallies.chambers import piston_names
+
+STEPS = 32
+"""Number of computed positions of a vibrating side per period."""
+
+MOST_PERIODS = 2048
+"""Largest number of periods in a film; a side that vibrates more often moves too fast to be seen and is not drawn."""
 
 
 @dataclass(frozen=True)
 class PistonTrack:
-    """Motion of a piston.
+    """Motion of a piston or of a vibrating side.
 
     Attributes:
         axis: 0 for x, 1 for y.
@@ -21,7 +31,7 @@ class PistonTrack:
         pull: (K,), acceleration after these times, length/time².
         limits: smallest and largest position, length.
         outward: +1 if the gas is on the lower side of the piston along this axis, -1 if it is on the upper side, 0 if
-            it is on both sides.
+            it is on both sides, and for a vibrating side.
         name: name shown in pictures.
     """
 
@@ -43,9 +53,22 @@ class PistonTrack:
 
 
 def piston_tracks(log: Log, start: float, end: float) -> list[PistonTrack]:
-    """Return the tracks, between two times, of all pistons whose positions are known."""
-    tracks = (_track(log, k, start, end) for k in range(len(log.scene.piston)))
+    """Return the tracks, between two times, of all pistons whose positions are known, and of vibrating sides."""
+    tracks = [_track(log, k, start, end) for k in range(len(log.scene.piston))]
+    tracks += [_side_track(log.scene, number, start, end) for number in range(len(log.scene.box.sides))]
     return [track for track in tracks if track is not None]
+
+
+def _side_track(scene: Scene, number: int, start: float, end: float) -> PistonTrack | None:
+    """Return the track of a side of the box between two times; None if it does not vibrate, or too fast."""
+    side, axis = scene.box.sides[number], axis_of(number)
+    if not isinstance(side, VibratingSide) or (end - start) * side.vibrating.frequency > MOST_PERIODS:
+        return None
+    length, step = scene.box.size[axis], 1 / (side.vibrating.frequency * STEPS)
+    steps = np.arange(int(start / step), int(end / step) + 2)
+    heights = side.motion_at(np.arange(STEPS) * step)[0, steps % STEPS]
+    place = length - heights if is_upper(number) else heights
+    return PistonTrack(axis, steps * step, place, np.zeros(len(steps)), (0.0, length), 0.0, "")
 
 
 def pistons_at_start(scene: Scene) -> list[PistonTrack]:

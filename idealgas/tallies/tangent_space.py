@@ -136,7 +136,7 @@ class Bodies:
         acceleration = self._log.gravity_at(flights.start[hits]) - self._acceleration[wall]
         for k, side in self._vibrating:
             at = np.flatnonzero(wall == k)
-            acceleration[at] -= side.acceleration(time[at])[:, None] * normal[at]
+            acceleration[at] -= side.motion_at(time[at])[2, :, None] * normal[at]
         pull = (acceleration * normal).sum(axis=1)
         contacts = Contacts(i, j, time, share_i, ratio * share_i, normal, curvature, velocity, pull)
         for k in np.unique(j[ratio > 0]):

@@ -4,6 +4,7 @@ import pytest
 from helpers.logs import gas, log_of
 
 from idealgas.movie.piston_track import piston_tracks
+from idealgas.physics.vibration import motion_at
 
 GAS = gas(50, 0.1, (20, 10), "until = 40")
 PISTONS = {
@@ -25,6 +26,23 @@ def test_it_is_where_the_engine_has_it(name):
         assert track.at(time) == pytest.approx(expected, rel=1e-12)
         if time > 7:
             assert part.at(time) == track.at(time)
+
+
+@pytest.mark.parametrize("motion", ["parabolas", "sine"])
+def test_vibrating_sides_are_where_the_engine_has_them(motion):
+    """Within what straight lines between 32 positions a period leave out, A ω² dt²/8; not if they are too fast."""
+    side = f'{{ vibrating = {{ amplitude = 0.5, frequency = 0.3, motion = "{motion}" }} }}'
+    log = log_of(f"box.top = {side}\nbox.left = {side}\n" + GAS, "run.until=1")
+    left, top = piston_tracks(log, 7.0, 120.0)
+    record = log.scene.box.top.record
+    assert (left.axis, top.axis) == (0, 1)
+    for time in (7.0, 8.123, 77.7, 120.0):
+        height = motion_at(record, time)[0]
+        missing = record.acceleration * (2 * record.half / 32) ** 2 / 8
+        assert (left.at(time), 10 - top.at(time)) == pytest.approx((height, height), abs=1.001 * missing)
+    assert left.at(2 / 0.3) < 1e-12
+    assert left.at(8.5 / 0.3) == pytest.approx(1.0, rel=1e-12)
+    assert piston_tracks(log, 0.0, 1e4) == []
 
 
 def test_no_piston_no_track():
