@@ -140,7 +140,7 @@ def move_to_cell(record, state, i, shear):
 
 
 @inline
-def cross_cell(record, state, i, crossing_code, periodic):
+def cross_cell(record, state, i, crossing_code, periodic, noninteracting):
     """Move disc i from its cell's list to the list of the next cell; crossing_code: direction (see PREDICTION).
 
     A disc that crosses a periodic side enters the cell at the opposite side, and the crossing is counted.
@@ -148,7 +148,8 @@ def cross_cell(record, state, i, crossing_code, periodic):
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     link = cells.link[U(i)]
-    leave(cells, i)
+    if noninteracting is None:  # otherwise nobody reads the lists
+        leave(cells, i)
     forward = 1 if crossing_code & 1 else -1
     upwards = forward if crossing_code >= 2 else 0
     link.row += upwards
@@ -160,4 +161,5 @@ def cross_cell(record, state, i, crossing_code, periodic):
         if (link.column < 1) | (link.column > cells.columns - 2):
             link.column -= forward * (cells.columns - 2)
             disc.crossed_x += np.int16(forward)
-    enter(cells, i)
+    if noninteracting is None:
+        enter(cells, i)

@@ -224,11 +224,11 @@ def advance_events(discs, state, effects, limits, epoch_start, batch, counters, 
         at_contact = contact_is_next(prediction, ids, i)
         time = prediction.contact if at_contact else prediction.crossing
         remove(state.tree, state.prediction, ids, i)
-        prefetch_next(state.pipeline, record, state, i)
+        prefetch_next(state.pipeline, record, state, i, effects.noninteracting)
         # 4. A crossing into another cell does not change the position, velocity and time of a record.
         if not at_contact and prediction.crossing_code < SIDE_OF_BOX:
             change = np.int64(prediction.crossing_code)
-            cross_cell(record, state, i, change, effects.periodic)
+            cross_cell(record, state, i, change, effects.periodic, effects.noninteracting)
             continue
         # 5. The event of a pair is also removed from the partner's leaf. Stale contacts of pistons are found in step 7.
         of_piston = i >= record.shape[0]

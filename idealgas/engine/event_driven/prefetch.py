@@ -105,13 +105,14 @@ def fetch_candidates(cells, record, i, prediction):
 
 
 @inline
-def prefetch_next(pipeline, record, state, i):
+def prefetch_next(pipeline, record, state, i, noninteracting):
     """Fetch memory for the new first disc of the branch from which disc i was removed, and for the two discs before."""
     if pipeline is not None:
         third, second = pipeline[0], pipeline[1]
         first = min(first_of_part(state.tree, pipeline[2], i), record.shape[0] - 1)  # it may be a piston's leaf
         pipeline[0], pipeline[1] = second, first
         fetch_disc(state.tree, record, state, first)
-        fetch_cells(state.cells, second)
-        fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))
-        fetch_candidates(state.cells, record, third, state.prediction[U(third)])
+        if noninteracting is None:
+            fetch_cells(state.cells, second)
+            fetch_disc(state.tree, record, state, max(np.int64(state.prediction[U(second)].partner), np.int64(0)))
+            fetch_candidates(state.cells, record, third, state.prediction[U(third)])

@@ -108,7 +108,7 @@ def test_a_disc_crosses_into_the_next_cell(code, start, end, crossed):
     link.column, link.row = start
     enter(cells, 3)
     record[3].crossed_x = record[3].crossed_y = 0
-    cross_cell(record, state, 3, code, sides)
+    cross_cell(record, state, 3, code, sides, None)
     assert (link.column, link.row) == end
     assert (record[3].crossed_x, record[3].crossed_y) == crossed
     assert np.flatnonzero(cells.head >= 0).tolist() == [end[1] * 7 + end[0]]
