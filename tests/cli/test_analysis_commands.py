@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 from helpers.commands import GAS, PLOTTED, listing
 from helpers.support import called, error_of, output_of
+from pyarrow import parquet
+
+from idealgas import open_log
 
 QUANTITIES = ("vx", "vy", "energy", "free-path", "free-time", "waiting-time", "impact-parameter", "collisions")
 COMMANDS = [("info",), *((name,) for name in PLOTTED), *(("histogram", "--quantity", name) for name in QUANTITIES)]
@@ -78,6 +81,28 @@ def test_errors_against_the_length_of_blocks(folder, path, tmp_path):
     assert (tmp_path / "errors.png").read_bytes().startswith(b"\x89PNG")
     refused = error_of("pressure", path, "--plot-errors", "errors.png", folder=tmp_path)
     assert refused == "errors.png: already exists (use --force to overwrite)\n"
+
+
+def test_points_of_a_section_as_a_table(path, tmp_path):
+    for name in ("points.csv", "points.parquet"):
+        output_of("section", path, "--to", 20, "--points", name, folder=tmp_path)
+    text = (tmp_path / "points.csv").read_text(encoding="utf-8")
+    rows, table = list(csv.DictReader(text.splitlines())), parquet.read_table(tmp_path / "points.parquet").to_pydict()
+    assert [*table] == ["time", "trajectory", "log", "disc", "wall", "position", "sine", "side"]
+    with open_log(path) as log:
+        hits = [row for chunk in log.events(t1=20) for row in zip(*chunk[:4], strict=True) if row[3] == 1]
+    assert [row[0] for row in hits] == table["time"]
+    assert [row[1] for row in hits] == table["disc"]
+    assert [("left", "right", "bottom", "top")[-1 - row[2]] for row in hits] == table["wall"]
+    for name, values in table.items():
+        assert [type(values[0])(row[name]) for row in rows] == values
+    result = json.loads(output_of("section", path, "--to", 20, "--json"))
+    assert sum(result["number"].values()) == len(rows)
+    assert "points" not in result
+    refused = error_of("section", path, "--points", "points.csv", folder=tmp_path)
+    assert refused == "points.csv: already exists (use --force to overwrite)\n"
+    refused = error_of("section", path, "--points", "points.txt", folder=tmp_path)
+    assert refused == "points.txt: unknown table format (allowed .csv, .parquet)\n"
 
 
 def test_seed_and_window(path):

@@ -47,6 +47,28 @@ def test_the_section_of_a_round_box():
     assert advance == pytest.approx(5 * 2 * math.acos(1.6 / 4.5), abs=1e-11)
 
 
+@pytest.mark.slow
+def test_the_two_kinds_of_motion_in_the_mushroom():
+    """Discs in the cap whose paths pass its centre at p > r never hit the stem and keep |sine| = p/R > 1/2; others
+    never reach 1/2, and almost all of them enter the stem. The centres reach the brims only within the radius 1e-8 of
+    a disc, so that p may change by twice as much at every hit."""
+    log = log_of("mushroom", "species.starts.count=1000", "run.until=200")
+    (x, y), (vx, vy) = (log.discs.position - (2.5, 2)).T, log.discs.velocity.T
+    momentum = np.abs(x * vy - y * vx)
+    regular = (y > 0) & (momentum > 1)
+    stem, cap = section(log, walls="stem"), section(log, walls="cap").points
+    entered = np.isin(np.arange(1000), stem.points["disc"])
+    assert not (entered & regular).any()
+    assert (~entered & ~regular).sum() < 10
+    assert stem.never.value == (~entered).mean()
+    share = (4 * math.acos(1 / 2) - math.sqrt(3)) / (2 * math.pi + 3)
+    assert share == pytest.approx(0.26464, abs=1e-5)
+    assert abs(regular.mean() - share) < 4 * math.sqrt(share * (1 - share) / 1000)
+    sine, disc = np.abs(cap["sine"]), cap["disc"]
+    assert sine[~regular[disc]].max() < 0.5
+    assert np.abs(sine - momentum[disc] / 2)[regular[disc]].max() < 2e-8 * 200
+
+
 @pytest.fixture(scope="module")
 def stadium():
     return log_of("stadium")

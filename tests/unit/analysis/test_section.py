@@ -8,7 +8,10 @@ import pytest
 from helpers.logs import log_of, raised
 
 from idealgas import combine, section
-from idealgas.analysis.section import FALLING, share_visited
+from idealgas.analysis import registry
+from idealgas.analysis.section import FALLING, SectionAnalysis, share_visited
+from idealgas.report.picture import html_pictures
+from idealgas.report.sections import make_sections
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
@@ -207,6 +210,29 @@ def test_several_logs_are_one_section():
     assert "points" not in json.loads(json.dumps(both.as_dict()))
     other = section(log_of(BOX.replace("[4, 3]", "[4, 5]")))
     raised("different walls", combine, [results[0], other])
+
+
+def test_what_is_refused():
+    log = log_of(BOX)
+    raised('unknown reflecting wall, did you mean "left"', section, log, walls="lft")
+    raised("walls and line cannot be combined", section, log, walls="left", line="0,0,1,1")
+    for line in ("0,0,1", "a,b,c,d", "1,1,1,1", "0,0,inf,1", ""):
+        raised("line: not a line", section, log, line=line)
+    hole = BOX + 'wall = [{ name = "hole", from = [3, 1], to = [3, 2], absorbing = true }]\n'
+    raised("unknown reflecting wall", section, log_of(hole.replace("run", "\nrun")), walls="hole")
+    stored = SectionAnalysis.restored(section(log).as_dict(), section(log).origin)
+    assert str(stored) == str(section(log))
+    raised("results of a sweep contain no points", stored.rows)
+    raised("results of a sweep contain no points", combine, [stored, stored])
+
+
+def test_a_report_contains_it_only_if_the_scene_asks_for_it(monkeypatch):
+    monkeypatch.setattr(registry, "analyses", lambda: (SectionAnalysis,))
+    assert make_sections(log_of(BOX)) == []
+    (shown,) = make_sections(log_of(BOX, 'scene.shows=["section"]'))
+    assert (shown.title, shown.left_out) == ("Poincaré section", None)
+    assert shown.words.startswith("65 points of 1 trajectories")
+    assert len(html_pictures(shown.picture, shown.caption, "p")) < 30_000
 
 
 def region(kind, points, rng):
