@@ -92,8 +92,8 @@ class PoincareSection(Result):
         """Return the number of points and the shares, for which theory is not available."""
         visit = f", which visit {format_estimate(self.share)} of the section" if self.share else ""
         never = f"; {format_estimate(self.never)} of them never {self.kind}" if self.never else ""
-        points = f"{sum(self.number.values()):,} points of {sum(self.discs):,} trajectories"
-        return f"{points}{visit}{never}. Theory is not available."
+        whose = f"{sum(self.discs):,} {'trajectory' if sum(self.discs) == 1 else 'trajectories'}"
+        return f"{sum(self.number.values()):,} points of {whose}{visit}{never}. Theory is not available."
 
     def figure(self) -> "Figure":
         """Draw the sine against the position for some trajectories, in colours for discs or, if several, for logs."""

@@ -9,7 +9,8 @@ from helpers.logs import log_of, raised
 
 from idealgas import combine, section
 from idealgas.analysis import registry
-from idealgas.analysis.section import FALLING, SectionAnalysis, share_visited
+from idealgas.analysis.section import FALLING, PoincareSection, SectionAnalysis, share_visited
+from idealgas.analysis.section.points import POINT
 from idealgas.report.picture import html_pictures
 from idealgas.report.sections import make_sections
 
@@ -231,8 +232,21 @@ def test_a_report_contains_it_only_if_the_scene_asks_for_it(monkeypatch):
     assert make_sections(log_of(BOX)) == []
     (shown,) = make_sections(log_of(BOX, 'scene.shows=["section"]'))
     assert (shown.title, shown.left_out) == ("Poincaré section", None)
-    assert shown.words.startswith("65 points of 1 trajectories")
+    assert shown.words == "49 points of 1 trajectory. Theory is not available."
     assert len(html_pictures(shown.picture, shown.caption, "p")) < 30_000
+
+
+def test_a_figure_of_many_points_is_thinned_by_trajectories():
+    points = np.zeros(100_000, POINT)
+    points["trajectory"] = points["disc"] = np.arange(100_000) % 1000
+    points["position"], points["sine"] = np.random.default_rng(1).uniform(-1, 1, (2, 100_000))
+    figure = PoincareSection(
+        "hit walls", {"a": 1.0}, {"a": 100_000}, np.array([0.0, 1.0]), (1000,), None, (), None, points
+    )
+    drawn = [line.get_xdata() for line in figure.figure().axes[0].lines]
+    assert sum(map(len, drawn)) == 20_000
+    assert np.isin(points["position"], np.concatenate(drawn)).reshape(100, 1000).sum(axis=0).max() == 100
+    assert len(html_pictures(figure.figure(), "", "p")) < 400_000
 
 
 def region(kind, points, rng):
