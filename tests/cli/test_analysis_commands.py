@@ -88,7 +88,7 @@ def test_points_of_a_section_as_a_table(path, tmp_path):
         output_of("section", path, "--to", 20, "--points", name, folder=tmp_path)
     text = (tmp_path / "points.csv").read_text(encoding="utf-8")
     rows, table = list(csv.DictReader(text.splitlines())), parquet.read_table(tmp_path / "points.parquet").to_pydict()
-    assert [*table] == ["time", "trajectory", "log", "disc", "wall", "position", "sine", "side"]
+    assert [*table] == ["time", "disc", "log", "trajectory", "wall", "position", "sine", "side"]
     with open_log(path) as log:
         hits = [row for chunk in log.events(t1=20) for row in zip(*chunk[:4], strict=True) if row[3] == 1]
     assert [row[0] for row in hits] == table["time"]
@@ -99,6 +99,8 @@ def test_points_of_a_section_as_a_table(path, tmp_path):
     result = json.loads(output_of("section", path, "--to", 20, "--json"))
     assert sum(result["number"].values()) == len(rows)
     assert "points" not in result
+    output_of("section", path, "--points", "points.csv", "--force", folder=tmp_path)
+    assert len((tmp_path / "points.csv").read_text(encoding="utf-8")) > len(text)
     refused = error_of("section", path, "--points", "points.csv", folder=tmp_path)
     assert refused == "points.csv: already exists (use --force to overwrite)\n"
     refused = error_of("section", path, "--points", "points.txt", folder=tmp_path)

@@ -16,8 +16,8 @@ from idealgas.scene.walls import NumberedWall, number_walls
 from idealgas.tallies.impacts import is_wall_hit
 
 POINT = np.dtype("f8, u4, u4, u4, u2, f8, f8, i1")
-POINT.names = ("time", "trajectory", "log", "disc", "wall", "position", "sine", "side")
-"""A point: its time, the numbers of its trajectory, log, disc, and wall in the section, its position along the wall
+POINT.names = ("time", "disc", "log", "trajectory", "wall", "position", "sine", "side")
+"""A point: its time, the numbers of its disc, log, trajectory, and wall in the section, its position along the wall
 (length), the sine of its angle, and 1 if the disc moves to the left of the wall's direction, otherwise -1."""
 
 
