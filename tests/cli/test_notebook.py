@@ -54,8 +54,8 @@ def test_a_lesson_runs_and_its_physics_holds(path, tmp_path):
     assert printed(outputs).endswith("all checks hold\n")
 
 
-def test_six_lessons_have_predictions_checks_questions_and_changes():
-    assert len(LESSONS) == 6
+def test_seven_lessons_have_predictions_checks_questions_and_changes():
+    assert len(LESSONS) == 7
     for path in LESSONS:
         text = path.read_text(encoding="utf-8")
         for words in ("45 minutes", "Predict first", "**Expected**", "## Check", "## Questions", "## What to change"):
