@@ -192,7 +192,7 @@ class LyapunovAnalysis(Analysis):
         rows, total, before = [], np.zeros((bodies.systems, exponents)), bodies.mass
         for k, step in enumerate(_steps(log, window, bodies, exponents, progress), 1 - ALIGNMENT):
             if k == 0:
-                before = step.met.copy()
+                before = step.met
             elif k > 0:
                 total += step.growth
             rows.append((step.time, step.growth.mean(axis=0), step.localisation, step.met.sum(), step.hits))
@@ -237,7 +237,7 @@ class _Step(NamedTuple):
         time: time.
         growth: (S, K), logarithm of the factor by which each of K deviations of each of S independent systems grew.
         localisation: that of the leading deviation, see `Lyapunov`.
-        met: (N,), number of collisions of each disc since the start of the window; valid until the next step.
+        met: (N,), number of collisions of each disc since the start of the window.
         hits: number of these that were with walls or pistons.
     """
 
@@ -251,12 +251,13 @@ class _Step(NamedTuple):
 def _steps(log: Log, window: Window, bodies: Bodies, exponents: int, progress: ReadProgress | None) -> Iterator[_Step]:
     """Propagate deviations, and orthogonalise those of each independent system at the end of each interval."""
     number, systems, free, moving = len(log.discs), bodies.systems, bodies.free, len(bodies.mass) - 1
-    start = np.zeros((4 * moving // systems, exponents))
-    if exponents == len(free):  # conjugate pairs stay conjugate, so that their exponents are ±λ in each interval
-        positions, velocities = np.split(free, 2)
-        start[[*positions, *velocities[::-1]], range(exponents)] = 1.0
+    start, random = np.zeros((4 * moving // systems, exponents)), np.random.default_rng(0)
+    half = len(free) // 2
+    if exponents == 2 * half:  # conjugate pairs stay conjugate, so that their exponents are ±λ in each interval
+        axes = np.linalg.qr(random.normal(size=(half, half)))[0]
+        start[free[:half], :half], start[free[half:], half:] = axes, axes[:, ::-1]
     else:
-        start[np.sort(free)] = np.linalg.qr(np.random.default_rng(0).normal(size=(len(free), exponents)))[0]
+        start[free] = np.linalg.qr(random.normal(size=(len(free), exponents)))[0]
     weight = np.repeat(np.sqrt(bodies.mass[:-1]), 4).reshape(systems, -1, 1)
     values = np.zeros((moving + 1, 4, exponents))
     values[:-1] = (start / weight).reshape(moving, 4, exponents)
@@ -268,6 +269,7 @@ def _steps(log: Log, window: Window, bodies: Bodies, exponents: int, progress: R
             shares = (q[0, :, 0] ** 2).reshape(-1, 4).sum(axis=1)
             shares = shares[shares > 0]
             localisation = math.exp(-float(shares @ np.log(shares))) / number
-            yield _Step(now, growth, localisation, followed.collisions[:number], followed.collisions[number:].sum())
+            met, hits = np.split(followed.collisions, [number])
+            yield _Step(now, growth, localisation, met.copy(), hits.sum())
             followed.values[:-1] = (q / weight).reshape(moving, 4, exponents)
             begun = now
