@@ -238,6 +238,16 @@ def torus_of(radius, count, hits, seed=1):
     return f"scene.seed = {seed}\n{TORUS}interactions.discs = false\nrun.until = {until!r}\n{disc}{points}"
 
 
+@pytest.mark.usefixtures("uncompiled")
+def test_many_independent_discs():
+    """Errors come from the discs; events, growth and time end at the same moment, although the log goes on."""
+    result = idealgas.lyapunov(log_of(torus_of(0.2, 24, 70)), start=0.0)
+    assert result.per_collision.value == pytest.approx(result.exponents[0].value * result.mean_free_time, rel=1e-12)
+    assert 10 < result.exponents[0].independent_samples <= 24
+    assert result.time[-1] < result.window.duration
+    assert any("means over 24 independent discs" in note for note in result.plain_tables()[0].notes)
+
+
 @pytest.mark.slow
 def test_lorentz_gas_with_small_scatterers():
     """The exponent per collision tends to -2 ln R + 1 - 4 ln 2 + 27 ζ(3)/(2π²), with a correction O(R ln² R).
