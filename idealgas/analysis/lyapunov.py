@@ -204,10 +204,11 @@ class LyapunovAnalysis(Analysis):
         growth, durations, events = logs[1:], np.diff(time), np.diff(met) / number
         duration, met, hits = time[-1] - time[0], met[-1] - met[0], hits[-1] - hits[0]
         free_time = number * duration / (met - hits or met)
-        series = growth[:, 0].cumsum()
+        series, average = growth[:, 0].cumsum(), ratio
         if bodies.systems >= ENOUGH_REPLICATES:  # each disc is a sample of its own
             growth, durations, events = total, np.full(number, duration), step.met - before
-        spectrum = tuple(ratio(growth[:, k], durations) for k in range(exponents))
+            average = _ratio_of_discs
+        spectrum = tuple(average(growth[:, k], durations) for k in range(exponents))
         values = np.array([estimate.value for estimate in spectrum])
         keeps_energy = not (gas.driven or gas.vibrates or gas.varies)
         zeros = 2 * (keeps_energy + sum(gas.conserves_momentum)) if gas.elastic else 0
@@ -217,17 +218,24 @@ class LyapunovAnalysis(Analysis):
             window,
             number,
             spectrum,
-            ratio(growth[:, 0], events),
+            average(growth[:, 0], events),
             free_time,
             spectrum[0].times(free_time / math.log(10)),
             mean(shares[1:]) if bodies.systems < number else None,
-            ratio(np.where(values > 0, growth, 0.0).sum(axis=1), durations) if whole else None,
+            average(np.where(values > 0, growth, 0.0).sum(axis=1), durations) if whole else None,
             float(np.abs(values + values[::-1]).max()) if whole and gas.elastic else None,
             zeros,
             float(np.abs(middle).max()) if whole and zeros else None,
             np.diff(time).cumsum(),
             series,
         )
+
+
+def _ratio_of_discs(numerator: np.ndarray, denominator: np.ndarray) -> Estimate:
+    """Return the ratio of the means of two quantities (N,) over N independent discs."""
+    value, number = numerator.sum() / denominator.sum(), len(numerator)
+    scatter = np.std(numerator - value * denominator, ddof=1) / denominator.mean()
+    return Estimate(float(value), float(scatter) / math.sqrt(number), float(number))
 
 
 class _Step(NamedTuple):
