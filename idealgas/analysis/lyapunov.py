@@ -184,10 +184,8 @@ class LyapunovAnalysis(Analysis):
         if exponents > dimension:
             who = "each disc has" if bodies.systems > 1 else f"{number} discs have"
             raise UserError(f"exponents: {who} {dimension} (got {exponents})")
-        if 4 * len(bodies.mass) * exponents > MOST_NUMBERS:
-            raise UserError(
-                f"exponents: at most {MOST_NUMBERS // (4 * len(bodies.mass))} of {number} discs (got {exponents})"
-            )
+        if exponents > (most := MOST_NUMBERS // (4 * len(bodies.mass))):
+            raise UserError(f"exponents: at most {most} of {number} discs (got {exponents})")
         window = measure(log, [], start, end)
         rows, total, before = [], np.zeros((bodies.systems, exponents)), bodies.mass
         for k, step in enumerate(_steps(log, window, bodies, exponents, progress), 1 - ALIGNMENT):
@@ -212,8 +210,7 @@ class LyapunovAnalysis(Analysis):
         values = np.array([estimate.value for estimate in spectrum])
         keeps_energy = not (gas.driven or gas.vibrates or gas.varies)
         zeros = 2 * (keeps_energy + sum(gas.conserves_momentum)) if gas.elastic else 0
-        whole = exponents == dimension
-        middle = values[(dimension - zeros) // 2 : (dimension + zeros) // 2]
+        whole, middle = exponents == dimension, values[(dimension - zeros) // 2 : (dimension + zeros) // 2]
         return Lyapunov(
             window,
             number,

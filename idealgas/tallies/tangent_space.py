@@ -70,8 +70,7 @@ class Bodies:
         self.mass = np.array([*log.discs.mass, *(piston.mass for _, piston in heavy), math.inf])
         self._body_of_wall = np.full(len(walls), len(self.mass) - 1)
         self._body_of_wall[[wall for wall, _ in heavy]] = range(number, number + len(heavy))
-        apart = not (log.scene.properties.interacting or heavy)
-        self.systems = number if apart else 1
+        self.systems = 1 if log.scene.properties.interacting or heavy else number
         positions = [4 * i + axis for i in range(number // self.systems) for axis in (0, 1)]
         positions += [4 * (number + k) + piston.axis for k, (_, piston) in enumerate(heavy)]
         self.free = np.array([*positions, *(each + 2 for each in positions)])
@@ -93,7 +92,7 @@ class Bodies:
         assert flights.end_position is not None
         changed = (flights.kind == Kind.STEERED) & (flights.new_velocity != flights.end_velocity).any(axis=1)
         if changed.any():
-            raise self._refusal(f"a program changes velocities at t = {flights.end[changed][0]:g}")
+            raise _refusal(self._log, f"a program changes velocities at t = {flights.end[changed][0]:g}")
         pairs = np.flatnonzero(flights.kind == Kind.DISC)[::2]
         hits = np.flatnonzero(is_wall_hit(flights.kind))
         parts = zip(self._collisions(flights, pairs), self._hits(flights, hits), strict=True)
@@ -101,7 +100,9 @@ class Bodies:
         contacts = Contacts(*(np.concatenate(part)[order] for part in parts))
         if (grazing := (contacts.normal * contacts.velocity).sum(axis=1) == 0.0).any():
             k = int(grazing.argmax())
-            raise self._refusal(f"disc {contacts.i[k]} touches another body at t = {contacts.time[k]:g} at speed 0")
+            raise _refusal(
+                self._log, f"disc {contacts.i[k]} touches another body at t = {contacts.time[k]:g} at speed 0"
+            )
         return contacts
 
     def _factor(self, which: int, durations: np.ndarray) -> np.ndarray:
@@ -112,22 +113,20 @@ class Bodies:
         """Return the collisions of two discs, whose flights are `first` and the next ones."""
         assert flights.end_position is not None
         i, j, mass = flights.disc[first], flights.disc[first + 1], self.mass
-        apart = flights.end_position[first] - flights.end_position[first + 1]
-        box = np.array(self._log.box)
+        apart, box = flights.end_position[first] - flights.end_position[first + 1], np.array(self._log.box)
         apart -= np.where(self._log.periodic, box, 0.0) * np.rint(apart / box)
         curvature = 1.0 / np.hypot(*apart.T)
         durations = flights.end - flights.start
         factor = self._factor(0, np.minimum(durations[first], durations[first + 1]))
         share_i, share_j = (factor * mass[other] / (mass[i] + mass[j]) for other in (j, i))
-        velocity = flights.end_velocity[first] - flights.end_velocity[first + 1]
-        normal = apart * curvature[:, None]
+        velocity, normal = flights.end_velocity[first] - flights.end_velocity[first + 1], apart * curvature[:, None]
         return Contacts(i, j, flights.end[first], share_i, share_j, normal, curvature, velocity, np.zeros(len(first)))
 
     def _hits(self, flights: Flights, hits: np.ndarray) -> Contacts:
         """Return the collisions with walls and pistons, whose velocities follow from the velocity changes of discs."""
         i, wall, time = flights.disc[hits], -1 - flights.partner[hits], flights.end[hits]
-        j = self._body_of_wall[wall]
         normal, curvature = self._normals.at(flights, hits)
+        j = self._body_of_wall[wall]
         ratio = self.mass[i] / self.mass[j]
         share_i = self._factor(1, time - flights.start[hits]) / (1.0 + ratio)
         before, change = flights.end_velocity[hits], flights.new_velocity[hits] - flights.end_velocity[hits]
@@ -155,11 +154,8 @@ class Bodies:
         expected += self._acceleration[wall, axis] * np.diff(np.append(last[0], times))
         stray = np.abs(start - expected) > SAME * (np.abs(start) + np.abs(expected) + np.abs(before[hits, axis]))
         if stray.any():
-            raise self._refusal(f"a piston hits a side of the box before t = {times[stray][0]:g}, which is not logged")
+            raise _refusal(self._log, f"a piston hits a side before t = {times[stray][0]:g}, which is not logged")
         self._last[body] = times[-1], ends[-1]
-
-    def _refusal(self, reason: str) -> NotApplicableError:
-        return NotApplicableError(f"{self._log.path}: the tangent map is not available, because {reason}")
 
 
 class TangentVectors:
@@ -253,7 +249,11 @@ def must_have_tangent_map(log: Log) -> None:
         "the pressure on a piston changes": any(p.mass is not None and p.times for p in scene.piston),
     }
     if reason := next((reason for reason, applies in reasons.items() if applies), ""):
-        raise NotApplicableError(f"{log.path}: the tangent map is not available, because {reason}")
+        raise _refusal(log, reason)
+
+
+def _refusal(log: Log, reason: str) -> NotApplicableError:
+    return NotApplicableError(f"{log.path}: the tangent map is not available, because {reason}")
 
 
 @njit

@@ -32,6 +32,7 @@ wall = [
     { from = [4.5, 2], to = [4.3, 3], via = [4.6, 2.5] },
 ]
 """
+ONE_WAY = "wall = [{ from = [3, 1], to = [3.1, 4.2], permeable_from = 'left' }]\n"
 GRAVITY = "gravity.acceleration = [0.11, -0.3]\n"
 DOWN = "gravity.acceleration = [0, -0.3]\n"
 STEPS = "gravity.acceleration = [[0, [0.11, -0.3]], [3.3, [-0.2, 0.1]]]\n"
@@ -54,6 +55,7 @@ MOTIONS = {
     "driven piston": (BOX + BARE + DRIVEN + INELASTIC, {Kind.DISC, Kind.WALL, Kind.PISTON}),
     "parabolas": (BOX + SHAKEN + BARE + GRAVITY + INELASTIC, {Kind.DISC, Kind.WALL}),
     "sine": (BOX + SINE + BARE + GRAVITY, {Kind.DISC, Kind.WALL}),
+    "one-way": (BOX + ONE_WAY + BARE, {Kind.DISC, Kind.WALL}),
     "pistons": (BOX + BARE + PRESSED + INELASTIC, {Kind.WALL, Kind.PISTON}),
 }
 """Scenes, and the kinds of events in their logs."""
@@ -162,7 +164,7 @@ class Motion:
         normal = np.array([-along[1], along[0]]) / mpmath.hypot(*along)
         return None, [
             (vector(*wall.start) + sign * r * normal + shift, normal, None)
-            for sign in (-1, 1)
+            for sign in (-1, 0, 1)  # a one-way wall reflects discs that overlap with it at their centres
             for shift in self.shifts()
         ]
 
