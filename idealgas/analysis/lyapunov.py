@@ -5,9 +5,9 @@ for each piston of finite mass; discs that do not interact have 4 each.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 import numpy as np
 
@@ -202,7 +202,7 @@ class LyapunovAnalysis(Analysis):
         growth, durations, events = logs[1:], np.diff(time), np.diff(met) / number
         duration, met, hits = time[-1] - time[0], met[-1] - met[0], hits[-1] - hits[0]
         free_time = number * duration / (met - hits or met)
-        series, average = growth[:, 0].cumsum(), ratio
+        series, average = growth[:, 0].cumsum(), cast(Callable[[np.ndarray, np.ndarray], Estimate], ratio)
         if bodies.systems >= ENOUGH_REPLICATES:  # each disc is a sample of its own
             growth, durations, events = total, np.full(number, duration), step.met - before
             average = _ratio_of_discs
