@@ -253,8 +253,8 @@ def test_many_independent_discs():
 def test_lorentz_gas_with_small_scatterers():
     """The exponent per collision tends to -2 ln R + 1 - 4 ln 2 + 27 ζ(3)/(2π²), with a correction O(R ln² R).
 
-    Conjectured by Friedman, Oono & Kubo, Phys. Rev. Lett. 52, 709 (1984); the constant and the order of the correction
-    are from Dahlqvist, Nonlinearity 10, 159 (1997). The correction is found to be between 0 and 1.5 R; k = 4.
+    The logarithm is due to Friedman, Oono & Kubo, Phys. Rev. Lett. 52, 709 (1984), the constant and the order of the
+    correction to Dahlqvist, arXiv:chao-dyn/9601007. The correction is found to be between 0 and 1.5 R; k = 4.
     """
     zeta = 1.2020569031595942
     corrections, errors = [], []
