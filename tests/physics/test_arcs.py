@@ -10,6 +10,7 @@ from helpers.support import ROOT
 from scipy.stats import qmc
 
 from idealgas import Scene, evolution, open_log, section, simulate
+from idealgas.analysis.section import share_visited
 from idealgas.columns import Kind
 from idealgas.tallies.walls import WallImpulses
 
@@ -94,6 +95,24 @@ def test_the_regular_share_of_the_mushroom_to_half_a_percent(tmp_path):
         with open_log(tmp_path / "starts.h5") as log:
             deviations.append((cap[chosen] & log.state_at(1000).inside).mean() / share - 1)
     assert np.sqrt(np.mean(np.square(deviations))) < 0.005
+
+
+@pytest.mark.slow
+def test_the_chaotic_share_of_the_section_of_the_mushroom():
+    """Regular are |sine| > r/R on the cap and |sine| < √(1 - r²/ρ²) on the brims, at ρ from the centre of the cap. Each
+    start has only some hits up to t = 10, so that the points are nearly independent."""
+    log, radius, width, height = log_of("mushroom", "run.until=10"), 2.0, 1.0, 1.5
+    result = section(log)
+    (x, y), (vx, vy) = (log.discs.position - (2.5, 2)).T, log.discs.velocity.T
+    chaotic = ((y < 0) | (np.abs(x * vy - y * vx) < width))[result.points["disc"]]
+    length = math.pi * radius + 2 * (radius - width) + 2 * height + 2 * width
+    assert result.starts[-1] == pytest.approx(length)
+    brims = 4 * (math.sqrt(radius**2 - width**2) - width * math.acos(width / radius))
+    regular = (2 * math.pi * (radius - width) + brims) / (2 * length)
+    position, sine = (result.rows()[name][chaotic] for name in ("position", "sine"))
+    share = share_visited(position / length, (1 + sine) / 2)
+    assert abs(share.value - (1 - regular)) < 4 * share.standard_error
+    assert share.standard_error < 0.001
 
 
 @pytest.fixture(scope="module")

@@ -76,15 +76,15 @@ class PoincareSection(Result):
     def plain_tables(self) -> list[Table]:
         """Return the tables of shares and of walls."""
         rows = {"section visited by all trajectories": self.share, f"trajectories that never {self.kind}": self.never}
-        if len(self.shares) > 1:
-            for name, k in (("largest", -1), ("median", len(self.shares) // 2)):
-                rows[f"{name} of {len(self.shares)} trajectories"] = self.shares[k]
+        for name, k in (("largest", -1), ("median", len(self.shares) // 2)) if len(self.shares) > 1 else ():
+            rows[f"{name} of {len(self.shares)} trajectories"] = self.shares[k]
         walls = [
             (name, Number(start), Number(length), Number(self.number[name], ","))
             for (name, length), start in zip(self.lengths.items(), self.starts.tolist(), strict=False)
             if self.number[name] or self.never
         ]
-        notes = [] if self.share else [f"Shares of the section require {FEWEST} points."]
+        unsure = "Errors assume independent points and leave out parts of the section that are not reached yet."
+        notes = [unsure if self.share else f"Shares of the section require {FEWEST} points."]
         shares = estimates("Shares (no unit)", [(name, share) for name, share in rows.items() if share], notes)
         return [shares, Table("Section", ("", "start (length)", "length", "points"), walls)]
 
@@ -152,7 +152,7 @@ class SectionAnalysis(Analysis):
                 progress(min(done, rows), rows)
         points = np.concatenate(parts)
         points["trajectory"] = points["disc"]
-        points = points[np.argsort(points["time"], kind="stable")]
+        points = points if line is None else points[np.argsort(points["time"], kind="stable")]
         collisions = np.ptp(np.interp((first, last), *log.observables["disc_collisions"]))
         caveats = {FALLING: log.has_gravity, COLLIDING: collisions > len(points) / 100}
         return _section(kind, lengths, (len(log.discs),), points, *filter(caveats.get, caveats))
