@@ -41,9 +41,11 @@ def path_caveats(log: Log, window: Window) -> tuple[str, ...]:
     among = np.diff(np.interp((window.start, window.end), times, collisions))
     if len(log.discs) == 1 or not log.scene.properties.isolated or (each := 2 * float(among[0]) / len(log.discs)) >= 1:
         return ()
+    hardly = f"Discs hardly collide with each other ({each:.2g} times each in the window)"
+    reason = hardly if log.scene.properties.interacting else "Discs do not interact"
     return (
-        f"Discs hardly collide with each other ({each:.2g} times each in the window): each disc keeps its energy, "
-        "and only walls mix its path. Standard errors are too small if paths remain correlated for long.",
+        f"{reason}: each disc keeps its energy, and only walls mix its path. Standard errors are too small if paths "
+        "remain correlated for long.",
     )
 
 

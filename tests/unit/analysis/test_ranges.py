@@ -59,6 +59,7 @@ SAID = [
     ("diameters wide", "cooling", {}, None, (PERIODIC, *COOLING)),
     ("Discs hardly collide with each other (0 times each", "pressure", {}, POINTS, ()),
     ("Discs hardly collide with each other (0 times each", "temperature", {}, POINTS, ()),
+    ("Discs do not interact: each disc keeps its energy", "temperature", {}, (*POINTS, "interactions.discs=false"), ()),
     ("Discs hardly collide", "temperature", {}, None, (*POINTS, "box={size=[8, 8], left={thermal=1}}")),
     ("to the ends of its wall", "pressure", {"start": 0.0}, (*PLATE, "log.events=false"), PLATE),
     ("these contain plate.", "effusion", {}, [part.replace("wall=[", "wall=[{name='plate', from=[5, 3], to=[5, 5]}, ")
