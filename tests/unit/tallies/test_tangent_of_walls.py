@@ -5,9 +5,10 @@ import itertools
 import mpmath
 import numpy as np
 import pytest
-from helpers.logs import log_of
+from helpers.logs import log_of, raised
 
 import idealgas
+from idealgas import open_log, open_run, parse_scene
 from idealgas.columns import SIDES, Kind
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
@@ -242,3 +243,27 @@ def test_derivatives(name):
     assert set(motion.rows.kind) == kinds
     assert growth < 1e8
     assert np.abs(result - expected).max() < 1e-14 * growth**2
+
+
+UNKNOWN = {
+    "discs leave the gas": BOX + BARE + "run.until = 2\nwall = [{ from = [4, 3], to = [4, 4], absorbing = true }]\n",
+    "sides are sheared": JOINED + BARE + "box.bottom = { shear = 0.1 }\nbox.top = { shear = 0.1 }\n",
+    "a piston hits a side before t = ": BOX + BARE + "piston = [{ position = 5.5, mass = 3, pressure = 0.02 }]\n",
+    r"disc \d touches another body at t = .* at speed 0": BOX + BARE + GRAVITY + "restitution.wall = 0\n",
+}
+"""Scenes, and why their logs have no tangent map."""
+
+
+@pytest.mark.parametrize("reason", UNKNOWN)
+def test_refused(reason):
+    raised(f"the tangent map is not available, because {reason}", idealgas.sensitivity, log_of(UNKNOWN[reason]))
+
+
+def test_a_program_that_changes_velocities_is_refused(tmp_path):
+    """A reversal does; a change of gravity, which is also recorded for each disc, does not (see the scenes above)."""
+    path = tmp_path / "run.h5"
+    with open_run(parse_scene(f"steering = {{}}\n{BOX}{BARE}"), path) as run:
+        run.advance(until=2)
+        run.reverse()
+        run.advance(until=4)
+    raised("because a program changes velocities at t = 2", idealgas.sensitivity, open_log(path))
