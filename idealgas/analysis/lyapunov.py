@@ -7,6 +7,7 @@ for each piston of finite mass; discs that do not interact have 4 each.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, NamedTuple, cast
 
 import numpy as np
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIGNMENT = 20
-"""Events per disc before growth is measured, while the deviations align with the directions of fastest growth."""
+"""Mean number of events per disc before growth is measured, while deviations align with the fastest growth."""
 
 FEWEST = 32
 """Smallest number of intervals, of one event per disc each, in which growth is measured."""
@@ -187,24 +188,23 @@ class LyapunovAnalysis(Analysis):
         if exponents > (most := MOST_NUMBERS // (4 * len(bodies.mass))):
             raise UserError(f"exponents: at most {most} of {number} discs (got {exponents})")
         window = measure(log, [], start, end)
-        rows, total, before = [], np.zeros((bodies.systems, exponents)), bodies.mass
-        for k, step in enumerate(_steps(log, window, bodies, exponents, progress), 1 - ALIGNMENT):
-            if k == 0:
-                before = step.met
-            elif k > 0:
-                total += step.growth
-            rows.append((step.time, step.growth.mean(axis=0), step.localisation, step.met.sum(), step.hits))
-        if len(rows) < ALIGNMENT + FEWEST:
+        per_disc = (log.row_at(window.end, "right") - log.row_at(window.start, "right")) / number
+        if per_disc < ALIGNMENT + FEWEST:
             raise UserError(
                 f"{log.path}: too short for Lyapunov exponents, which require {ALIGNMENT + FEWEST} events per disc"
             )
-        time, logs, shares, met, hits = (np.array(column) for column in zip(*rows[ALIGNMENT - 1 :], strict=True))
-        growth, durations, events = logs[1:], np.diff(time), np.diff(met) / number
-        duration, met, hits = time[-1] - time[0], met[-1] - met[0], hits[-1] - hits[0]
-        free_time = number * duration / (met - hits or met)
-        series, average = growth[:, 0].cumsum(), cast(Callable[[np.ndarray, np.ndarray], Estimate], ratio)
+        aligned, rows = window.start + window.duration * ALIGNMENT / per_disc, []
+        total = np.zeros((bodies.systems, exponents))
+        for step in _steps(log, (window.start, aligned, window.end), bodies, exponents, progress):
+            rows.append((step.duration, step.growth.mean(axis=0), step.localisation, step.met.mean()))
+            total += step.growth
+        durations, growth, shares, met = (np.array(column) for column in zip(*rows, strict=True))
+        duration, met, events = durations.sum(), step.met.sum(), np.diff(met, prepend=0.0)
+        free_time = number * duration / (met - step.hits or met)
+        time, series = durations.cumsum(), growth[:, 0].cumsum()
+        average = cast(Callable[[np.ndarray, np.ndarray], Estimate], ratio)
         if bodies.systems >= ENOUGH_REPLICATES:  # each disc is a sample of its own
-            growth, durations, events = total, np.full(number, duration), step.met - before
+            growth, durations, events = total, np.full(number, duration), step.met
             average = _ratio_of_discs
         spectrum = tuple(average(growth[:, k], durations) for k in range(exponents))
         values = np.array([estimate.value for estimate in spectrum])
@@ -218,12 +218,12 @@ class LyapunovAnalysis(Analysis):
             average(growth[:, 0], events),
             free_time,
             spectrum[0].times(free_time / math.log(10)),
-            mean(shares[1:]) if bodies.systems < number else None,
+            mean(shares) if bodies.systems < number else None,
             average(np.where(values > 0, growth, 0.0).sum(axis=1), durations) if whole else None,
             float(np.abs(values + values[::-1]).max()) if whole and gas.elastic else None,
             zeros,
             float(np.abs(middle).max()) if whole and zeros else None,
-            np.diff(time).cumsum(),
+            time,
             series,
         )
 
@@ -236,25 +236,31 @@ def _ratio_of_discs(numerator: np.ndarray, denominator: np.ndarray) -> Estimate:
 
 
 class _Step(NamedTuple):
-    """State at the end of an interval in which N collisions of a disc have happened.
+    """Growth in an interval in which N collisions of a disc have happened; the last interval may have fewer.
 
     Attributes:
-        time: time.
+        duration: length of the interval, time.
         growth: (S, K), logarithm of the factor by which each of K deviations of each of S independent systems grew.
         localisation: that of the leading deviation, see `Lyapunov`.
-        met: (N,), number of collisions of each disc since the start of the window.
+        met: (N,), number of collisions of each disc since the deviations have been aligned.
         hits: number of these that were with walls or pistons.
     """
 
-    time: float
+    duration: float
     growth: np.ndarray
     localisation: float
     met: np.ndarray
     hits: int
 
 
-def _steps(log: Log, window: Window, bodies: Bodies, exponents: int, progress: ReadProgress | None) -> Iterator[_Step]:
-    """Propagate deviations, and orthogonalise those of each independent system at the end of each interval."""
+def _steps(
+    log: Log, times: tuple[float, float, float], bodies: Bodies, exponents: int, progress: ReadProgress | None
+) -> Iterator[_Step]:
+    """Propagate deviations, and orthogonalise those of each independent system at the end of each interval.
+
+    times: start of the deviations, time at which they are aligned and from which growth is yielded, and end. These are
+    no times of events, because the mean free time after an event differs from that after any time.
+    """
     number, systems, free, moving = len(log.discs), bodies.systems, bodies.free, len(bodies.mass) - 1
     start, random = np.zeros((4 * moving // systems, exponents)), np.random.default_rng(0)
     half = len(free) // 2
@@ -266,15 +272,18 @@ def _steps(log: Log, window: Window, bodies: Bodies, exponents: int, progress: R
     weight = np.repeat(np.sqrt(bodies.mass[:-1]), 4).reshape(systems, -1, 1)
     values = np.zeros((moving + 1, 4, exponents))
     values[:-1] = (start / weight).reshape(moving, 4, exponents)
-    followed, begun = TangentVectors(log, window.start, bodies, values), window.start
-    for now in followed.until(window.end, number, progress):
+    begun, followed = times[0], TangentVectors(log, times[0], bodies, values)
+    for now in chain(followed.until(times[1], number, progress), followed.until(times[2], number, progress)):
         if now > begun:
             q, r = np.linalg.qr(followed.now(now)[:-1].reshape(systems, -1, exponents) * weight)
-            growth = np.log(np.abs(np.diagonal(r, axis1=1, axis2=2)))
-            shares = (q[0, :, 0] ** 2).reshape(-1, 4).sum(axis=1)
-            shares = shares[shares > 0]
-            localisation = math.exp(-float(shares @ np.log(shares))) / number
-            met, hits = np.split(followed.collisions, [number])
-            yield _Step(now, growth, localisation, met.copy(), hits.sum())
+            if now > times[1]:
+                growth = np.log(np.abs(np.diagonal(r, axis1=1, axis2=2)))
+                shares = (q[0, :, 0] ** 2).reshape(-1, 4).sum(axis=1)
+                shares = shares[shares > 0]
+                localisation = math.exp(-float(shares @ np.log(shares))) / number
+                met, hits = np.split(followed.collisions, [number])
+                yield _Step(now - begun, growth, localisation, met.copy(), hits.sum())
+            else:
+                followed.collisions[:] = 0
             followed.values[:-1] = (q / weight).reshape(moving, 4, exponents)
             begun = now

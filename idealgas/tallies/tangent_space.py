@@ -176,7 +176,7 @@ class TangentVectors:
         self._since = np.full(len(values), start)
 
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[float]:
-        """Follow the log to time `end`; after each `every` collisions of a disc, yield the time."""
+        """Follow the log to time `end`; yield the time after each `every` collisions of a disc, and at the end."""
         log, rows, missing = self._log, 0, every
         for flights in log.flights([self._start, end], columns=COLUMNS):
             contacts, k = self.bodies.contacts(flights), 0
@@ -188,6 +188,8 @@ class TangentVectors:
             rows += len(flights.disc)
             if progress is not None:
                 progress(rows, max(rows, len(log)))
+        self._start = end
+        yield end
 
     def now(self, time: float) -> np.ndarray:
         """Return the deviations (N + P + 1, 4, K) at a time after the last event."""
