@@ -1,7 +1,6 @@
 """Draw Poincaré sections: hits of walls or crossings of a line, each as a position and the sine of an angle.
 
-For hits of walls, the position is the length along the walls, and the angle is that of reflection. The share of the
-section that the trajectories visit is measured by box counting.
+The position is a length along the walls or the line. The share that trajectories visit is measured by box counting.
 """
 
 import math
@@ -69,9 +68,9 @@ class PoincareSection(Result):
 
     def rows(self) -> dict[str, np.ndarray]:
         """Return the points as columns by name, with names of walls and positions along all walls."""
-        wall, columns = self.stored["wall"], {name: self.stored[name].copy() for name in POINT.names or ()}
-        columns["position"] += self.starts[wall]
-        return columns | {"wall": np.array([*self.lengths])[wall]}
+        columns = {name: self.stored[name].copy() for name in POINT.names or ()}
+        columns["position"] += self.starts[columns["wall"]]
+        return columns | {"wall": np.array([*self.lengths])[columns["wall"]]}
 
     def plain_tables(self) -> list[Table]:
         """Return the tables of shares and of walls."""
@@ -118,6 +117,7 @@ class SectionAnalysis(Analysis):
     """Poincaré sections."""
 
     position = 109
+    headline = "share"
     on_request = True
     supports_escapes = True
     results = (PoincareSection,)
@@ -180,23 +180,23 @@ def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarra
     counts = np.bincount(points["trajectory"], minlength=total)
     members, enough = np.split(order, np.cumsum(counts)[:-1]), np.flatnonzero(counts >= FEWEST)
     enough = enough[sample(len(enough), SAMPLED)] if 2 * len(enough) > total else enough[:0]  # few are not typical
-    shares = filter(None, (share_visited(x[k], y[k]) for k in (members[trajectory] for trajectory in enough)))
+    shares = filter(None, (share_visited(x[members[k]], y[members[k]]) for k in enough))
     without = int((counts == 0).sum())
     error = math.sqrt((without + 1) * (total - without + 1) / (total + 3)) / (total + 2)  # never 0
     never = Estimate(without / total, error, math.inf) if kind != "hit walls" else None
-    ordered = tuple(sorted(shares, key=lambda share: share.value))
-    by_name, share = dict(zip(lengths, number.tolist(), strict=True)), share_visited(x, y)
+    ordered, share = tuple(sorted(shares, key=lambda share: share.value)), share_visited(x, y)
+    by_name = dict(zip(lengths, number.tolist(), strict=True))
     return PoincareSection(kind, lengths, by_name, starts, discs, share, ordered, never, points, caveats=caveats)
 
 
 def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
     """Return the share of the unit square that points (n,) fill; None for fewer than FEWEST points.
 
-    The share v(h) of the boxes of side h that contain points exceeds the area of a region by its boundary times h,
-    which 2 v(h) - v(2h) removes. Boxes of side 2h and 4h are given a fourth and a sixteenth of the points, so that the
-    number of points per box is the same. The error combines the change of the result if h is doubled with the boxes
-    that are missed by chance. If λ independent points are expected in a box at the boundary, the box is missed with a
-    variance of e^-λ (1 - e^-λ). Averaged over λ, this is half the mean of λ e^-λ, the number of boxes with one point.
+    The share v(h) of boxes of side h with points exceeds the area of a region by its boundary times h, which 2 v(h) -
+    v(2h) removes. For 2h and 4h, a fourth and a sixteenth of the points are used, so that boxes contain equally many.
+    The error combines a third of the change if h is doubled with the boxes missed by chance: a box at the boundary in
+    which λ independent points are expected is missed with a variance of e^-λ (1 - e^-λ); averaged over λ, this is half
+    the mean of λ e^-λ, the number of boxes with a single point.
     """
     if len(x) < FEWEST:
         return None

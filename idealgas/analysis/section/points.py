@@ -110,7 +110,7 @@ def _crossings(log: Log, flights: Flights, ends: np.ndarray) -> Iterator[np.ndar
     slope, bend = (vectors @ (-tangent[1], tangent[0]) for vectors in (velocity, pull))
     curve = np.where(bend != 0, bend, 1.0)
     turns = (slope * bend < 0) & (np.abs(slope) < np.abs(bend) * duration)
-    low, high = boxes.min(axis=0, initial=0) - wraps, boxes.max(axis=0, initial=0) + wraps
+    low, high = boxes.min(axis=0, initial=0), boxes.max(axis=0, initial=0)
     for image in product(*(np.arange(a, b + 1) for a, b in zip(low, high, strict=True))):
         corner = ends[0] + box * image
         ahead = start - corner, flights.end_position + boxes * box - corner

@@ -103,6 +103,19 @@ def test_ends_arcs_fixed_discs_and_pieces_of_lines():
     assert (side["side"], side["sine"]) == (1, pytest.approx(0, abs=1e-15))
 
 
+@pytest.mark.parametrize(("first", "last"), [([1, 5], [3, 5]), ([3, 5], [1, 5])])
+def test_arcs_in_both_directions(first, last):
+    """A disc falls into a half circle at x = 2.4, where its centre is 0.75 from that of the arc, (2, 5)."""
+    wall = f'wall = [{{ name = "arc", from = {first}, to = {last}, via = [2, 4] }}]'
+    disc = "disc = [{ position = [2.4, 8], velocity = [0, -1], radius = 0.25 }]"
+    log = log_of(f"box.size = [10, 10]\n{wall}\n{disc}\nrun.until = 6")
+    point, angle = section(log, walls="arc").points[0], math.acos(0.4 / 0.75)  # below +x
+    assert point["position"] == pytest.approx(angle if first == [3, 5] else math.pi - angle, abs=1e-14)
+    # The tangent is (-sin, -cos) of the angle from (3, 5) on, and along it the velocity (0, -1) is kept.
+    assert point["sine"] == pytest.approx(math.cos(angle) * (1 if first == [3, 5] else -1), abs=1e-14)
+    assert point["side"] == (-1 if first == [3, 5] else 1)
+
+
 def test_walls_across_periodic_sides():
     """A disc that touches the fixed disc through the right side, at the angle 0 - π/4 from +x."""
     text = """
@@ -216,6 +229,8 @@ def test_several_logs_are_one_section():
 def test_what_is_refused():
     log = log_of(BOX)
     raised('unknown reflecting wall, did you mean "left"', section, log, walls="lft")
+    joined = log_of(BOX, 'box.bottom="periodic"', 'box.top="periodic"')
+    raised("allowed left, right", section, joined, walls="top")
     raised("walls and line cannot be combined", section, log, walls="left", line="0,0,1,1")
     for line in ("0,0,1", "a,b,c,d", "1,1,1,1", "0,0,inf,1", ""):
         raised("line: not a line", section, log, line=line)
