@@ -118,6 +118,7 @@ class SectionAnalysis(Analysis):
 
     position = 109
     headline = "share"
+    averages = True
     on_request = True
     supports_escapes = True
     results = (PoincareSection,)

@@ -73,8 +73,7 @@ def place_on(wall: NumberedWall, centres: np.ndarray) -> tuple[np.ndarray, np.nd
 def direction(tangent: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the sine (n,) and the side (n,) of a point, see POINT, from unit tangents and velocities, (n, 2)."""
     (tx, ty), (vx, vy) = tangent.T, velocity.T
-    speed = np.hypot(vx, vy)
-    return (tx * vx + ty * vy) / np.where(speed > 0, speed, 1.0), np.where(tx * vy - ty * vx > 0, 1, -1)
+    return (tx * vx + ty * vy) / np.maximum(np.hypot(vx, vy), 1e-300), np.where(tx * vy - ty * vx > 0, 1, -1)
 
 
 def line_ends(text: str) -> np.ndarray:

@@ -239,7 +239,9 @@ def test_what_is_refused():
     stored = SectionAnalysis.restored(section(log).as_dict(), section(log).origin)
     assert str(stored) == str(section(log))
     raised("results of a sweep contain no points", stored.rows)
-    raised("results of a sweep contain no points", combine, [stored, stored])
+    other = section(log_of(BOX, "disc.0.velocity=[0.8, 0.6]"))
+    raised("results of a sweep contain no points", combine, [stored, other])
+    raised("given twice", combine, [section(log), section(log)])
 
 
 def test_a_report_contains_it_only_if_the_scene_asks_for_it(monkeypatch):
