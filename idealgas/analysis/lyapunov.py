@@ -242,7 +242,7 @@ class _Step(NamedTuple):
         duration: length of the interval, time.
         growth: (S, K), logarithm of the factor by which each of K deviations of each of S independent systems grew.
         localisation: that of the leading deviation, see `Lyapunov`.
-        met: (N,), number of collisions of each disc since the deviations have been aligned.
+        met: (N,), number of collisions of each disc since the deviations have been aligned; valid until the next step.
         hits: number of these that were with walls or pistons.
     """
 
@@ -282,7 +282,7 @@ def _steps(
                 shares = shares[shares > 0]
                 localisation = math.exp(-float(shares @ np.log(shares))) / number
                 met, hits = np.split(followed.collisions, [number])
-                yield _Step(now - begun, growth, localisation, met.copy(), hits.sum())
+                yield _Step(now - begun, growth, localisation, met, hits.sum())
             else:
                 followed.collisions[:] = 0
             followed.values[:-1] = (q / weight).reshape(moving, 4, exponents)
