@@ -71,7 +71,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON i
 
 
 def _output(kind: str, endings: tuple[str, ...]) -> Callable:
-    """Return the callback of an option for the path of a file of this kind, which checks its extension."""
+    """Return a callback that checks the extension of an option for the path of a file of this kind."""
 
     def check(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
         if value is not None and not value.lower().endswith(endings):

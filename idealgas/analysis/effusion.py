@@ -76,7 +76,7 @@ class Flow:
 
 @dataclass(frozen=True)
 class Effusion(Flow, RunResult):
-    """Flow of the discs of a gas, or of those of the first species of a mixture.
+    """Flow of the discs of a gas or, in a mixture, of its first species.
 
     Attributes:
         temperature: temperature of the gas, energy.
@@ -297,7 +297,7 @@ def share_beyond(
     from scipy.integrate import solve_ivp  # its import takes longer than most measurements
 
     def change(_: float, shares: np.ndarray) -> np.ndarray:
-        """Return the rates of change of the fractions of discs and, at the end, of energy beyond the slit, 1/time."""
+        """Return the rates of change of the fractions of discs and, in the last row, energy beyond the slit, 1/time."""
         here, there = np.maximum(1 - shares, TINY), np.maximum(shares, TINY)
         # temperatures e/n of both sides; discs pass at rates proportional to n √(e/n), and carry 3/2 e/n
         warm, cool = here[-1] / (part @ here[:-1]), there[-1] / (part @ there[:-1])

@@ -101,7 +101,7 @@ class Escape(Escapes, Result):
             rates += [(of + row, estimate) for row, estimate in rows.items() if estimate is not None]
             columns |= {"t": part.time, f"{of}discs in the gas": part.left, f"{of}theory": part.expected}
             columns[f"± {of}(s.d.)"] = part.spread
-            notes.append(f"{part.escaped} of {part.discs} {name} escaped")
+            notes.append(f"{of}{part.escaped} of {part.discs} discs escaped")
         series = time_series("Number of discs in the gas", columns)
         rates += [(f"{names}: ratio of rates (no unit)", ratio) for names, ratio in self._ratios.items()]
         return [estimates("Escape", rates, notes), series]
@@ -205,10 +205,10 @@ class EscapeAnalysis(Analysis):
 
 
 def _ratio(first: int, other: int, is_other: np.ndarray, theory: Estimate) -> Estimate | None:
-    """Return the rate at which a disc of another species escapes over that of the first species; None if one is 0.
+    """Return the ratio of the escape rate of a disc of another species to that of the first; None if either is 0.
 
-    At each escape (`is_other`: whether of the other species) the discs that are still in the gas are compared, so that
-    changes of temperature cancel: Mantel & Haenszel, J. Natl. Cancer Inst. 22, 719 (1959).
+    At each escape (`is_other`: whether by a disc of the other species) the discs that are still in the gas are
+    compared, so that changes of temperature cancel: Mantel & Haenszel, J. Natl. Cancer Inst. 22, 719 (1959).
     """
     gone = np.cumsum(is_other) - is_other
     firsts, others = first - np.arange(len(is_other)) + gone, other - gone

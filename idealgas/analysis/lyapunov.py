@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIGNMENT = 20
-"""Mean number of events per disc before growth is measured, while deviations align with the fastest growth."""
+"""Mean number of events per disc before growth is measured, while deviations align with the directions of growth."""
 
 FEWEST = 32
 """Smallest number of intervals, of one event per disc each, in which growth is measured."""
@@ -98,7 +98,7 @@ class Lyapunov(Result):
         if self.pairing is not None:
             notes.append(f"exponents form pairs λ and −λ to within {self.pairing:.1g}")
         if self.largest_zero is not None:
-            notes.append(f"{self.zeros} exponents vanish by conservation laws, to within {self.largest_zero:.1g}")
+            notes.append(f"{self.zeros} exponents vanish due to conservation laws, to within {self.largest_zero:.1g}")
         rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g")) for digits in PRECISIONS]
         return [
             replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
@@ -186,7 +186,7 @@ class LyapunovAnalysis(Analysis):
             who = "each disc has" if bodies.systems > 1 else f"{number} discs have"
             raise UserError(f"exponents: {who} {dimension} (got {exponents})")
         if exponents > (most := MOST_NUMBERS // (4 * len(bodies.mass))):
-            raise UserError(f"exponents: at most {most} of {number} discs (got {exponents})")
+            raise UserError(f"exponents: at most {most} for {number} discs (got {exponents})")
         window = measure(log, [], start, end)
         per_disc = (log.row_at(window.end, "right") - log.row_at(window.start, "right")) / number
         if per_disc < ALIGNMENT + FEWEST:
@@ -236,14 +236,14 @@ def _ratio_of_discs(numerator: np.ndarray, denominator: np.ndarray) -> Estimate:
 
 
 class _Step(NamedTuple):
-    """Growth in an interval in which N collisions of a disc have happened; the last interval may have fewer.
+    """Growth in an interval with N collisions of a disc; the last interval may contain fewer.
 
     Attributes:
         duration: length of the interval, time.
         growth: (S, K), logarithm of the factor by which each of K deviations of each of S independent systems grew.
         localisation: that of the leading deviation, see `Lyapunov`.
-        met: (N,), number of collisions of each disc since the deviations have been aligned; valid until the next step.
-        hits: number of these that were with walls or pistons.
+        met: (N,), number of collisions of each disc since the deviations were aligned; valid until the next step.
+        hits: number of these collisions that were with walls or pistons.
     """
 
     duration: float

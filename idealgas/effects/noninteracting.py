@@ -8,7 +8,7 @@ from idealgas.toml.table import Table
 
 
 class InteractionsTable(Table):
-    """`[interactions]`: without them, discs are many starts of one billiard, or an ideal gas."""
+    """`[interactions]`: discs that do not interact are many starts of one billiard, or an ideal gas."""
 
     discs: bool = Field(default=True, description="whether discs collide with each other")
 

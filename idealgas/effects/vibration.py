@@ -22,7 +22,7 @@ class Vibration(Table):
     frequency: Positive = Field(description="number of periods per unit time > 0, 1/time")
     motion: Literal["parabolas", "sine"] = Field(
         default="parabolas",
-        description='"parabolas" in time, nearly harmonic and with contact times in closed form, or "sine"',
+        description='"parabolas" in time (nearly harmonic, with contact times in closed form), or "sine"',
     )
 
 

@@ -22,7 +22,7 @@ from idealgas.toml.table import Vector, Word
 class WallTable(SteppedTable):
     """`[[wall]]`: a segment or arc at rest, whose body and ends are solid. A wall that opens or closes is a gate.
 
-    A table with `points` declares several segments, the pieces of a polygonal line, to which all its other keys apply.
+    A table with `points` declares the pieces of a polygonal line, and all its other keys apply to every piece.
 
     A gate is present until `opens_at`, and again from `closes_at` on. If only `closes_at` is given, the gate is absent
     until then. Lists of times open and close the gate repeatedly; if `opens_at` begins with 0, the gate is absent at
@@ -40,9 +40,9 @@ class WallTable(SteppedTable):
     refused = dict.fromkeys(
         ("ellipse", "axes", "semi_axes"),
         (
-            "no elliptical walls",
-            "straight walls, polygons (points) and arcs (from, via, to): 32 arcs follow an ellipse with half-axes 2a "
-            "and a to 2.3e-4 a, and their error falls as 1/n³; see Ellipses in configs/README.md",
+            "elliptical walls are not available",
+            "straight walls, polygons (points) and arcs (from, via, to): 32 arcs follow an ellipse with semi-axes 2a "
+            "and a to within 2.3e-4 a, and the error of n arcs falls as 1/n³; see Ellipses in configs/README.md",
         ),
     )
 
@@ -131,7 +131,7 @@ class WallTable(SteppedTable):
 
     @property
     def piece(self) -> int | None:
-        """Number of a piece of a polygonal line, which begins at the point with this number; None for other walls."""
+        """Number of a piece of a polygonal line and of the point at which it begins; None for other walls."""
         return self._corners[0] if self._corners else None
 
     def key(self, *names: str | int) -> Key:
@@ -147,7 +147,7 @@ class WallTable(SteppedTable):
 
     @property
     def place(self) -> Key:
-        """Key of the wall, which is that of its first point for a piece of a polygonal line."""
+        """Key of the wall or, for a piece of a polygonal line, of its first point."""
         return self.ends_keys[0] if self._corners else self.declared
 
     @property

@@ -71,8 +71,8 @@ def epoch_length(
     would take longer than its events. If the last digits of the sum of the speeds determine the power of two, the sum
     is correctly rounded, so that the length depends on neither the order of the discs nor the processor.
 
-    For discs that do not interact, their number, discs at rest or outside, and the last digits of the speeds do not
-    matter. In a gas of equal discs with equal speeds, each disc therefore moves exactly as in a gas of one disc.
+    For discs that do not interact, the result does not depend on their number, on discs at rest or outside, or on the
+    last digits of the speeds. Among equal discs with equal speeds, each disc therefore moves exactly as if alone.
 
     Args:
         gas: the gas at the start of the epoch.

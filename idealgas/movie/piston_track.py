@@ -1,7 +1,7 @@
 """Positions of pistons and vibrating sides as functions of time.
 
-The position of a piston is known at hits and samples, and a parabola in between. A vibrating side is drawn on straight
-lines between positions that are computed.
+The position of a piston is known at hits and samples and follows a parabola in between. The position of a vibrating
+side is interpolated linearly between computed positions.
 """
 
 from dataclasses import dataclass

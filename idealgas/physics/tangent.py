@@ -19,7 +19,7 @@ def fly(deviations, i, delay):
 
 @inline
 def collide(deviations, i, j, share_i, share_j, normal, curvature, velocity, pull):
-    """Propagate the deviations through a collision of two smooth bodies i and j, at which -u·n is multiplied by e.
+    """Propagate the deviations through a collision of two smooth bodies i and j, which changes u·n to -e u·n.
 
     The bodies touch when their distance along the unit normal n vanishes; n depends only on the position of i relative
     to j. The normal velocity of i changes by -share_i u·n and that of j by +share_j u·n.

@@ -33,7 +33,7 @@ VIBRATION = np.dtype(
 )  # fmt: skip
 
 MOST_PIECES = 64
-"""Number of pieces after which a disc still within reach of the side only grazes the highest point of the side."""
+"""Number of pieces after which a disc still within reach of the side can only graze it at its highest point."""
 
 BISECTIONS = 200  # enough to halve any interval down to neighbouring floats
 

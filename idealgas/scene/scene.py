@@ -153,7 +153,7 @@ def _sizes(scene: Scene) -> Counter[float]:
 
 
 def _tables(scene: Scene) -> dict[str, Any]:
-    """Return the tables with explicit defaults, in which walls are the same whether or not they are `points`."""
+    """Return the tables with explicit defaults, in which polygonal lines are replaced by their pieces."""
     single = scene.resolved().model_copy(update={"wall": scene.pieces})
     return single.model_dump(mode="json", by_alias=True, exclude_none=True)
 

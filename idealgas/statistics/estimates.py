@@ -80,7 +80,7 @@ class Estimate:
         )
 
     def over(self, other: "Estimate") -> "Estimate":
-        """Return the ratio to an independent estimate, whose theory has an error of the same cause."""
+        """Return the ratio to an independent estimate; the errors of both theoretical values have the same cause."""
         value, theory = self.value / other.value, self.theory / other.theory if self.theory and other.theory else None
         error = math.hypot(self.standard_error, (theory or value) * other.standard_error) / abs(other.value)
         doubt = max(each.theory_error / abs(each.theory or math.inf) for each in (self, other))

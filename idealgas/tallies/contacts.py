@@ -44,7 +44,7 @@ class WallNormals:
 
         Args:
             flights: flights with the columns `disc`, `kind`, `partner` and, for all but flat walls, `end_position`.
-            hits: (H,), indices of flights that end with the hit of a wall.
+            hits: (H,), indices of flights that end with a wall hit.
         """
         wall, kind = -1 - flights.partner[hits], flights.kind[hits]
         normals, curvature = self.first[wall], np.zeros(len(hits))

@@ -22,11 +22,11 @@ MOST_NUMBERS = 2**26
 """Largest total number of components of all deviations, which take up half a gigabyte."""
 
 SAME = 1e-6
-"""Relative difference below which two velocities of a piston are equal, except for rounding."""
+"""Largest relative difference between two velocities of a piston that is attributed to rounding."""
 
 
 class Contacts(NamedTuple):
-    """Collisions in order of time, as arguments of `tangent.collide`: those of disc i with disc, piston or wall j.
+    """Collisions of disc i with disc, piston or wall j in order of time, as arguments of `tangent.collide`.
 
     Attributes:
         i: (n,), id of the disc.
@@ -54,7 +54,7 @@ class Bodies:
     """Bodies with which discs collide, and the geometry of their collisions: N discs, P pistons of finite mass, walls.
 
     Attributes:
-        mass: (N + P + 1,), masses of discs and pistons; infinite for the last body, which is all other walls.
+        mass: (N + P + 1,), masses of discs and pistons; infinite for the last body, which stands for all other walls.
         systems: number of independent systems: N if the discs do not interact, and otherwise 1.
         free: (D,), indices of the D free components of a deviation of one system among its flattened components: all
             positions, followed by all velocities in the same order. A piston has only the two along its axis.
@@ -176,7 +176,7 @@ class TangentVectors:
         self._since = np.full(len(values), start)
 
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[float]:
-        """Follow the log to time `end`; yield the time after each `every` collisions of a disc, and at the end."""
+        """Follow the log to time `end`; yield the time after each batch of `every` collisions of a disc, and `end`."""
         log, rows, missing = self._log, 0, every
         for flights in log.flights([self._start, end], columns=COLUMNS):
             contacts, k = self.bodies.contacts(flights), 0
@@ -244,7 +244,7 @@ def must_have_tangent_map(log: Log) -> None:
         "the method does not follow the exact motion": scene.run.method not in ("event_driven", "brute_force"),
         "discs spin": gas.spins,
         "discs receive random velocities from walls or a heat bath": not gas.isolated,
-        "collisions have a law of their own": gas.collisions_give_energy or not gas.constant_restitution,
+        "restitution is not constant": gas.collisions_give_energy or not gas.constant_restitution,
         "sides are sheared": gas.shear > 0,
         "discs leave the gas": log.escapes,
         "a gate may close on a disc": closing,

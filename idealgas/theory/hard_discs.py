@@ -296,7 +296,7 @@ def mean_free_path(diameter: float, number_density: float, packing_fraction: flo
 
 
 def mixture_free_paths(radius: np.ndarray, mass: np.ndarray, number_density: np.ndarray) -> np.ndarray:
-    """Return the mean free paths ⟨v⟩/Σ Γ_ij (S,) of the species of a mixture at one temperature, length."""
+    """Return the mean free paths ⟨v⟩/Σ Γ_ij (S,) of the species of a mixture at a common temperature, length."""
     return mean_speed(1.0, mass) / mixture_collision_rate(radius, mass, number_density, 1.0, 1.0).sum(axis=1)
 
 

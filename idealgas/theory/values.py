@@ -242,7 +242,7 @@ def box_theory(
 def _ideal_gas(
     radius: np.ndarray, number: np.ndarray, box: tuple[float, float], periodic: tuple[bool, bool], ergodic: bool
 ) -> BoxTheory:
-    """Return the exact values for discs that do not interact; without heat, energies along x and y remain unequal."""
+    """Return the exact values for discs that do not interact; without heat, unequal energies along x and y persist."""
     z, none = Theory(1.0, 0.0, IDEAL), np.zeros((len(radius), len(radius)))
     x, y = (
         z.times(float(number @ (size / (size - 2 * radius)) / number.sum())) if ergodic and not on else None

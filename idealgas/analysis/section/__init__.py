@@ -29,8 +29,8 @@ DRAWN, FEWEST, MOST, SAMPLED = 20_000, 512, 100_000, 64
 PER_BOX, PIXELS = 8, 16
 """Points per smallest box on average, so that 1 box in 3 000 is missed, and number of pixels along its sides."""
 
-FALLING = "Under gravity, the motion does not preserve the areas of position and sine to which shares refer."
-COLLIDING = "Discs collide with each other, so that a point of the section does not determine the next one."
+FALLING = "Under gravity, the motion does not preserve area in the plane of position and sine, to which shares refer."
+COLLIDING = "Discs collide with each other, so a point of the section does not determine the next one."
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class PoincareSection(Result):
     def stored(self) -> np.ndarray:
         """The points; raise UserError for the results of a sweep, which do not contain points."""
         if self.points is None:
-            raise UserError("section: results of a sweep contain no points; use keep_logs = true and give the logs")
+            raise UserError("section: results of a sweep contain no points; use keep_logs = true and pass the logs")
         return self.points
 
     def rows(self) -> dict[str, np.ndarray]:
@@ -82,20 +82,20 @@ class PoincareSection(Result):
             for (name, length), start in zip(self.lengths.items(), self.starts.tolist(), strict=False)
             if self.number[name] or self.never
         ]
-        unsure = "Errors assume independent points and leave out parts of the section that are not reached yet."
+        unsure = "Errors assume independent points and do not account for parts of the section not reached yet."
         notes = [unsure if self.share else f"Shares of the section require {FEWEST} points."]
         shares = estimates("Shares (no unit)", [(name, share) for name, share in rows.items() if share], notes)
         return [shares, Table("Section", ("", "start (length)", "length", "points"), walls)]
 
     def summary(self) -> str:
         """Return the number of points and the shares, for which theory is not available."""
-        visit = f", which visit {format_estimate(self.share)} of the section" if self.share else ""
-        never = f"; {format_estimate(self.never)} of them never {self.kind}" if self.never else ""
+        visit = f"; share of the section visited: {format_estimate(self.share)}" if self.share else ""
+        never = f"; share of trajectories that never {self.kind}: {format_estimate(self.never)}" if self.never else ""
         whose = f"{sum(self.discs):,} {'trajectory' if sum(self.discs) == 1 else 'trajectories'}"
-        return f"{sum(self.number.values()):,} points of {whose}{visit}{never}. Theory is not available."
+        return f"{sum(self.number.values()):,} points from {whose}{visit}{never}. Theory is not available."
 
     def figure(self) -> "Figure":
-        """Draw the sine against the position for some trajectories, in colours for discs or, if several, for logs."""
+        """Draw the sine against the position for some trajectories, coloured by disc or, for several logs, by log."""
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, (ax,) = panels(1)
@@ -124,8 +124,8 @@ class SectionAnalysis(Analysis):
     results = (PoincareSection,)
     sections = (Section("Poincaré section", "Sine of the angle of reflection against the position along the walls"),)
     options = (
-        Option("walls", str, "Names of the walls, separated by commas; by default all walls.", metavar="NAME,..."),
-        Option("line", str, "Ends of a line whose crossings are points, instead of hits.", metavar="X0,Y0,X1,Y1"),
+        Option("walls", str, "Names of walls, separated by commas; all walls by default.", metavar="NAME,..."),
+        Option("line", str, "Ends of a line; its crossings replace wall hits as points.", metavar="X0,Y0,X1,Y1"),
     )
     start = "the log's start"
 
@@ -134,7 +134,7 @@ class SectionAnalysis(Analysis):
         log: Log, walls: str | None = None, line: str | None = None,
         start: float | None = None, end: float | None = None, progress: ReadProgress | None = None,
     ) -> PoincareSection:  # fmt: skip
-        """Record the points at which discs hit walls or cross a line, and the share of the section that they visit."""
+        """Find the points at which discs hit walls or cross a line, and the share of the section that they visit."""
         log.require_events()
         if walls is not None and line is not None:
             raise UserError("section: walls and line cannot be combined")
@@ -213,17 +213,17 @@ def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
             alone[part] += weight * gain / subsets
     area, coarser = np.maximum(2 * shares[:2] - shares[1:], 1 / n)
     error = math.sqrt(alone @ alone / 2 + (area - coarser) ** 2 / 9 + 1 / n**2)
-    value = area / -math.expm1(-PER_BOX / area)  # with boxes inside the region that are missed
+    value = area / -math.expm1(-PER_BOX / area)  # includes boxes inside the region that are missed
     return Estimate(min(float(value), 1.0), error, math.inf)
 
 
 def sample(number: int, most: int) -> np.ndarray:
-    """Return the numbers of at most `most` of a number of points, chosen at random, in increasing order."""
+    """Return at most `most` of the integers from 0 to `number` - 1, chosen at random, in increasing order."""
     return np.sort(np.random.default_rng(0).choice(number, min(number, most), replace=False))
 
 
 def _boxes(i: np.ndarray, j: np.ndarray, side: int, width: int) -> tuple[float, np.ndarray]:
-    """Return the area of boxes that contain points, and the area (n,) of those that contain no other point.
+    """Return the area of boxes that contain points, and for each point the area (n,) of boxes without others.
 
     Boxes are `width` pixels wide and end at the sides of the unit square, which has `side` pixels along each axis. The
     areas are averages over all positions of the grid of boxes on the pixels, to which the points (i, j) belong.

@@ -148,7 +148,7 @@ def cross_cell(record, state, i, crossing_code, periodic, noninteracting):
     disc = record[U(i)]
     cells = own_cells(state.cells, state.coarse, disc)
     link = cells.link[U(i)]
-    if noninteracting is None:  # otherwise nobody reads the lists
+    if noninteracting is None:  # otherwise the lists are not used
         leave(cells, i)
     forward = 1 if crossing_code & 1 else -1
     upwards = forward if crossing_code >= 2 else 0

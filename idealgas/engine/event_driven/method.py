@@ -48,7 +48,7 @@ def expected_threads(gas: Gas, threads: int | None, piston: bool, shear: bool, i
 
 
 def _far(piston: bool, shear: bool, interacting: bool) -> str:
-    """Return the reason why slabs of the box cannot be simulated apart; an empty string if they can."""
+    """Return the reason why slabs of the box cannot be simulated separately; an empty string if they can."""
     if piston:
         return "any disc may meet the piston"
     if not interacting:

@@ -153,7 +153,7 @@ def test_set_and_sweeps_reach_the_table_and_its_points(tmp_path):
 
 @pytest.mark.parametrize(("n", "distance", "angle"), [(8, 7.7e-3, 16.3), (16, 7.9e-4, 3.19), (32, 1.12e-4, 0.462)])
 def test_arcs_follow_an_ellipse_as_the_page_of_the_scenes_says(n, distance, angle):
-    """The largest distance is that of points on the ellipse from the circle of their arc; half-axes 2 and 1."""
+    """The largest distance is that of points on the ellipse from the circle of their arc; semi-axes 2 and 1."""
     point = [np.array([2 * math.cos(math.pi * k / n), math.sin(math.pi * k / n)]) for k in range(2 * n + 1)]
     off, centres = [], []
     for k in range(n):
