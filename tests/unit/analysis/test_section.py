@@ -249,7 +249,7 @@ def test_a_report_contains_it_only_if_the_scene_asks_for_it(monkeypatch):
     assert make_sections(log_of(BOX)) == []
     (shown,) = make_sections(log_of(BOX, 'scene.shows=["section"]'))
     assert (shown.title, shown.left_out) == ("Poincaré section", None)
-    assert shown.words == "49 points of 1 trajectory. Theory is not available."
+    assert shown.words == "49 points from 1 trajectory. Theory is not available."
     assert len(html_pictures(shown.picture, shown.caption, "p")) < 30_000
 
 
