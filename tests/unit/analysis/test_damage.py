@@ -25,7 +25,7 @@ def test_in_a_status(log, monkeypatch):
 
 def test_in_a_section_of_a_report(log, monkeypatch):
     section = SimpleNamespace(title="Pressure", options={})
-    analysis = SimpleNamespace(sections=(section,), analyse=damaged, combined=list, reported_from=0)
+    analysis = SimpleNamespace(sections=(section,), analyse=damaged, combined=list, reported_from=0, on_request=False)
     monkeypatch.setattr(sections.registry, "analyses", lambda: (analysis,))
     with pytest.raises(DamageError):
         sections.make_sections(log)
