@@ -87,8 +87,8 @@ def number_walls(scene: Scene) -> list[NumberedWall]:
         if wall.piece is not None and wall.name:
             name = f"{wall.name} {wall.piece}"
         # The labels of the many short walls of a solid or a polygonal line would overlap in a picture.
-        if wall.piece if wall.name else wall.solid or wall.piece is not None:
-            label = ""
+        unlabelled = wall.piece not in (None, 0) if wall.name else wall.solid or wall.piece is not None
+        label = "" if unlabelled else label
         label += f" {ARROWS[wall.permeable_from]}" if label and wall.permeable_from else ""
         body = wall.start, wall.end, wall.action, wall.absences, wall.radius
         walls.append(NumberedWall(name, *body, wall.is_permeable, label, wall.arc, isinstance(wall, InnerPiston)))

@@ -78,7 +78,8 @@ def pressure(
         moments, events, currents = Moments(), Impacts(len(log.walls), log.periodic), Currents(log.periodic)
         window, impacts = measure(log, [moments, events, currents], start, end, progress), events
         flow = currents.flow
-        paths = free_paths(discs, expected, equilibrium, window, moments, events)
+        interacting = log.scene.properties.interacting
+        paths = free_paths(discs, expected, equilibrium, window, moments, events) if interacting else ()
         bulk = bulk_in_events(gas, log.periodic, window, moments, events)
     else:
         window, samples = sampled(log, start, end, ())

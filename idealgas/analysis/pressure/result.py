@@ -52,7 +52,7 @@ class Pressure(Result):
         theories: Z according to each theory that applies, by the name of the theory.
         theory_errors: standard error of each value of `theories`, by the name of the theory.
         collision_rates: collision rate of each pair of species.
-        free_paths: mean free path and mean free time of each species; empty without events.
+        free_paths: mean free path and mean free time of each species; empty without events or without interactions.
         tensor: components xx, yy and xy of the pressure tensor, energy/length².
         no_theory: why no theory applies to this gas in its box, as part of a sentence; None if one applies.
         mechanical: pressure on every wall of a gas without an equation of state; None for other gases.

@@ -6,7 +6,7 @@ The position is a length along the walls or the line. The share that trajectorie
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -29,7 +29,7 @@ DRAWN, FEWEST, MOST, SAMPLED = 20_000, 512, 100_000, 64
 PER_BOX, PIXELS = 8, 16
 """Points per smallest box on average, so that 1 box in 3 000 is missed, and number of pixels along its sides."""
 
-FALLING = "Under gravity, the motion does not preserve area in the plane of position and sine, to which shares refer."
+UNEQUAL = "Shares refer to area in the plane of position and sine, which this motion does not preserve."
 COLLIDING = "Discs collide with each other, so a point of the section does not determine the next one."
 
 
@@ -47,6 +47,7 @@ class PoincareSection(Result):
         shares: shares that single trajectories visit, at most SAMPLED, in increasing order.
         never: share of the trajectories without points; None for all walls.
         points: (n,) POINT, in order of time for each log.
+        places: ends, arcs and radii of the walls, or the ends of the line.
     """
 
     kind: str
@@ -58,6 +59,7 @@ class PoincareSection(Result):
     shares: tuple[Estimate, ...]
     never: Estimate | None
     points: Annotated[np.ndarray | None, OMITTED] = None
+    places: Annotated[Any, OMITTED] = None
 
     @property
     def stored(self) -> np.ndarray:
@@ -99,9 +101,10 @@ class PoincareSection(Result):
         from idealgas.presentation.style import COLOURS, GREY, panels
 
         figure, (ax,) = panels(1)
-        rows, total = self.rows(), sum(self.discs)
-        trajectories = sample(total, max(DRAWN * total // (len(rows["time"]) or 1), 1))
-        drawn = np.flatnonzero(np.isin(rows["trajectory"], trajectories))
+        rows = self.rows()
+        visible = np.unique(rows["trajectory"])
+        chosen = visible[sample(len(visible), max(DRAWN * len(visible) // (len(rows["time"]) or 1), 1))]
+        drawn = np.flatnonzero(np.isin(rows["trajectory"], chosen))
         drawn = drawn[sample(len(drawn), DRAWN)]
         x, y, group = (rows[name][drawn] for name in ("position", "sine", "log" if len(self.discs) > 1 else "disc"))
         for k, colour in enumerate(COLOURS):
@@ -142,9 +145,11 @@ class SectionAnalysis(Analysis):
         if line is None:
             kind, chosen = "hit walls" if walls is None else "hit these walls", chosen_walls(log, walls)
             lengths, batches = {wall.name: wall.length for wall in chosen.values()}, hits(log, chosen, first, last)
+            places: Any = [(wall.start, wall.end, wall.arc, wall.radius) for wall in chosen.values()]
         else:
             kind, ends = "cross the line", line_ends(line)
             lengths, batches = {"line": math.dist(*ends)}, crossings(log, ends, first, last)
+            places = ends.tolist()
         parts, done, rows = [np.empty(0, POINT)], 0, log.row_at(last, "right") - log.row_at(first, "right")
         for batch, read in batches:
             parts.append(batch)
@@ -155,24 +160,30 @@ class SectionAnalysis(Analysis):
         points["trajectory"] = points["disc"]
         points = points if line is None else points[np.argsort(points["time"], kind="stable")]
         collisions = np.ptp(np.interp((first, last), *log.observables["disc_collisions"]))
-        caveats = {FALLING: log.has_gravity, COLLIDING: collisions > len(points) / 100}
-        return _section(kind, lengths, (len(log.discs),), points, *filter(caveats.get, caveats))
+        gas = log.scene.properties
+        conserves = gas.straight_flight and gas.elastic and gas.fixed_walls and gas.isolated and not gas.spins
+        caveats = {UNEQUAL: not conserves, COLLIDING: collisions > len(points) / 100}
+        return _section(kind, lengths, (len(log.discs),), points, places, *filter(caveats.get, caveats))
 
     @staticmethod
     def combine(results: Sequence[PoincareSection]) -> PoincareSection:
         """Combine the points of several logs; raise UserError if their walls differ."""
-        kind, lengths, parts, discs = results[0].kind, results[0].lengths, list[np.ndarray](), tuple[int, ...]()
-        if any((result.kind, result.lengths) != (kind, lengths) for result in results):
+        first, discs = results[0], tuple[int, ...]()
+        if len(results) == 1:
+            return first
+        parts = [result.stored.copy() for result in results]
+        if any((each.kind, each.lengths, each.places) != (first.kind, first.lengths, first.places) for each in results):
             raise UserError("section: the logs have different walls; analyse them separately")
-        for result in results if len(results) > 1 else ():
-            parts.append(result.stored.copy())
-            parts[-1]["log"] += len(discs)
-            parts[-1]["trajectory"] += sum(discs)
+        for part, result in zip(parts, results, strict=True):
+            part["log"] += len(discs)
+            part["trajectory"] += sum(discs)
             discs += result.discs
-        return _section(kind, lengths, discs, np.concatenate(parts)) if parts else results[0]
+        return _section(first.kind, first.lengths, discs, np.concatenate(parts), first.places)
 
 
-def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarray, *caveats: str) -> PoincareSection:
+def _section(
+    kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarray, places: Any, *caveats: str
+) -> PoincareSection:
     """Return the section that consists of points, with its shares; the other arguments are as in `PoincareSection`."""
     number = np.bincount(points["wall"], minlength=len(lengths))
     starts = np.cumsum([0.0, *np.where((number > 0) | (kind != "hit walls"), [*lengths.values()], 0.0)])
@@ -187,7 +198,8 @@ def _section(kind: str, lengths: dict, discs: tuple[int, ...], points: np.ndarra
     never = Estimate(without / total, error, math.inf) if kind != "hit walls" else None
     ordered, share = tuple(sorted(shares, key=lambda share: share.value)), share_visited(x, y)
     by_name = dict(zip(lengths, number.tolist(), strict=True))
-    return PoincareSection(kind, lengths, by_name, starts, discs, share, ordered, never, points, caveats=caveats)
+    measured = starts, discs, share, ordered, never
+    return PoincareSection(kind, lengths, by_name, *measured, points, places, caveats=caveats)
 
 
 def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:

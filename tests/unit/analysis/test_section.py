@@ -9,7 +9,7 @@ from helpers.logs import log_of, raised
 
 from idealgas import combine, section
 from idealgas.analysis import registry
-from idealgas.analysis.section import FALLING, PoincareSection, SectionAnalysis, share_visited
+from idealgas.analysis.section import UNEQUAL, PoincareSection, SectionAnalysis, share_visited
 from idealgas.analysis.section.points import POINT
 from idealgas.report.picture import html_pictures
 from idealgas.report.sections import make_sections
@@ -177,7 +177,7 @@ def test_crossings_of_a_line_under_gravity(acceleration, line):
     assert 2 in np.bincount(ends.searchsorted(expected[:, 0]))  # some flights cross twice
     for name, column in zip(("time", "position", "sine", "side"), expected.T, strict=True):
         assert result.points[name] == pytest.approx(column, abs=1e-10), name
-    assert FALLING in result.caveats
+    assert UNEQUAL in result.caveats
 
 
 def test_crossings_of_the_images_of_a_line():
@@ -224,6 +224,8 @@ def test_several_logs_are_one_section():
     assert "points" not in json.loads(json.dumps(both.as_dict()))
     other = section(log_of(BOX.replace("[4, 3]", "[4, 5]")))
     raised("different walls", combine, [results[0], other])
+    lines = [section(log, line=line) for log, line in zip(logs, ("3,0,3,2", "0,1,2,1"), strict=True)]  # of one length
+    raised("different walls", combine, lines)
 
 
 def test_what_is_refused():
@@ -264,6 +266,8 @@ def test_a_figure_of_many_points_is_thinned_by_trajectories():
     assert sum(map(len, drawn)) == 20_000
     assert np.isin(points["position"], np.concatenate(drawn)).reshape(100, 1000).sum(axis=0).max() == 100
     assert len(html_pictures(figure.figure(), "", "p")) < 400_000
+    points["trajectory"] = points["disc"] = 999  # all others are never at a wall
+    assert sum(len(line.get_xdata()) for line in figure.figure().axes[0].lines) == 20_000
 
 
 def region(kind, points, rng):
