@@ -64,7 +64,7 @@ class Flow:
             densities, length/time. Each density is multiplied by the mean speed in its chamber, relative to the
             equilibrium mean speed ⟨v⟩ of the gas. The theoretical value is ⟨v⟩/π; it is None if the slit is wider than
             a mean free path or the chamber is denser than DENSEST. The standard error assumes that the numbers of
-            passages in both directions follow Poisson distributions.
+            passages in both directions follow Poisson distributions; without theory, of one passage at least.
     """
 
     density: float
@@ -182,10 +182,11 @@ class EffusionAnalysis(Analysis):
         there, back = flux / mean_speed[:, None] / area[:, :, None]
         home = (beyond[:, 0] > number / 2).astype(int)  # chamber from which the species flows
         drive, both = np.trapezoid(there - back, time) * (1 - 2 * home), np.trapezoid(there + back, time)
-        if not ((slit > 0) & (drive > 0)).all():
-            raise UserError(
-                f"{log.path}: effusion requires a slit wider than a disc between chambers of unequal density"
-            )
+        for name, width, net in zip(discs.name, slit, drive, strict=True):
+            if not (width > 0 and net > 0):
+                of = f" of species '{name}'" if len(slit) > 1 else ""
+                need = f"unequal densities{of} in the two chambers" if width > 0 else f"a slit wider than a disc{of}"
+                raise UserError(f"{log.path}: effusion requires {need}")
         expected, densities = mean_speed / math.pi, np.array([number - beyond[:, 0], beyond[:, 0]]) / area
         phi = np.array([discs.packing_fraction(density) for density in densities])[home] * interacting
         free = np.empty(len(radius))
@@ -194,7 +195,8 @@ class EffusionAnalysis(Analysis):
         speed = (beyond[:, -1] - beyond[:, 0]) * (1 - 2 * home) / (slit * drive)
         paths, law = interacting * slit / free, None
         no_law = _no_law(float(paths.max()), float(phi.max()))
-        error = np.sqrt((np.abs(speed) if no_law else expected) * slit * both) / (slit * drive)
+        passages = np.maximum(np.abs(speed) * slit * both, 1) if no_law else expected * slit * both
+        error = np.sqrt(passages) / (slit * drive)
         theory_error = expected * (LAW_OFF + LAW_OFF_PER_PATH * paths + CROWDING * phi)
         if not no_law:
             leave, come = expected * slit / area
@@ -232,7 +234,7 @@ class EffusionAnalysis(Analysis):
                 ratios[f"{name} / {next(iter(names))}"] = speed.over(first)
         means = {name: _mean(runs) for name, runs in flows.items()}
         together = {name: flow.speed for name, flow in means.items()}
-        return Effusions(flows, together, ratios or None, means if ratios else None)
+        return Effusions(flows, together, ratios or None, means if any(run.species for run in results) else None)
 
 
 def ratio_sentence(ratios: Mapping[str, Estimate] | None) -> str:

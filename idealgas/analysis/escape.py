@@ -54,10 +54,10 @@ class Escapes:
         expected: (INSTANTS,), theoretical mean number of discs that remain; None without theory.
         spread: (INSTANTS,), standard deviation of `left` about `expected`, including the error of theory; None without
             theory.
-        per_path: escapes per unit path length, 1/length; None under gravity.
-        mean_time: total time that all discs spend in the gas, divided by the number of escapes, time. If the escape
-            rate does not depend on the time already spent in the gas, this is the mean escape time, even if some discs
-            have not left yet.
+        per_path: escapes per unit path length, 1/length; None under gravity, and if no disc moves.
+        mean_time: total time that all discs spend in the gas, divided by the number of escapes, time; nan if no disc
+            escapes. If the escape rate does not depend on the time already spent in the gas, this is the mean escape
+            time, even if some discs have not left yet.
         ratio: rate at which a disc of a species escapes, divided by that of a disc of the first species, no unit; None
             for the first species and for the whole gas, and if no discs of one of the two species escape.
     """
@@ -98,7 +98,7 @@ class Escape(Escapes, Result):
         for name, part in self._parts.items():
             of = f"{name}: " if self.species else ""
             rows = {"escapes per path (1/length)": part.per_path, "mean escape time (time)": part.mean_time}
-            rates += [(of + row, estimate) for row, estimate in rows.items() if estimate is not None]
+            rates += [(of + row, item) for row, item in rows.items() if item and math.isfinite(item.value)]
             columns |= {"t": part.time, f"{of}discs in the gas": part.left, f"{of}theory": part.expected}
             columns[f"± {of}(s.d.)"] = part.spread
             notes.append(f"{of}{part.escaped} of {part.discs} discs escaped")
@@ -110,7 +110,7 @@ class Escape(Escapes, Result):
         """Return the number of discs that escaped, and whether the escape rates agree with theory."""
         estimate = self.per_path or self.mean_time
         quantity = "escapes per unit path length" if self.per_path else "time per escape"
-        verdict = agreement([(name, part.per_path or part.mean_time) for name, part in self._parts.items()])
+        verdict = agreement((f"species '{s}'", part.per_path or part.mean_time) for s, part in self._parts.items())
         shown = f"{self.escaped} of {self.discs} discs escaped, {format_estimate(estimate)} {quantity}; {verdict}."
         return shown + ratio_sentence(self._ratios)
 
@@ -177,31 +177,32 @@ class EscapeAnalysis(Analysis):
         if rates and often < 1:
             caveats = (BILLIARD, *caveats)
 
-        def part(*chosen: int) -> Escapes:
-            """Return the escapes of the discs of species, given by their numbers."""
+        present, parts = np.unique(kind).tolist(), list[Escapes]()
+        for chosen in (*([s] for s in present), present):  # each species, then the whole gas
             here, gone = int(np.isin(kind, chosen).sum()), at[np.isin(species, chosen)]
-            spent_time, length = math.fsum(spent[[*chosen]]), math.fsum(path[[*chosen]]) or math.nan
+            spent_time, length = math.fsum(spent[chosen]), 0 if log.has_gravity else math.fsum(path[chosen])
             rate = rates[chosen[0]] if rates and len({rates[s].value for s in chosen}) == 1 else None
             pace = paces[chosen[0]] if often < RARE and len(chosen) == 1 else None
-            number, known = len(gone) or math.nan, parts_of(pace and pace.inverse())
-            per_path = Estimate(len(gone) / length, math.sqrt(number) / length, math.inf, *parts_of(rate))
+            # without escapes, the error of the expected number; that of one escape would overstate the deviation
+            number, count = len(gone) or math.nan, len(gone) or (rate.value * length if rate else 1.0)
+            known = parts_of(pace.inverse() if pace and pace.value else None)
             mean_time = Estimate(spent_time / number, spent_time / number**1.5, math.inf, *known)
+            per_path = None
+            if length:
+                per_path = Estimate(len(gone) / length, math.sqrt(count) / length, math.inf, *parts_of(rate))
             left, expected, spread = here - gone.searchsorted(time, "right"), None, None
             if laws is not None:
                 expected, variance, doubt = laws[:, chosen].sum(axis=1)
                 spread = np.hypot(np.sqrt(variance), doubt)
-            return Escapes(
-                here, len(gone), time, left, expected, spread, per_path if not log.has_gravity else None, mean_time
-            )
-
-        (head, *tail), names = np.unique(kind).tolist(), log.discs.species_names
-        parts = {names[head]: part(head)}
-        for s in tail:
-            theory, of_head = (Estimate(1.0, 0.0, math.inf, *parts_of(paces[k])) for k in (s, head))
+            parts.append(Escapes(here, len(gone), time, left, expected, spread, per_path, mean_time))
+        head, *tail = present
+        for k, s in enumerate(tail, 1):
+            theory, of_head = (Estimate(1.0, 0.0, math.inf, *parts_of(paces[of])) for of in (s, head))
             is_other = species[np.isin(species, (head, s))] == s
             ratio = _ratio(len(speeds[head]), len(speeds[s]), is_other, theory.over(of_head))
-            parts[names[s]] = replace(part(s), ratio=ratio)
-        return Escape(**vars(part(head, *tail)), species=parts if tail else None, caveats=caveats)
+            parts[k] = replace(parts[k], ratio=ratio)
+        named = {log.discs.species_names[s]: part for s, part in zip(present, parts, strict=False)}
+        return Escape(**vars(parts[-1]), species=named if tail else None, caveats=caveats)
 
 
 def _ratio(first: int, other: int, is_other: np.ndarray, theory: Estimate) -> Estimate | None:

@@ -215,6 +215,35 @@ def test_a_species_of_which_no_disc_escapes():
     text = SPECIES.format(2, 4, 1, 0.1, "a", 1) + SPECIES.format(2, 1, 1, 0.1, "b", 1)
     result = measured(HOLE + text)
     assert (result.species["b"].escaped, result.species["b"].ratio) == (0, None)
-    assert result.species["b"].per_path.value == 0
-    assert math.isnan(result.species["b"].mean_time.value)
+    rate = result.species["b"].per_path
+    assert rate.value == 0
+    assert rate.standard_error == pytest.approx(math.sqrt(rate.theory / 12), rel=1e-12)  # of the expected number / 12
+    assert rate.deviation == pytest.approx(-rate.theory / math.hypot(rate.standard_error, rate.theory_error))
+    rows = [name for name, *_ in result.tables()[0].rows]
+    assert rows == ["a: escapes per path (1/length)", "a: mean escape time (time)", "b: escapes per path (1/length)"]
+    assert result.as_dict()["species"]["b"]["mean_time"]["value"] is None
     assert len(result.figure().axes) == 1
+    opening = measured(HOLE.replace("absorbing = true", "absorbing = true, opens_at = 11") + text)
+    rate = opening.species["b"].per_path
+    assert (rate.theory, rate.standard_error) == (None, pytest.approx(1 / 12, rel=1e-12))  # of one escape
+
+
+def test_a_species_at_rest_has_no_rate():
+    text = SPECIES.format(2, 4, 1, 0.1, "a", 1) + SPECIES.format(2, 1, 0, 0.1, "b", 1)
+    result = measured(HOLE + text)
+    assert result.species["b"].per_path is None
+    assert [name for name, *_ in result.tables()[0].rows if name.startswith("b")] == []
+
+
+def test_a_species_that_never_reaches_the_hole_differs_from_theory():
+    """Disc a flies into the hole; the twelve discs b fly above and below it, 12 · 12 · 30 long in total."""
+    narrow = HOLE.replace("[9, 2]", "[9, 3.8]").replace("[9, 6]", "[9, 4.2]") + "interactions.discs = false\n"
+    places = [(x, y) for x in (2, 5) for y in (0.5, 1, 1.5, 6.5, 7, 7.5)]
+    discs = [SPECIES.format(2, 4, 1, 0.1, "a", 1)] + [SPECIES.format(x, y, 30, 0.1, "b", 1) for x, y in places]
+    result = measured(narrow + "".join(discs))
+    expected = (0.8 + 0.2 * math.pi) / (math.pi * (9.8 * 7.8 - 0.08 - math.pi * 0.01)) * 12 * 12 * 30
+    error = (0.8 + 0.2 * math.pi) / (2 * (9.8 + 7.8) + 0.8 + 0.2 * math.pi) * expected
+    deviation = -expected / math.hypot(math.sqrt(expected), error)
+    assert result.species["b"].per_path.deviation == pytest.approx(deviation, rel=1e-6)
+    sigma = f"{deviation:.1f}σ".replace("-", "−")
+    assert f"; 1 of 2 differs from theory (largest deviation {sigma}, species 'b')." in result.summary()
