@@ -77,8 +77,9 @@ class Lyapunov(Result):
     growth: Annotated[np.ndarray, OMITTED]
 
     def lifetime(self, digits: int) -> float:
-        """Return the time in which an error in the last of `digits` digits grows to the size of the value itself."""
-        return digits * math.log(10) / self.exponents[0].value
+        """Return the time in which an error in the last of `digits` digits grows to the value; infinite if λ1 <= 0."""
+        rate = self.exponents[0].value
+        return digits * math.log(10) / rate if rate * self.time[-1] > 1e-9 else math.inf  # less is due to rounding
 
     def plain_tables(self) -> list[Table]:
         """Return the tables of the exponents (cut short if there are many), of chaos, and of the loss of digits."""
@@ -99,7 +100,8 @@ class Lyapunov(Result):
             notes.append(f"exponents form pairs λ and −λ to within {self.pairing:.1g}")
         if self.largest_zero is not None:
             notes.append(f"{self.zeros} exponents vanish due to conservation laws, to within {self.largest_zero:.1g}")
-        rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g")) for digits in PRECISIONS]
+        never = "never" if math.isinf(self.lifetime(1)) else None
+        rows = [(f"{digits} digits", Number(self.lifetime(digits), ".3g", instead=never)) for digits in PRECISIONS]
         return [
             replace(estimates("Lyapunov exponents (1/time)", exponents, notes), most=SHOWN_ROWS),
             estimates(f"Chaos; mean free time {self.mean_free_time:.4g}", chaos),
@@ -108,6 +110,8 @@ class Lyapunov(Result):
 
     def summary(self) -> str:
         """Return the headline: the growth rate of deviations and the loss of digits; neither has a theory."""
+        if math.isinf(self.lifetime(1)):
+            return f"Small deviations do not grow exponentially: λ = {format_estimate(self.exponents[0])}."
         return (
             f"Small deviations grow at a rate of λ = {format_estimate(self.exponents[0])}: each collision of a disc "
             f"costs {format_estimate(self.digits)} digits, and float64 has lost its 16 digits after t = "
@@ -119,23 +123,18 @@ class Lyapunov(Result):
         from idealgas.presentation.style import BLACK, COLOURS, GREY, panels
 
         figure, axes = panels(1 + (len(self.exponents) > 1))
-        largest = self.exponents[0].value
-        shown = self.time <= 2 * self.lifetime(32) if self.time[-1] > 2 * self.lifetime(32) else slice(None)
+        values = [estimate.value for estimate in self.exponents]
+        shown = slice(max(self.time.searchsorted(2 * self.lifetime(32), "right"), 2))
         time, digits = self.time[shown], self.growth[shown] / math.log(10)
         axes[0].plot(time, digits, color=COLOURS[0], label="leading deviation")
-        axes[0].plot(time, largest * time / math.log(10), "--", color=BLACK, label=f"λ = {largest:.4g}")
+        axes[0].plot(time, values[0] * time / math.log(10), "--", color=BLACK, label=f"λ = {values[0]:.4g}")
         for lost in PRECISIONS:
             if lost < digits[-1]:
                 axes[0].axhline(lost, color=GREY, linewidth=0.8)
         axes[0].set(xlabel="time", ylabel="growth (decimal digits)")
         axes[0].legend()
         for ax in axes[1:]:
-            ax.plot(
-                range(1, len(self.exponents) + 1),
-                [estimate.value for estimate in self.exponents],
-                ".",
-                color=COLOURS[0],
-            )
+            ax.plot(range(1, len(values) + 1), values, ".", color=COLOURS[0])
             ax.axhline(0, color=GREY, linewidth=0.8)
             ax.set(xlabel="index of the exponent", ylabel="exponent (1/time)")
         return figure

@@ -10,6 +10,7 @@ from idealgas.columns import Kind
 from idealgas.errors import NotApplicableError, UserError
 from idealgas.jit import njit
 from idealgas.log import Flights, Log
+from idealgas.log.flights import NO_EVENT
 from idealgas.physics.tangent import collide, fly
 from idealgas.scene.walls import number_walls
 from idealgas.tallies.contacts import WallNormals
@@ -55,6 +56,7 @@ class Bodies:
 
     Attributes:
         mass: (N + P + 1,), masses of discs and pistons; infinite for the last body, which stands for all other walls.
+        last_contact: (N,), time of the last collision of each disc; -inf if it has not collided.
         systems: number of independent systems: N if the discs do not interact, and otherwise 1.
         free: (D,), indices of the D free components of a deviation of one system among its flattened components: all
             positions, followed by all velocities in the same order. A piston has only the two along its axis.
@@ -80,7 +82,7 @@ class Bodies:
         self._vibrating = [(k, side) for k, side in enumerate(log.scene.box.sides) if hasattr(side, "vibrating")]
         restitution = log.scene.restitution
         self._factors = (2.0, 2.0) if restitution is None else (1.0 + restitution.normal, 1.0 + restitution.wall)
-        self._contact_duration = log.scene.contact_duration
+        self.last_contact = np.full(number, -math.inf)
         self._last: dict[int, tuple[float, float]] = {}  # time of the last hit and velocity after it, by piston
 
     def contacts(self, flights: Flights) -> Contacts:
@@ -95,7 +97,9 @@ class Bodies:
             raise _refusal(self._log, f"a program changes velocities at t = {flights.end[changed][0]:g}")
         pairs = np.flatnonzero(flights.kind == Kind.DISC)[::2]
         hits = np.flatnonzero(is_wall_hit(flights.kind))
-        parts = zip(self._collisions(flights, pairs), self._hits(flights, hits), strict=True)
+        duration, recent = self._log.scene.contact_duration, np.empty(len(flights.disc), bool)
+        _find_recent(recent, self.last_contact, flights.disc, flights.end, flights.kind, duration)
+        parts = zip(self._collisions(flights, pairs, recent), self._hits(flights, hits, recent), strict=True)
         order = np.concatenate((pairs, hits)).argsort()
         contacts = Contacts(*(np.concatenate(part)[order] for part in parts))
         if (grazing := (contacts.normal * contacts.velocity).sum(axis=1) == 0.0).any():
@@ -105,30 +109,25 @@ class Bodies:
             )
         return contacts
 
-    def _factor(self, which: int, durations: np.ndarray) -> np.ndarray:
-        """Return 1 + e for collisions of two discs (0) or with walls (1), given the times since the last collision."""
-        return np.where(durations < self._contact_duration, 2.0, self._factors[which])
-
-    def _collisions(self, flights: Flights, first: np.ndarray) -> Contacts:
+    def _collisions(self, flights: Flights, first: np.ndarray, recent: np.ndarray) -> Contacts:
         """Return the collisions of two discs, whose flights are `first` and the next ones."""
         assert flights.end_position is not None
         i, j, mass = flights.disc[first], flights.disc[first + 1], self.mass
         apart, box = flights.end_position[first] - flights.end_position[first + 1], np.array(self._log.box)
         apart -= np.where(self._log.periodic, box, 0.0) * np.rint(apart / box)
         curvature = 1.0 / np.hypot(*apart.T)
-        durations = flights.end - flights.start
-        factor = self._factor(0, np.minimum(durations[first], durations[first + 1]))
+        factor = np.where(recent[first] | recent[first + 1], 2.0, self._factors[0])
         share_i, share_j = (factor * mass[other] / (mass[i] + mass[j]) for other in (j, i))
         velocity, normal = flights.end_velocity[first] - flights.end_velocity[first + 1], apart * curvature[:, None]
         return Contacts(i, j, flights.end[first], share_i, share_j, normal, curvature, velocity, np.zeros(len(first)))
 
-    def _hits(self, flights: Flights, hits: np.ndarray) -> Contacts:
+    def _hits(self, flights: Flights, hits: np.ndarray, recent: np.ndarray) -> Contacts:
         """Return the collisions with walls and pistons, whose velocities follow from the velocity changes of discs."""
         i, wall, time = flights.disc[hits], -1 - flights.partner[hits], flights.end[hits]
         normal, curvature = self._normals.at(flights, hits)
         j = self._body_of_wall[wall]
         ratio = self.mass[i] / self.mass[j]
-        share_i = self._factor(1, time - flights.start[hits]) / (1.0 + ratio)
+        share_i = np.where(recent[hits], 2.0, self._factors[1]) / (1.0 + ratio)
         before, change = flights.end_velocity[hits], flights.new_velocity[hits] - flights.end_velocity[hits]
         approach = -(change * normal).sum(axis=1) / share_i
         velocity = before + (approach - (before * normal).sum(axis=1))[:, None] * normal
@@ -172,8 +171,10 @@ class TangentVectors:
         """Start with deviations (N + P + 1, 4, K) at time `start`."""
         self.bodies, self.values = bodies, np.ascontiguousarray(values)
         self.collisions = np.zeros(len(values), np.int64)
-        self._log, self._start = log, start
-        self._since = np.full(len(values), start)
+        self._log, self._start, self._since = log, start, np.full(len(values), start)
+        duration = log.scene.contact_duration
+        for rows in log.chunks(("disc", "time", "kind"), log.row_at(start - duration), log.row_at(start, "right")):
+            _find_recent(np.empty(len(rows.disc), bool), bodies.last_contact, *rows, duration)
 
     def until(self, end: float, every: int, progress: ReadProgress | None = None) -> Iterator[float]:
         """Follow the log to time `end`; yield the time after each batch of `every` collisions of a disc, and `end`."""
@@ -259,6 +260,15 @@ def _refusal(log: Log, reason: str) -> NotApplicableError:
 
 
 @njit
+def _find_recent(recent, last, discs, times, kinds, duration):
+    """Find out which events follow less than `duration` after a collision of the disc; update the times in `last`."""
+    for k in range(len(discs)):
+        recent[k] = times[k] - last[discs[k]] < duration
+        if kinds[k] != Kind.STEERED and kinds[k] != NO_EVENT:
+            last[discs[k]] = times[k]
+
+
+@njit
 def _advance(deviations, since, collisions, contacts, k, missing, number):
     """Propagate deviations through collisions, from collision k until `missing` collisions of a disc have happened.
 
@@ -272,10 +282,8 @@ def _advance(deviations, since, collisions, contacts, k, missing, number):
             since[body] = contacts.time[k]
             collisions[body] += 1
             missing -= body < number
-        share_i, share_j, normal = contacts.share_i[k], contacts.share_j[k], contacts.normal[k]
-        collide(
-            deviations, i, j, share_i, share_j, normal, contacts.curvature[k], contacts.velocity[k], contacts.pull[k]
-        )
+        shares, normal, velocity = (contacts.share_i[k], contacts.share_j[k]), contacts.normal[k], contacts.velocity[k]
+        collide(deviations, i, j, shares[0], shares[1], normal, contacts.curvature[k], velocity, contacts.pull[k])
         k += 1
     return k, missing
 

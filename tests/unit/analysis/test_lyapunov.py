@@ -1,6 +1,7 @@
 """Lyapunov exponents: what a whole spectrum has to fulfil, published values, exact orbits, and growth in other ways."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -182,6 +183,52 @@ def test_pairs_of_a_single_disc(scene):
     assert result.zeros == 2
     assert result.largest_zero < 1e-3 * values[0]
     assert result.localisation is None
+
+
+FLAT = gas(30, 0.1, (8, 6), "until = 250", seed=1, then="interactions.discs = false")
+DECAYING = """
+box.size = [8, 6]
+run.events = 300
+restitution = { normal = 1, wall = 0.9 }
+disc = [{ position = [3, 3], velocity = [0.8, 0.6], radius = 0.5 }]
+"""
+TRIANGLE = """
+box.size = [9, 5]
+run.events = 150
+disc = [{ position = [3.3, 2.1], velocity = [0.8, 0.6], radius = 0.01 }]
+wall = [
+    { from = [0.3, 0.2], to = [8.1, 1.3] },
+    { from = [8.1, 1.3], to = [4.2, 4.4] },
+    { from = [4.2, 4.4], to = [0.3, 0.2] },
+]
+"""
+
+
+@pytest.mark.usefixtures("uncompiled")
+@pytest.mark.parametrize("scene", [FLAT, TRIANGLE, DECAYING], ids=["flat walls", "triangle", "decaying"])
+def test_motion_that_is_not_chaotic(scene):
+    """No digits are ever lost if λ1 is 0, as in the whole spectrum between flat walls, or negative; all is drawn."""
+    result = idealgas.lyapunov(log_of(scene), start=0.0, exponents=4)
+    values = [each.value for each in result.exponents]
+    if scene == DECAYING:
+        assert max(values) < 0
+    else:
+        assert values == pytest.approx([0.0] * 4, abs=1e-14)
+        rounded_up = replace(result, exponents=(replace(result.exponents[0], value=3e-17),))
+        assert rounded_up.lifetime(7) == math.inf
+    assert result.lifetime(7) == math.inf
+    assert result.summary().startswith("Small deviations do not grow exponentially: λ = ")
+    assert [cell for _, cell in result.plain_tables()[-1].shown] == ["never"] * 3
+    growth, spectrum = (ax.lines[0].get_data() for ax in result.figure().axes)
+    assert np.array_equal(growth, [result.time, result.growth / math.log(10)])
+    assert np.array_equal(spectrum, [range(1, 5), values])
+
+
+@pytest.mark.usefixtures("uncompiled")
+def test_single_exponent_between_flat_walls():
+    """A deviation that grows like t has a rate of order ln(t)/t."""
+    result = idealgas.lyapunov(log_of(FLAT), start=0.0)
+    assert 0.2 < result.exponents[0].value * result.time[-1] / math.log(result.time[-1]) < 1
 
 
 DRIVEN = "gravity.acceleration = [0, -0.02]\nbox.left = { vibrating = { amplitude = 0.1, frequency = 0.2 } }\n"

@@ -267,3 +267,28 @@ def test_a_program_that_changes_velocities_is_refused(tmp_path):
         run.reverse()
         run.advance(until=4)
     raised("because a program changes velocities at t = 2", idealgas.sensitivity, open_log(path))
+
+
+HIT = "box.size = [8, 6]\nrun.until = 1\n"
+CHANGED = "gravity.acceleration = [[0, [0, 0]], [0.48, [0, -0.1]]]\n"
+
+
+@pytest.mark.parametrize(
+    ("place", "velocity", "duration", "start", "more", "factors"),
+    [
+        ([0.51, 3], [-1, 0], 1e-9, 0.0, "", (-0.5, 1)),
+        ([0.51, 3], [-1, 0], 0.05, 0.0, "", (-0.5, 1)),
+        ([1.01, 3], [-1, 0], 0.05, 0.47, "", (-0.5, 1)),
+        ([1.01, 3], [-1, 0], 0.05, 0.2, "", (-0.5, 1)),
+        ([1.01, 3], [-1, 0], 0.05, 0.2, CHANGED, (-0.5, 1)),
+        ([1.03, 1.01], [-1, -1], 0.05, 0.52, "", (-1, 1)),
+        ([1.03, 1.01], [-1, -1], 0.05, 0.2, "", (-1, -0.5)),
+        ([1.03, 1.01], [-1, -1], 0.01, 0.52, "", (-0.5, 1)),
+    ],
+)
+def test_contact_duration_counts_from_collisions(place, velocity, duration, start, more, factors):
+    """A hit is elastic only soon after a collision, which may precede the window, not after its start or a new g."""
+    restitution = f"restitution = {{ normal = 1, wall = 0.5, contact_duration = {duration} }}\n"
+    log = log_of(f"{HIT}{more}{restitution}disc = [{{ position = {place}, velocity = {velocity}, radius = 0.5 }}]\n")
+    assert log.state_at(1.0).velocity[0, 0] == factors[0] * velocity[0]
+    assert np.diag(idealgas.sensitivity(log, start, 1.0)[0, :, 0]) == pytest.approx([*factors, *factors], abs=1e-14)
