@@ -22,7 +22,7 @@ MARKERS = {
     "absorbing walls": {"resolve.absorb", "absorbing.leave_gas"},
     "rotation": {"rotation.tangential_impulse", "rotation.tangential_impulse_at_wall"},
     "thermal walls": {"thermal.uniform"},
-    "vibrating sides": {"vibration.vibrating_contact", "vibration.sine_contact", "vibration.side_velocity"},
+    "vibrating sides": {"vibration.vibrating_contact", "vibration.side_velocity"},
     "piston": {"piston.advance_piston", "piston.piston_contact", "piston.collide_with_piston"},
     "thermostat": {"thermostat.uniform", "thermostat.andersen_collision"},
 }
