@@ -10,7 +10,7 @@ from helpers.logs import log_of, raised
 from idealgas.analysis.effusion import INSTANTS, Effusion, EffusionAnalysis, _no_law, share_beyond
 from idealgas.fields import from_dict
 
-pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
+pytestmark = pytest.mark.usefixtures("uncompiled")
 
 SCENE = """
 box.size = [20, 10]

@@ -13,7 +13,7 @@ from idealgas.tallies.reach import reach_of
 from idealgas.theory import hard_discs
 from idealgas.theory.values import Theory
 
-pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
+pytestmark = pytest.mark.usefixtures("uncompiled")
 
 HOLE = """
 box.size = [10, 8]

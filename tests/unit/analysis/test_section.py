@@ -14,7 +14,7 @@ from idealgas.analysis.section.points import POINT
 from idealgas.report.picture import html_pictures
 from idealgas.report.sections import make_sections
 
-pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
+pytestmark = pytest.mark.usefixtures("uncompiled")
 
 CIRCLE = """
 box.size = [10, 10]

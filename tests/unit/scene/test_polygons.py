@@ -61,7 +61,6 @@ CLOSED = [*HEXAGON, HEXAGON[0]]
     ],
 )
 @pytest.mark.usefixtures("uncompiled")
-@pytest.mark.interpreted
 def test_the_same_log_as_with_its_pieces_one_by_one(tmp_path, keys, points, single):
     one_table = parse_scene(table(keys, points))
     one_by_one = parse_scene(singles(keys, single))
@@ -88,7 +87,6 @@ def test_every_piece_has_a_name_and_the_first_one_a_label():
 
 
 @pytest.mark.usefixtures("uncompiled")
-@pytest.mark.interpreted
 def test_logs_and_scenes_made_from_them_contain_the_text_of_the_user(tmp_path):
     scene, path = parse_scene(PARTITION), tmp_path / "run.h5"
     text = dump_document(scene)
@@ -113,7 +111,6 @@ def test_logs_and_scenes_made_from_them_contain_the_text_of_the_user(tmp_path):
 
 
 @pytest.mark.usefixtures("uncompiled")
-@pytest.mark.interpreted
 def test_a_resumed_run_is_the_same_as_a_whole_one(tmp_path):
     path = tmp_path / "run.h5"
     with logged(parse_scene(PARTITION), tmp_path / "whole.h5") as log:

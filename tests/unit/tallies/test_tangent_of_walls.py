@@ -11,7 +11,7 @@ import idealgas
 from idealgas import open_log, open_run, parse_scene
 from idealgas.columns import SIDES, Kind
 
-pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
+pytestmark = pytest.mark.usefixtures("uncompiled")
 
 STEP = mpmath.mpf(10) ** -20
 
