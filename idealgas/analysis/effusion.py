@@ -238,7 +238,7 @@ class EffusionAnalysis(Analysis):
 
 
 def ratio_sentence(ratios: Mapping[str, Estimate] | None) -> str:
-    """Return a sentence with the first ratio and whether all ratios agree with Graham's law; empty without ratios."""
+    """Return a sentence that states the first ratio and whether all agree with Graham's law; empty if there is none."""
     if not ratios:
         return ""
     name, ratio = next(iter(ratios.items()))

@@ -131,7 +131,7 @@ class WallTable(SteppedTable):
 
     @property
     def piece(self) -> int | None:
-        """Number of a piece of a polygonal line and of the point at which it begins; None for other walls."""
+        """Index of this piece in its polygonal line, whose piece k begins at point k; None for other walls."""
         return self._corners[0] if self._corners else None
 
     def key(self, *names: str | int) -> Key:

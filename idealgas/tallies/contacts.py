@@ -35,7 +35,7 @@ class WallNormals:
         self._images = np.array(list(itertools.product(*shifts)))
 
     def at(self, flights: Flights, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the unit normals (H, 2) of the walls that are hit at the ends of flights, and their curvatures (H,).
+        """Return the unit normals (H, 2) and the curvatures (H,) of walls where flights end by hitting them.
 
         A disc that touches an arc, a fixed disc or the end of a wall is at a fixed distance from a centre, and the
         normal is along the line from the centre to the disc: away from the centre for fixed discs, ends and arcs that

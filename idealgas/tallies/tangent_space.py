@@ -270,7 +270,7 @@ def _find_recent(recent, last, discs, times, kinds, duration):
 
 @njit
 def _advance(deviations, since, collisions, contacts, k, missing, number):
-    """Propagate deviations through collisions, from collision k until `missing` collisions of a disc have happened.
+    """Propagate deviations through collisions, starting with collision k, until discs have collided `missing` times.
 
     A collision of two of the `number` discs counts for both. Return the index of the next collision, and how many
     collisions of a disc are still missing.

@@ -198,8 +198,9 @@ def _section(
     never = Estimate(without / total, error, math.inf) if kind != "hit walls" else None
     ordered, share = tuple(sorted(shares, key=lambda share: share.value)), share_visited(x, y)
     by_name = dict(zip(lengths, number.tolist(), strict=True))
-    measured = starts, discs, share, ordered, never
-    return PoincareSection(kind, lengths, by_name, *measured, points, places, caveats=caveats)
+    return PoincareSection(
+        kind, lengths, by_name, starts, discs, share, ordered, never, points, places, caveats=caveats
+    )
 
 
 def share_visited(x: np.ndarray, y: np.ndarray) -> Estimate | None:
@@ -235,7 +236,7 @@ def sample(number: int, most: int) -> np.ndarray:
 
 
 def _boxes(i: np.ndarray, j: np.ndarray, side: int, width: int) -> tuple[float, np.ndarray]:
-    """Return the area of boxes that contain points, and for each point the area (n,) of boxes without others.
+    """Return the area of the boxes that contain points, and for each point (n,) the area of the boxes with no other.
 
     Boxes are `width` pixels wide and end at the sides of the unit square, which has `side` pixels along each axis. The
     areas are averages over all positions of the grid of boxes on the pixels, to which the points (i, j) belong.

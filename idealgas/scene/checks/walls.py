@@ -22,7 +22,7 @@ SHORTEST = 1e-9
 
 
 def walls_issues(scene: Document) -> Iterator[Issue]:
-    """Check each wall and fixed disc by itself, and check for names that are taken."""
+    """Check each wall and fixed disc separately, and check that the names of walls are unique."""
     size = scene.box.size
     for disc in scene.fixed_discs:
         if not all(0 <= x <= length for x, length in zip(disc.start, size, strict=True)):
