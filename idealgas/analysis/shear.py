@@ -22,9 +22,9 @@ from idealgas.tallies.equilibrium import kind_of_state, nonstationary_reason, no
 from idealgas.tallies.exchange import Exchange
 from idealgas.tallies.stream import add_to, block_edges, frames, stream
 from idealgas.tallies.stress import PassedOn
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 from idealgas.theory.conserved import centre_of_mass_velocity
-from idealgas.theory.values import Theory, enskog_error, fluid
+from idealgas.theory.values import Theory, fluid
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -258,10 +258,10 @@ def _theories(log: Log, reduced_rate: float) -> tuple[Theory | None, Theory | No
         return None, None
     phi, density, z = gas.packing_fraction, len(gas) / gas.area, fluid(gas.packing_fraction)
     chi = hard_discs.fluid_contact_value(phi)
-    viscosity = hard_discs.enskog_viscosity(2 * gas.radius[0], density, 1.0, gas.mass[0], chi)
+    viscosity = enskog.viscosity(2 * gas.radius[0], density, 1.0, gas.mass[0], chi)
     bath = reduced_rate * properties.thermostat_rate / properties.shear
     of_finite = (z.value - 1) / len(gas)  # relative difference of the collisional part for N discs
-    error = enskog_error("viscosity", phi) + bath + 2 * reduced_rate**2
+    error = enskog.relative_error("viscosity", phi) + bath + 2 * reduced_rate**2
     return (
         Theory(viscosity, error * viscosity, "Enskog") if bath <= FAST and reduced_rate < math.inf else None,
         Theory(z.value, z.error + of_finite, z.source).times(density),

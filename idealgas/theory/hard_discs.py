@@ -305,45 +305,6 @@ def effusion_flux(number_density: float, temperature: float, mass: float) -> flo
     return number_density * mean_speed(temperature, mass) / math.pi
 
 
-def enskog_diffusion(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the diffusion coefficient D = T/mΓ = √(T/πm)/(2σnχ) from Enskog theory, length²/time.
-
-    This is the first approximation, in which the velocity correlation decays as exp(-Γt). Source: Gass, J. Chem. Phys.
-    54, 1898 (1971).
-    """
-    return math.sqrt(temperature / (math.pi * mass)) / (2 * diameter * number_density * chi)
-
-
-def enskog_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the shear viscosity η₀ (1/χ + y + 0.8729 χy²) from Enskog theory, mass/time.
-
-    y = πnσ²/2 and η₀ = 1.022 √(mT/π)/2σ: Gass, J. Chem. Phys. 54, 1898 (1971).
-    """
-    y = math.pi * number_density * diameter**2 / 2
-    dilute = 1.022 * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
-    return dilute * (1 / chi + y + 0.8729 * chi * y * y)
-
-
-def enskog_bulk_viscosity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the bulk viscosity ζ = (4/π) χ y² √(mT/π)/2σ from Enskog theory, mass/time; y = πnσ²/2.
-
-    It is exact within Enskog theory, which describes collisions of discs whose positions are distributed as in
-    equilibrium. Gass, J. Chem. Phys. 54, 1898 (1971), writes it as 1.246 times the η₀ of `enskog_viscosity`.
-    """
-    y = math.pi * number_density * diameter**2 / 2
-    return 4 / math.pi * chi * y * y * math.sqrt(mass * temperature / math.pi) / (2 * diameter)
-
-
-def enskog_conductivity(diameter: float, number_density: float, temperature: float, mass: float, chi: float) -> float:
-    """Return the thermal conductivity λ₀ (1/χ + 3y/2 + 0.8718 χy²) from Enskog theory, 1/time; y = πnσ²/2.
-
-    λ₀ = 1.029 (2/σ) √(T/πm): Gass, J. Chem. Phys. 54, 1898 (1971).
-    """
-    y = math.pi * number_density * diameter**2 / 2
-    dilute = 1.029 * 2 / diameter * math.sqrt(temperature / (math.pi * mass))
-    return dilute * (1 / chi + 1.5 * y + 0.8718 * chi * y * y)
-
-
 def long_time_tail(time: ArrayLike, number_density: float, diffusion: float, kinematic_viscosity: float) -> np.ndarray:
     """Return the velocity correlation ⟨v(0)·v(t)⟩/⟨v²⟩ = 1/(8πn(D + ν)t) at long times t (no unit).
 

@@ -62,20 +62,6 @@ For 480 discs the excess is 0.71, 0.58, 0.44, 0.36 and 0.20 at φ = 0.72, 0.75, 
 PUBLISHED_NUMBER, SAME_FRACTION, SLOPE = 870, 1e-4, 50.0
 """Number of discs in the published simulations, largest accepted difference from their φ, and largest dZ/dφ there."""
 
-ENSKOG_ERRORS = {
-    "diffusion": ((0.0, 0.1, 0.3, 0.45), (0.0, 0.11, 0.25, 0.31)),
-    "viscosity": ((0.0, 0.4, 0.5, 0.6), (0.02, 0.025, 0.04, 0.16)),
-    "conductivity": ((0.0, 0.4, 0.5, 0.6), (0.02, 0.025, 0.025, 0.05)),
-    "bulk viscosity": ((0.0, 0.6), (0.03, 0.03)),
-}
-"""Packing fractions, and relative differences of measured transport coefficients from Enskog theory at these φ.
-
-The values for self-diffusion are for 500 discs; they increase with N, because Enskog theory lacks the long-time tail.
-Above φ = 0.45 the difference decreases again, to 0.13 at 0.55 and 0.04 at 0.62. The other coefficients are for 250
-discs, with a resolution of 1.5 to 2 %. Near freezing the viscosity is far above the Enskog value: García-Rojo, Luding &
-Brey, Phys. Rev. E 74, 061305 (2006).
-"""
-
 FRACTIONS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 NUMBERS = (3, 4, 6, 10, 20, 50, 100)
 ERRORS = {
@@ -180,11 +166,6 @@ def fluid(packing_fraction: float) -> Theory:
         )
     z = float(hard_discs.compressibility_factor(packing_fraction))
     return Theory(z, _series_error(packing_fraction) * (z - 1), "virial series to B10, resummed")
-
-
-def enskog_error(quantity: str, packing_fraction: float) -> float:
-    """Return the relative error of an Enskog transport coefficient; quantity: a key of ENSKOG_ERRORS."""
-    return float(np.interp(packing_fraction, *ENSKOG_ERRORS[quantity]))
 
 
 def crystal(packing_fraction: float) -> Theory:

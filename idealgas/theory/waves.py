@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 
 MOST_CALLS = 4000
 """Number of evaluations of the correlation function after which a fit is abandoned."""
@@ -96,7 +96,7 @@ def sound_of_discs(phi: float, temperature: float, mass: float, diameter: float)
     z, slope = float(hard_discs.compressibility_factor(phi)), float(hard_discs.inverse_compressibility(phi))
     density, gamma = 4 * phi / (math.pi * diameter**2), 1 + z**2 / slope
     state = diameter, density, temperature, mass, hard_discs.fluid_contact_value(phi)
-    viscous = hard_discs.enskog_viscosity(*state) + hard_discs.enskog_bulk_viscosity(*state)
-    spreading = hard_discs.enskog_conductivity(*state) / (density * gamma)  # c_P = γ per disc
+    viscous = enskog.viscosity(*state) + enskog.bulk_viscosity(*state)
+    spreading = enskog.conductivity(*state) / (density * gamma)  # c_P = γ per disc
     damping = (viscous / (density * mass) + (gamma - 1) * spreading) / 2
     return Fluid(math.sqrt(temperature / mass * (slope + z**2)), damping, spreading, gamma)

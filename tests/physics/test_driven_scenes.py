@@ -13,7 +13,7 @@ from idealgas import evolution, profile
 from idealgas.analysis.evolution.theory import expected_law, piston_force
 from idealgas.statistics.autoregression import inefficiency
 from idealgas.statistics.estimates import estimate, mean, ratio
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 
 pytestmark = pytest.mark.slow
 
@@ -113,7 +113,7 @@ def test_compression():
     for length, step in zip(middles, np.diff(lengths), strict=True):
         n, t = 40 / length, math.exp(log_t)
         chi = float(hard_discs.contact_value(n * math.pi * 0.0004))
-        excess = hard_discs.enskog_viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
+        excess = enskog.viscosity(0.04, n, t, 1.0, chi) * 0.0125 / (length * n * t)
         log_t -= piston_force(log, length) * (1 + excess) * step
     agrees(of_runs(actual, math.exp(log_t)), 1.5e-3)
 

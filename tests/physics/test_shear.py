@@ -22,7 +22,7 @@ from idealgas.physics.exact_sum import values as values_of
 from idealgas.physics.periodic import Periodic
 from idealgas.physics.shear import flow_at, make_shear
 from idealgas.run.effects import make_effects
-from idealgas.theory.values import enskog_error
+from idealgas.theory import enskog
 
 GOLDEN = ROOT / "tests" / "cases" / "golden" / "sheared.toml"
 
@@ -37,7 +37,7 @@ def test_what_a_heat_bath_does_to_the_theory():
     """At x times the collision rate it takes a part of about x of the viscosity, and the rate a part of 2a²."""
     result = shear_of("run.until=6")
     a, phi = result.reduced_rate, 30 * math.pi / 4 / 8.9**2
-    error = enskog_error("viscosity", phi) + a * 0.02 / 0.06 + 2 * a**2
+    error = enskog.relative_error("viscosity", phi) + a * 0.02 / 0.06 + 2 * a**2
     assert result.viscosity.theory_error == pytest.approx(error * result.viscosity.theory)
     result = shear_of("run.until=2", "thermostat.rate=2", "box.bottom.shear=0.6", "box.top.shear=0.6")
     assert result.viscosity.theory is None

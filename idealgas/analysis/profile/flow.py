@@ -10,8 +10,8 @@ from idealgas.analysis.profile.theory import JUMP, POINTS
 from idealgas.columns import sides_across
 from idealgas.log import Log
 from idealgas.tallies.equilibration import Window
-from idealgas.theory import hard_discs
-from idealgas.theory.values import Theory, enskog_error
+from idealgas.theory import enskog, hard_discs
+from idealgas.theory.values import Theory
 
 LAW = "Poiseuille with slip at the sides, viscosity by Enskog"
 """Name of the law of the flow."""
@@ -94,14 +94,14 @@ def expected_flow(log: Log, axis: int, edges: np.ndarray) -> Flow | None:
         return None
     chi = hard_discs.fluid_contact_value(phi)
     state = (2 * radius, density, temperature, mass, chi)
-    viscosity, conductivity = hard_discs.enskog_viscosity(*state), hard_discs.enskog_conductivity(*state)
+    viscosity, conductivity = enskog.viscosity(*state), enskog.conductivity(*state)
     path = hard_discs.mean_free_path(2 * radius, density, phi)
     thermal_path = 1.022 * 2 / math.sqrt(math.pi) * path  # ℓ
     weight = mass * density * log.gravity[1 - axis]
     curvature, slip = weight / (2 * viscosity), SLIP * thermal_path
     fastest = curvature * (gap / 4 + slip) * gap
     heat = viscosity * (curvature * gap * gap / 4) ** 2 / 3 + JUMP * path * abs(weight * fastest) * gap / 2
-    off = enskog_error("viscosity", phi) + heat / conductivity / temperature / 2
+    off = enskog.relative_error("viscosity", phi) + heat / conductivity / temperature / 2
     steps = (np.arange(POINTS) + 0.5) / POINTS
     y = np.clip(edges[:-1, None] + np.diff(edges)[:, None] * steps - radius, 0.0, gap)
     layers = np.exp(-y / thermal_path) + np.exp((y - gap) / thermal_path)

@@ -10,8 +10,8 @@ from idealgas.log import Log
 from idealgas.physics.collision_rates import contact_value
 from idealgas.statistics.estimates import Estimate, ratio
 from idealgas.tallies.equilibration import Window
-from idealgas.theory import hard_discs
-from idealgas.theory.values import Theory, enskog_error
+from idealgas.theory import enskog, hard_discs
+from idealgas.theory.values import Theory
 
 SHEARED_SIDES = "bottom and top"
 """Name of the two sheared sides together; only the sum of their energies is meaningful."""
@@ -56,9 +56,9 @@ def _fourier(log: Log, axis: int) -> Theory | None:
     phi = gas.packing_fraction
     state = 2 * float(gas.radius[0]), len(gas) / gas.area, 1.0, float(gas.mass[0]), float(contact_value(phi))
     fall = ends.low**1.5 - ends.high**1.5
-    flow = hard_discs.enskog_conductivity(*state) * fall * 2 / 3 / log.box[axis] * log.box[1 - axis]
+    flow = enskog.conductivity(*state) * fall * 2 / 3 / log.box[axis] * log.box[1 - axis]
     of_jumps = 1.5 * ends.error * (math.sqrt(ends.low) + math.sqrt(ends.high)) / abs(fall)
-    return Theory(flow, abs(flow) * math.hypot(enskog_error("conductivity", phi), of_jumps), "Fourier's law")
+    return Theory(flow, abs(flow) * math.hypot(enskog.relative_error("conductivity", phi), of_jumps), "Fourier's law")
 
 
 def _gains(log: Log, window: Window) -> tuple[np.ndarray, np.ndarray]:

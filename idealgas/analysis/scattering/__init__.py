@@ -25,7 +25,7 @@ from idealgas.statistics.estimates import Estimate
 from idealgas.tallies.equilibration import Window, measure
 from idealgas.tallies.equilibrium import ensemble
 from idealgas.tallies.stream import ReadProgress
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 from idealgas.theory.waves import sound_of_discs
 
 if TYPE_CHECKING:
@@ -315,7 +315,7 @@ def _correlation_rate(log: Log) -> float:
     """
     gas, temperature, mass = log.discs, ensemble(log).temperature, float(log.discs.mass[0])
     chi = hard_discs.fluid_contact_value(min(gas.packing_fraction, hard_discs.HIGHEST))
-    diffusion = hard_discs.enskog_diffusion(2 * float(gas.radius[0]), len(gas) / gas.area, temperature, mass, chi)
+    diffusion = enskog.diffusion(2 * float(gas.radius[0]), len(gas) / gas.area, temperature, mass, chi)
     return temperature / (mass * diffusion)
 
 
@@ -336,7 +336,7 @@ def _too_short(log: Log, window: Window, longest: float, k: float) -> Iterator[s
         return
     mass, diameter, density = float(gas.mass[0]), 2 * float(gas.radius[0]), len(gas) / gas.area
     fluid, chi = sound_of_discs(phi, temperature, mass, diameter), hard_discs.fluid_contact_value(phi)
-    shear = hard_discs.enskog_viscosity(diameter, density, temperature, mass, chi) / (mass * density)
+    shear = enskog.viscosity(diameter, density, temperature, mass, chi) / (mass * density)
     rate = min(min(fluid.damping, fluid.spreading, shear) * k**2, k * math.sqrt(temperature / mass))
     if (number := window.duration * rate) < FEWEST_DECAYS:
         yield f"The window is {number:.2g} decay times of the longest wave long; error bars require {FEWEST_DECAYS:g}."

@@ -7,10 +7,10 @@ import numpy as np
 
 from idealgas.log import Log
 from idealgas.tallies.collisions import ExpectedRates
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 from idealgas.theory.conserved import conserved_momentum
 from idealgas.theory.ensemble import Composition, Ensemble
-from idealgas.theory.values import Theory, enskog_error
+from idealgas.theory.values import Theory
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def self_diffusion(log: Log, equilibrium: Ensemble, rates: ExpectedRates) -> lis
     discs, (rate, off) = rates.discs, rates.of_kinds
     values = np.empty((2, len(discs.mass)))  # value and error
     whole, walled = log.discs.mass.sum(), 1 - conserved_momentum(log.scene).mean()
-    error = enskog_error("diffusion", log.discs.packing_fraction)
+    error = enskog.relative_error("diffusion", log.discs.packing_fraction)
     for i, (mass, rest) in enumerate(zip(discs.mass, discs.mass_share_of_others, strict=True)):
         reduced = mass * discs.mass / (mass + discs.mass)
         parts = 2 * reduced * rate[i]
@@ -95,11 +95,11 @@ def mutual_diffusion(log: Log, discs: Composition, equilibrium: Ensemble, rates:
         return None
     reduced, share = discs.mass[0] * discs.mass[1] / discs.mass.sum(), discs.number[1] / discs.number.sum()
     value = float(share * equilibrium.temperature / (2 * reduced * rates.rate[0, 1]))
-    relative = enskog_error("diffusion", log.discs.packing_fraction) + float(rates.relative_error[0, 1])
+    relative = enskog.relative_error("diffusion", log.discs.packing_fraction) + float(rates.relative_error[0, 1])
     return Theory(value, relative * value, "Enskog")
 
 
-def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
+def coefficients_of(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None:
     """Return Enskog's coefficients for equal discs; None for unequal discs, above φ = 0.62, and for one or two discs.
 
     The coefficients are those of an infinite gas. At fixed energy and momentum the currents of N discs are smaller: in
@@ -112,18 +112,17 @@ def enskog(log: Log, discs: Composition, equilibrium: Ensemble) -> Enskog | None
     density, mass, kept = len(gas) / gas.area, discs.mass[0], 1 - conserved_momentum(log.scene).mean() / len(gas)
     chi = hard_discs.fluid_contact_value(gas.packing_fraction)
     state = (2 * discs.radius[0], density, equilibrium.temperature, mass, chi)
-    viscosity = hard_discs.enskog_viscosity(*state)
+    viscosity = enskog.viscosity(*state)
 
     def theory(quantity: str, value: float, part: float = 6.0, first: float = 0.0) -> Theory:
-        return Theory(value, (enskog_error(quantity, gas.packing_fraction) + part / len(gas) + first) * value, "Enskog")
+        relative = enskog.relative_error(quantity, gas.packing_fraction) + part / len(gas) + first
+        return Theory(value, relative * value, "Enskog")
 
     return Enskog(
         density,
-        theory(
-            "diffusion", hard_discs.enskog_diffusion(*state) * kept, 1.0, float(first_order_error(mass, discs.mass)[0])
-        ),
+        theory("diffusion", enskog.diffusion(*state) * kept, 1.0, float(first_order_error(mass, discs.mass)[0])),
         theory("viscosity", viscosity, 2.0),
-        theory("conductivity", hard_discs.enskog_conductivity(*state)),
-        theory("bulk viscosity", hard_discs.enskog_bulk_viscosity(*state)),
+        theory("conductivity", enskog.conductivity(*state)),
+        theory("bulk viscosity", enskog.bulk_viscosity(*state)),
         viscosity / (density * mass),
     )

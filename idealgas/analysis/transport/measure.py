@@ -18,7 +18,7 @@ from idealgas.analysis.transport.diffusion import (
     diffusion_caveats,
     diffusion_limits,
 )
-from idealgas.analysis.transport.enskog import enskog, mutual_diffusion, self_diffusion
+from idealgas.analysis.transport.enskog import coefficients_of, mutual_diffusion, self_diffusion
 from idealgas.analysis.transport.pair_distribution import Contact, pair_distributions
 from idealgas.analysis.transport.result import Transport
 from idealgas.errors import UserError
@@ -84,7 +84,7 @@ def transport(
             most = f"collisions by species (kept for up to {MOST_PAIRED} of them)"
             raise UserError(f"{log.path}: has neither events nor {most}")
     gas, discs, box = log.discs, composition(log.discs), theory_of(log)
-    expected, enskogs = expected_rates(gas.box, equilibrium, box), enskog(log, discs, equilibrium)
+    expected, enskogs = expected_rates(gas.box, equilibrium, box), coefficients_of(log, discs, equilibrium)
     rates = collision_rates(discs, expected, window, impacts)
     free_time = _free_time(impacts, discs, window)
     longest = min(lag * free_time, window.duration / FEWEST_SEGMENTS)

@@ -9,7 +9,7 @@ from helpers.logs import gas, log_of, species
 from idealgas import profile, temperature
 from idealgas.analysis.caveats import window_caveats
 from idealgas.tallies.exchange import INDEPENDENT, across, through_pistons
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 from idealgas.theory.adiabatic_piston import relaxation, slowest_rate
 
 RADIUS = math.sqrt(0.4 / (60 * math.pi))
@@ -24,7 +24,7 @@ def test_heat_crosses_a_box_by_enskogs_conductivity():
     """L²/2a with a = λ/(n c_P) and c_P = 1 + Z²/(d(φZ)/dφ), Z of the hard-disc fluid; a quarter of it if periodic."""
     log = log_of(DENSE)
     z, slope = (float(f(0.4)) for f in (hard_discs.compressibility_factor, hard_discs.inverse_compressibility))
-    conductivity = hard_discs.enskog_conductivity(2 * RADIUS, 60, 1.0, 1.0, (z - 1) / 0.8)
+    conductivity = enskog.conductivity(2 * RADIUS, 60, 1.0, 1.0, (z - 1) / 0.8)
     diffusivity = conductivity / (60 * (1 + z**2 / slope))
     result = across(log, 0)
     assert result.process == "heat crosses the box along x"

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 
 
 def test_virial_series_has_the_published_coefficients():
@@ -149,12 +149,12 @@ def test_enskogs_coefficients_have_their_parts(phi):
     sigma, temperature, mass, chi = 0.7, 1.3, 2.0, 1 / (1 - phi) ** 2
     state = (sigma, 4 * phi / (math.pi * sigma**2), temperature, mass, chi)
     y, unit = 2 * phi, math.sqrt(mass * temperature / math.pi) / sigma
-    bulk = hard_discs.enskog_bulk_viscosity(*state)
+    bulk = enskog.bulk_viscosity(*state)
     assert bulk == pytest.approx(2 / math.pi * chi * y**2 * unit)
     viscosity = 1.022 / 2 * unit / chi * (1 + y * chi / 2) ** 2 + bulk / 2
-    assert hard_discs.enskog_viscosity(*state) == pytest.approx(viscosity, rel=1e-4)
+    assert enskog.viscosity(*state) == pytest.approx(viscosity, rel=1e-4)
     conductivity = 2 * 1.029 * unit / mass / chi * (1 + 3 / 4 * y * chi) ** 2 + bulk / mass
-    assert hard_discs.enskog_conductivity(*state) == pytest.approx(conductivity, rel=1e-4)
+    assert enskog.conductivity(*state) == pytest.approx(conductivity, rel=1e-4)
 
 
 def test_pairs_in_a_thin_gas():

@@ -7,7 +7,7 @@ import pytest
 
 from idealgas.analysis.profile.flow import LAW, expected_flow
 from idealgas.analysis.profile.strips import collect
-from idealgas.theory import hard_discs
+from idealgas.theory import enskog, hard_discs
 
 pytestmark = [pytest.mark.interpreted, pytest.mark.usefixtures("uncompiled")]
 
@@ -26,7 +26,7 @@ def test_a_parabola_with_slip(make):
     density = 200 / (20 * 40)
     phi = density * math.pi / 4
     chi = hard_discs.fluid_contact_value(phi)
-    viscosity = hard_discs.enskog_viscosity(1.0, density, 2.0, 3.0, chi)
+    viscosity = enskog.viscosity(1.0, density, 2.0, 3.0, chi)
     slip = 1.016 * 1.022 * 2 / math.sqrt(math.pi) * hard_discs.mean_free_path(1.0, density, phi)
     y = np.array([0.005, 10.005, 20.005])  # middles of strips
     expected = 3 * density * 0.001 / (2 * viscosity) * (y * (40 - y) + slip * 40)
